@@ -1,0 +1,209 @@
+//! Inverse, exponential, logarithm and square root of any multivector of G3.
+//!
+//! Split `M = ζ + V` into its central part `ζ = α + βI` and `V = a + B`. I commutes with everything and
+//! squares to −1, so ζ is a complex number, and so is `V² = a² + B² + 2 a∧B = w`: V behaves like a
+//! number with the two values `±√w`. Hence for any analytic f, with `λ± = ζ ± √w`,
+//!
+//! ```text
+//! f(M) = (f(λ+) + f(λ−))/2 + V (f(λ+) − f(λ−))/(2√w).
+//! ```
+//!
+//! Each function below is this formula, rearranged so that nothing cancels as `w → 0`.
+
+use crate::complex::Complex;
+use crate::rotor::{MATRIX_TOLERANCE, Rotor};
+use crate::values::{Multivector, scale_of};
+use std::fmt;
+
+/// Why a function has no value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MathError {
+    /// A component is NaN or infinite.
+    NotFinite,
+    /// A rotor needs a component that is not zero.
+    ZeroRotor,
+    /// A plane of zero or non-finite size has no direction.
+    NoPlane,
+    /// A vector of zero or non-finite length has no direction.
+    NoDirection,
+    /// The matrix is not orthogonal within the tolerance.
+    NotOrthogonal {
+        /// `max |MᵀM − 1|`.
+        deviation: f64,
+    },
+    /// The matrix is orthogonal with determinant −1.
+    Reflection,
+    /// No inverse: `|M M̄| / |M|²`, M̄ the Clifford conjugate, is zero to rounding.
+    Singular {
+        /// That ratio.
+        ratio: f64,
+    },
+    /// No logarithm: an eigenvalue is zero to rounding.
+    NoLogarithm,
+    /// No square root: the two eigenvalues' roots cancel.
+    NoSquareRoot,
+    /// The result is beyond the range of floating point.
+    Overflow,
+}
+
+impl fmt::Display for MathError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MathError::NotFinite => write!(f, "a component is NaN or infinite; remove such values first"),
+            MathError::ZeroRotor => {
+                write!(f, "all components are zero, which is no rotor; give the identity as 1, 0, 0, 0")
+            }
+            MathError::NoPlane => {
+                write!(f, "a bivector of zero or non-finite size spans no plane; give a nonzero one")
+            }
+            MathError::NoDirection => {
+                write!(f, "a vector of zero or non-finite length has no direction; give a nonzero one")
+            }
+            MathError::NotOrthogonal { deviation } => write!(
+                f,
+                "not a rotation matrix: max |MᵀM − 1| = {deviation:.3e}, more than {MATRIX_TOLERANCE:e}; orthogonalize it first"
+            ),
+            MathError::Reflection => write!(
+                f,
+                "the matrix has determinant −1, a reflection; a rotation has +1; swap or flip an axis"
+            ),
+            MathError::Singular { ratio } => write!(
+                f,
+                "no inverse: the multivector is singular to rounding (|M M̄|/|M|² = {ratio:.1e}, M̄ its Clifford conjugate)"
+            ),
+            MathError::NoLogarithm => write!(f, "no logarithm: the multivector is singular to rounding"),
+            MathError::NoSquareRoot => write!(f, "no square root: the multivector is singular to rounding"),
+            MathError::Overflow => write!(
+                f,
+                "the result is beyond the range of floating point (1.8e308); scale the argument down"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for MathError {}
+
+/// Below this `|M M̄|/|M|²` is rounding: each of its two parts sums four products of terms up to |M|².
+const SINGULAR: f64 = 8.0 * f64::EPSILON;
+
+/// `M = ζ + V`, `V² = w`.
+fn split(m: Multivector) -> (Complex, Multivector, Complex) {
+    let zeta = Complex::new(m.0[0], m.0[7]);
+    let (a, b) = (m.vector_part(), m.bivector_part());
+    let v = Multivector::from(a) + Multivector::from(b);
+    let w = Complex::new(a.norm_squared() - b.norm_squared(), 2.0 * a.wedge_bivector(b).0);
+    (zeta, v, w)
+}
+
+/// `c + V d` for central c and d.
+fn join(c: Complex, v: Multivector, d: Complex) -> Multivector {
+    let mut m = v * d.re + v.undual() * d.im;
+    m.0[0] += c.re;
+    m.0[7] += c.im;
+    m
+}
+
+fn finite(m: Multivector) -> Result<Multivector, MathError> {
+    if m.0.iter().all(|x| x.is_finite()) { Ok(m) } else { Err(MathError::NotFinite) }
+}
+
+fn in_range(m: Multivector) -> Result<Multivector, MathError> {
+    if m.0.iter().all(|x| x.is_finite()) { Ok(m) } else { Err(MathError::Overflow) }
+}
+
+impl Multivector {
+    /// True where only the scalar and bivector parts are nonzero.
+    fn is_even(self) -> bool {
+        [1, 2, 3, 7].iter().all(|&i| self.0[i] == 0.0)
+    }
+
+    /// `M⁻¹ = M̄ (M M̄)⁻¹`, since with the Clifford conjugate `M̄ = ζ − V` the product `M M̄ = ζ² − w` is
+    /// central. It vanishes for null elements such as `1 + e1`, which have no inverse.
+    pub fn inverse(self) -> Result<Multivector, MathError> {
+        finite(self)?;
+        let scale = scale_of(&self.0);
+        let m = self / scale;
+        let (zeta, v, w) = split(m);
+        let determinant = zeta * zeta - w;
+        let size = m.norm_squared();
+        let ratio = if size == 0.0 { 0.0 } else { determinant.norm() / size };
+        if ratio <= SINGULAR {
+            return Err(MathError::Singular { ratio });
+        }
+        let reciprocal = Complex::ONE / determinant;
+        in_range(join(zeta * reciprocal, v, -reciprocal) / scale)
+    }
+
+    /// `exp M = e^ζ (cosh √w + V sinh √w / √w)`; both are even in √w, so either root serves.
+    pub fn exp(self) -> Result<Multivector, MathError> {
+        finite(self)?;
+        if self.is_even() {
+            let [s, x, y, z] = Rotor::exp(self.bivector_part()).components();
+            let e = self.0[0].exp();
+            return in_range(Multivector([e * s, 0.0, 0.0, 0.0, e * x, e * y, e * z, 0.0]));
+        }
+        let (zeta, v, w) = split(self);
+        let root = w.sqrt();
+        let factor = zeta.exp();
+        in_range(join(factor * root.cosh(), v, factor * root.sinhc()))
+    }
+
+    /// A logarithm, `exp(log M) = M`. For an even M it is even: `log|M|` plus the log of a rotor; for
+    /// others the principal one, `½(log λ+ + log λ−) + V (log λ+ − log λ−)/(2√w)`, where the quotient
+    /// is `artanh(√w/ζ)/√w` for small `√w/ζ`.
+    pub fn log(self) -> Result<Multivector, MathError> {
+        finite(self)?;
+        if self.is_even() {
+            let length = self.norm();
+            if length == 0.0 {
+                return Err(MathError::NoLogarithm);
+            }
+            let even = [self.0[0], self.0[4], self.0[5], self.0[6]];
+            let rotor = Rotor::from_components(even)?;
+            return Ok(Multivector::scalar(length.ln()) + rotor.log().into());
+        }
+        let scale = scale_of(&self.0);
+        let (zeta, v, w) = split(self / scale);
+        let root = w.sqrt();
+        let (plus, minus) = (zeta + root, zeta - root);
+        let smallest = plus.norm().min(minus.norm());
+        if smallest <= SINGULAR * (zeta.norm() + root.norm() + v.norm()) {
+            return Err(MathError::NoLogarithm);
+        }
+        let (log_plus, log_minus) = (plus.ln(), minus.ln());
+        let quotient = if root.norm() < 0.5 * zeta.norm() {
+            (root / zeta).artanhc() / zeta
+        } else {
+            (log_plus - log_minus).scale(0.5) / root
+        };
+        // The branch of the mean must be that of the quotient: ln λ+ + ln λ− = 2 ln ζ + ln(1 − w/ζ²).
+        let mean = if root.norm() < 0.5 * zeta.norm() {
+            zeta.ln() + (Complex::ONE - w / (zeta * zeta)).ln().scale(0.5)
+        } else {
+            (log_plus + log_minus).scale(0.5)
+        };
+        Ok(Multivector::scalar(scale.ln()) + join(mean, v, quotient))
+    }
+
+    /// A square root. For an even M it is `√|M|` times the half-way rotor, `√(−1) = e1e2`; for others
+    /// the principal one, `½(√λ+ + √λ−) + V/(√λ+ + √λ−)`.
+    pub fn sqrt(self) -> Result<Multivector, MathError> {
+        finite(self)?;
+        let length = self.norm();
+        if length == 0.0 {
+            return Ok(self);
+        }
+        if self.is_even() {
+            let half = Rotor::from_components([self.0[0], self.0[4], self.0[5], self.0[6]])?.log() * 0.5;
+            return Ok(Multivector::from(Rotor::exp(half)) * length.sqrt());
+        }
+        let scale = scale_of(&self.0);
+        let (zeta, v, w) = split(self / scale);
+        let root = w.sqrt();
+        let sum = (zeta + root).sqrt() + (zeta - root).sqrt();
+        if sum.norm() * sum.norm() <= SINGULAR * (zeta.norm() + v.norm()) {
+            return Err(MathError::NoSquareRoot);
+        }
+        Ok(join(sum.scale(0.5), v, Complex::ONE / sum) * scale.sqrt())
+    }
+}

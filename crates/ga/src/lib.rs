@@ -1,0 +1,35 @@
+//! Geometric algebra: the definition, and the typed values of 3-d space.
+//!
+//! A geometric algebra is spanned by *blades*, products of distinct orthonormal generators
+//! `e1 e2 … en`. Multiplying two blades needs two facts only: generators anticommute, and each squares
+//! to +1, −1 or 0. [`table`] turns these facts into the product of any two blades by bit arithmetic.
+//! **That table is the one definition of the algebra here**; every other product in this crate is a
+//! faster way to the same numbers, and the tests prove it equal to the table.
+//!
+//! The algebra G3 of 3-d space has eight blades, always in the order
+//!
+//! ```text
+//! 1 | e1 e2 e3 | e2e3 e3e1 e1e2 | I = e1e2e3
+//! ```
+//!
+//! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
+//!
+//! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
+//! keeps), [`batch`] (any product over rows of numbers), [`values`] (`Vector`, `Bivector`, `Trivector`,
+//! `Multivector`), [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`pauli`].
+//!
+//! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
+//! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
+
+pub mod batch;
+mod complex;
+pub mod functions;
+pub mod pauli;
+pub mod product;
+pub mod rotor;
+pub mod table;
+pub mod values;
+
+pub use functions::MathError;
+pub use rotor::Rotor;
+pub use values::{Bivector, Multivector, Trivector, Vector};

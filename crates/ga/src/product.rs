@@ -1,0 +1,177 @@
+//! The named products: each is the geometric product with a rule on grades.
+//!
+//! A product of blades of grades r and s has one grade k, and the rule says whether it is kept. The
+//! handout's dot is the lowest grade, `abs(r − s)`, scalars included (`3·a = 3a`); its wedge the highest.
+
+use crate::table::Algebra;
+
+/// The products of the handout, and the contractions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Product {
+    /// The geometric product `AB`: every grade.
+    Geometric,
+    /// `A∧B`: grade r + s.
+    Wedge,
+    /// `A·B`: grade abs(r − s).
+    Dot,
+    /// `A×B = ½(AB − BA)`: the pairs of blades that anticommute.
+    Commutator,
+    /// Left contraction `A⌋B`: grade s − r.
+    LeftContraction,
+    /// Right contraction `A⌊B`: grade r − s.
+    RightContraction,
+    /// `⟨AB⟩`: grade 0.
+    Scalar,
+}
+
+impl Product {
+    /// Every product, in the order of the enum.
+    pub const ALL: [Product; 7] = [
+        Product::Geometric,
+        Product::Wedge,
+        Product::Dot,
+        Product::Commutator,
+        Product::LeftContraction,
+        Product::RightContraction,
+        Product::Scalar,
+    ];
+
+    /// The product of this name: `geometric`, `wedge`, `dot`, `commutator`, `left_contraction`,
+    /// `right_contraction`, `scalar`.
+    pub fn from_name(name: &str) -> Option<Product> {
+        Product::ALL.into_iter().find(|p| p.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Product::Geometric => "geometric",
+            Product::Wedge => "wedge",
+            Product::Dot => "dot",
+            Product::Commutator => "commutator",
+            Product::LeftContraction => "left_contraction",
+            Product::RightContraction => "right_contraction",
+            Product::Scalar => "scalar",
+        }
+    }
+
+    /// Whether the grade-k product of blades of grades r and s is kept.
+    fn keeps(self, r: usize, s: usize, k: usize, anticommute: bool) -> bool {
+        match self {
+            Product::Geometric => true,
+            Product::Wedge => k == r + s,
+            Product::Dot => k == r.abs_diff(s),
+            Product::Commutator => anticommute,
+            Product::LeftContraction => k + r == s,
+            Product::RightContraction => k + s == r,
+            Product::Scalar => k == 0,
+        }
+    }
+
+    /// The named product of basis elements `i` and `j`: sign (0 if it vanishes) and index.
+    pub fn of_basis(self, algebra: &Algebra, i: usize, j: usize) -> (i8, usize) {
+        let (sign, k) = algebra.basis_product(i, j);
+        let (reverse_sign, _) = algebra.basis_product(j, i);
+        let grade = |index: usize| algebra.blades()[index].grade();
+        let kept = self.keeps(grade(i), grade(j), grade(k), sign == -reverse_sign);
+        (if kept { sign } else { 0 }, k)
+    }
+}
+
+/// A set of grades, as bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Grades(pub u16);
+
+impl Grades {
+    /// The scalars alone.
+    pub const SCALAR: Grades = Grades(1);
+
+    /// Whether grade `k` is in the set.
+    pub fn contains(self, k: usize) -> bool {
+        self.0 >> k & 1 == 1
+    }
+
+    /// Indices of the basis elements of these grades, in basis order: the components of a value.
+    pub fn indices(self, algebra: &Algebra) -> Vec<usize> {
+        let blades = algebra.blades();
+        (0..blades.len()).filter(|&i| self.contains(blades[i].grade())).collect()
+    }
+}
+
+/// `out[out] += sign · a[a] · b[b]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Term {
+    /// Component of the left factor.
+    pub a: usize,
+    /// Component of the right factor.
+    pub b: usize,
+    /// Component of the product.
+    pub out: usize,
+    /// +1 or −1.
+    pub sign: i8,
+}
+
+/// A product between values that hold given grades, as a list of terms in order of `out`.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Components of the left factor, the right factor and the product.
+    pub sizes: (usize, usize, usize),
+    /// The grades of the product; a product that vanishes identically is the scalar 0.
+    pub grades: Grades,
+    /// The terms.
+    pub terms: Vec<Term>,
+}
+
+impl Plan {
+    /// Plans `product` for factors that hold the grades `ga` and `gb`.
+    pub fn new(algebra: &Algebra, product: Product, ga: Grades, gb: Grades) -> Plan {
+        let (ia, ib) = (ga.indices(algebra), gb.indices(algebra));
+        let mut found = Vec::new();
+        let mut grades = 0;
+        for (a, &i) in ia.iter().enumerate() {
+            for (b, &j) in ib.iter().enumerate() {
+                let (sign, k) = product.of_basis(algebra, i, j);
+                if sign != 0 {
+                    grades |= 1 << algebra.blades()[k].grade();
+                    found.push(Term { a, b, out: k, sign });
+                }
+            }
+        }
+        let grades = if grades == 0 { Grades::SCALAR } else { Grades(grades) };
+        let iout = grades.indices(algebra);
+        for term in &mut found {
+            term.out = iout.binary_search(&term.out).expect("its grade is in the set");
+        }
+        found.sort_by_key(|t| (t.out, t.a));
+        Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::G3;
+
+    fn grades_of(product: Product, ga: u16, gb: u16) -> u16 {
+        Plan::new(&G3, product, Grades(ga), Grades(gb)).grades.0
+    }
+
+    #[test]
+    fn grades_follow_the_products() {
+        assert_eq!(grades_of(Product::Geometric, 0b0010, 0b0010), 0b0101); // vector vector
+        assert_eq!(grades_of(Product::Geometric, 0b0010, 0b0100), 0b1010); // vector bivector
+        assert_eq!(grades_of(Product::Wedge, 0b0010, 0b0010), 0b0100);
+        assert_eq!(grades_of(Product::Dot, 0b0001, 0b0010), 0b0010); // 3·a = 3a
+        assert_eq!(grades_of(Product::LeftContraction, 0b0100, 0b0010), 0b0001); // vanishes
+        assert_eq!(grades_of(Product::Commutator, 0b0100, 0b0100), 0b0100);
+        assert_eq!(grades_of(Product::Wedge, 0b0100, 0b0100), 0b0001); // vanishes: the scalar 0
+    }
+
+    #[test]
+    fn names_round_trip() {
+        for product in Product::ALL {
+            assert_eq!(Product::from_name(product.name()), Some(product));
+        }
+        assert_eq!(Product::from_name("outer"), None);
+    }
+}

@@ -1,0 +1,355 @@
+//! The typed values of 3-d space, for code that knows its grades.
+//!
+//! | type | components | |
+//! |---|---|---|
+//! | [`Vector`] | e1, e2, e3 | directions, positions |
+//! | [`Bivector`] | e2e3, e3e1, e1e2 | planes with a size; the numbers of the dual axial vector |
+//! | [`Trivector`] | I | volumes |
+//! | [`Multivector`] | 1, e1, e2, e3, e2e3, e3e1, e1e2, I | anything |
+//!
+//! (A [`crate::Rotor`] has its own module.) The products written out here are equal to the table's.
+
+use crate::product::{Grades, Plan, Product};
+use crate::table::G3;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// A vector `x e1 + y e2 + z e3`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vector(pub [f64; 3]);
+
+/// A bivector `x e2e3 + y e3e1 + z e1e2`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bivector(pub [f64; 3]);
+
+/// A trivector `x I`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trivector(pub f64);
+
+/// A general element, components `1, e1, e2, e3, e2e3, e3e1, e1e2, I`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Multivector(pub [f64; 8]);
+
+/// Componentwise sum, difference, negative, and product with a number.
+macro_rules! linear_space {
+    ($type:ident) => {
+        impl Add for $type {
+            type Output = $type;
+            fn add(self, other: $type) -> $type {
+                $type(std::array::from_fn(|i| self.0[i] + other.0[i]))
+            }
+        }
+        impl AddAssign for $type {
+            fn add_assign(&mut self, other: $type) {
+                *self = *self + other;
+            }
+        }
+        impl Sub for $type {
+            type Output = $type;
+            fn sub(self, other: $type) -> $type {
+                $type(std::array::from_fn(|i| self.0[i] - other.0[i]))
+            }
+        }
+        impl Neg for $type {
+            type Output = $type;
+            fn neg(self) -> $type {
+                $type(self.0.map(|x| -x))
+            }
+        }
+        impl Mul<f64> for $type {
+            type Output = $type;
+            fn mul(self, s: f64) -> $type {
+                $type(self.0.map(|x| x * s))
+            }
+        }
+        impl Mul<$type> for f64 {
+            type Output = $type;
+            fn mul(self, a: $type) -> $type {
+                a * self
+            }
+        }
+        impl Div<f64> for $type {
+            type Output = $type;
+            fn div(self, s: f64) -> $type {
+                $type(self.0.map(|x| x / s))
+            }
+        }
+        impl $type {
+            /// Sum of the squares of the components, `⟨A ~A⟩`.
+            pub fn norm_squared(self) -> f64 {
+                self.0.iter().map(|x| x * x).sum()
+            }
+            /// `√⟨A ~A⟩`, without overflow or underflow on the way.
+            pub fn norm(self) -> f64 {
+                norm(&self.0)
+            }
+        }
+    };
+}
+
+linear_space!(Vector);
+linear_space!(Bivector);
+linear_space!(Multivector);
+
+/// The power of two next below the largest magnitude: dividing by it is exact, and makes squares safe.
+/// 1 for zero; the largest magnitude itself for NaN and infinity.
+pub(crate) fn scale_of(components: &[f64]) -> f64 {
+    let largest = components.iter().fold(0.0, |m: f64, x| if x.is_nan() { *x } else { m.max(x.abs()) });
+    if largest == 0.0 {
+        1.0
+    } else if largest < f64::MIN_POSITIVE {
+        f64::MIN_POSITIVE
+    } else if largest.is_finite() {
+        f64::from_bits(largest.to_bits() & (0x7ff << 52))
+    } else {
+        largest
+    }
+}
+
+/// Euclidean norm of the components over the whole range of floating point.
+pub(crate) fn norm(components: &[f64]) -> f64 {
+    let plain: f64 = components.iter().map(|x| x * x).sum();
+    if (1e-290..1e290).contains(&plain) {
+        return plain.sqrt();
+    }
+    if components.iter().any(|x| x.is_infinite()) {
+        return f64::INFINITY;
+    }
+    let scale = scale_of(components);
+    scale * components.iter().map(|x| (x / scale) * (x / scale)).sum::<f64>().sqrt()
+}
+
+fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The components of `a x b`; also of `a∧b`, and of `−A×B` for bivectors.
+fn cross3(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+impl Vector {
+    /// `a·b`.
+    pub fn dot(self, b: Vector) -> f64 {
+        dot3(self.0, b.0)
+    }
+
+    /// `a∧b`, the oriented plane swept by `a` along `b`.
+    pub fn wedge(self, b: Vector) -> Bivector {
+        Bivector(cross3(self.0, b.0))
+    }
+
+    /// The vector cross product, `a x b = −I a∧b` (handout eq. 1.24).
+    pub fn cross(self, b: Vector) -> Vector {
+        self.wedge(b).dual()
+    }
+
+    /// `a·B`, a vector: the part of `a` in the plane, turned by 90° in the sense of `B`, times `|B|`
+    /// (handout eq. 1.8). With `B = I b` it is `−a x b`.
+    pub fn dot_bivector(self, b: Bivector) -> Vector {
+        b.dual().cross(self)
+    }
+
+    /// `a∧B`.
+    pub fn wedge_bivector(self, b: Bivector) -> Trivector {
+        Trivector(dot3(self.0, b.0))
+    }
+
+    /// `I a`, the plane perpendicular to `a` (handout eq. 1.20).
+    pub fn undual(self) -> Bivector {
+        Bivector(self.0)
+    }
+}
+
+impl Bivector {
+    /// `A·B = ⟨AB⟩`: minus the dot product of the components, since planes square to −1.
+    pub fn dot(self, b: Bivector) -> f64 {
+        -dot3(self.0, b.0)
+    }
+
+    /// `A×B = ½(AB − BA)` (handout eq. 1.17 and 4.21): not the cross product, but minus its components.
+    pub fn commutator(self, b: Bivector) -> Bivector {
+        Bivector(cross3(b.0, self.0))
+    }
+
+    /// `B I⁻¹`, the axial vector: the dual of `a∧b` is `a x b`.
+    pub fn dual(self) -> Vector {
+        Vector(self.0)
+    }
+}
+
+impl Multivector {
+    /// The number `x`.
+    pub fn scalar(x: f64) -> Multivector {
+        let mut m = Multivector::default();
+        m.0[0] = x;
+        m
+    }
+
+    /// The part of grade 2.
+    pub fn bivector_part(self) -> Bivector {
+        Bivector([self.0[4], self.0[5], self.0[6]])
+    }
+
+    /// The part of grade 1.
+    pub fn vector_part(self) -> Vector {
+        Vector([self.0[1], self.0[2], self.0[3]])
+    }
+
+    /// The part of grade `k`.
+    pub fn grade(self, k: usize) -> Multivector {
+        self.signed(|r| f64::from(u8::from(r == k)))
+    }
+
+    /// `~M`: grades 2 and 3 change sign (handout eq. 1.28).
+    pub fn reverse(self) -> Multivector {
+        self.signed(|r| if r >= 2 { -1.0 } else { 1.0 })
+    }
+
+    /// Odd grades change sign.
+    pub fn grade_involution(self) -> Multivector {
+        self.signed(|r| if r % 2 == 1 { -1.0 } else { 1.0 })
+    }
+
+    /// Reverse and grade involution: grades 1 and 2 change sign.
+    pub fn clifford_conjugate(self) -> Multivector {
+        self.signed(|r| if r == 1 || r == 2 { -1.0 } else { 1.0 })
+    }
+
+    /// `M I⁻¹`.
+    pub fn dual(self) -> Multivector {
+        let m = self.0;
+        Multivector([m[7], m[4], m[5], m[6], -m[1], -m[2], -m[3], -m[0]])
+    }
+
+    /// `M I`.
+    pub fn undual(self) -> Multivector {
+        -self.dual()
+    }
+
+    /// Any named product, straight from the table.
+    pub fn product(self, product: Product, other: Multivector) -> Multivector {
+        let plan = Plan::new(&G3, product, Grades(0b1111), Grades(0b1111));
+        let mut out = vec![0.0; plan.sizes.2];
+        plan.run(&self.0, &other.0, &mut out);
+        let mut result = Multivector::default();
+        for (&k, x) in plan.grades.indices(&G3).iter().zip(out) {
+            result.0[k] = x;
+        }
+        result
+    }
+
+    fn signed(self, factor: impl Fn(usize) -> f64) -> Multivector {
+        const GRADE: [usize; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
+        // A part that is dropped is 0 whatever it was: 0 · NaN would not be.
+        let part = |i: usize| match factor(GRADE[i]) {
+            0.0 => 0.0,
+            f => f * self.0[i],
+        };
+        Multivector(std::array::from_fn(part))
+    }
+}
+
+impl From<Vector> for Multivector {
+    fn from(Vector([x, y, z]): Vector) -> Multivector {
+        Multivector([0.0, x, y, z, 0.0, 0.0, 0.0, 0.0])
+    }
+}
+
+impl From<Bivector> for Multivector {
+    fn from(Bivector([x, y, z]): Bivector) -> Multivector {
+        Multivector([0.0, 0.0, 0.0, 0.0, x, y, z, 0.0])
+    }
+}
+
+impl From<Trivector> for Multivector {
+    fn from(Trivector(x): Trivector) -> Multivector {
+        Multivector([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, x])
+    }
+}
+
+impl Mul for Multivector {
+    type Output = Multivector;
+
+    /// The geometric product: for each component, the pairs of blades that the table sends there.
+    fn mul(self, other: Multivector) -> Multivector {
+        let [m0, m1, m2, m3, m4, m5, m6, m7] = self.0;
+        let [n0, n1, n2, n3, n4, n5, n6, n7] = other.0;
+        Multivector([
+            m0 * n0 + m1 * n1 + m2 * n2 + m3 * n3 - m4 * n4 - m5 * n5 - m6 * n6 - m7 * n7,
+            m0 * n1 + m1 * n0 - m2 * n6 + m3 * n5 - m4 * n7 - m5 * n3 + m6 * n2 - m7 * n4,
+            m0 * n2 + m2 * n0 - m3 * n4 + m1 * n6 - m5 * n7 - m6 * n1 + m4 * n3 - m7 * n5,
+            m0 * n3 + m3 * n0 - m1 * n5 + m2 * n4 - m6 * n7 - m4 * n2 + m5 * n1 - m7 * n6,
+            m0 * n4 + m4 * n0 + m2 * n3 - m3 * n2 + m1 * n7 + m7 * n1 - m5 * n6 + m6 * n5,
+            m0 * n5 + m5 * n0 + m3 * n1 - m1 * n3 + m2 * n7 + m7 * n2 - m6 * n4 + m4 * n6,
+            m0 * n6 + m6 * n0 + m1 * n2 - m2 * n1 + m3 * n7 + m7 * n3 - m4 * n5 + m5 * n4,
+            m0 * n7 + m7 * n0 + m1 * n4 + m4 * n1 + m2 * n5 + m5 * n2 + m3 * n6 + m6 * n3,
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn basis(i: usize) -> Multivector {
+        let mut m = Multivector::default();
+        m.0[i] = 1.0;
+        m
+    }
+
+    #[test]
+    fn written_out_product_equals_the_table() {
+        for i in 0..8 {
+            for j in 0..8 {
+                let (sign, k) = G3.basis_product(i, j);
+                assert_eq!(basis(i) * basis(j), basis(k) * f64::from(sign), "{i} {j}");
+            }
+        }
+    }
+
+    /// The typed products on all pairs of basis elements of their grades; they are bilinear.
+    #[test]
+    fn typed_products_equal_the_table() {
+        for i in 0..3 {
+            for j in 0..3 {
+                let (a, b) = (basis(1 + i).vector_part(), basis(1 + j).vector_part());
+                let (p, q) = (basis(4 + i).bivector_part(), basis(4 + j).bivector_part());
+                let table = |product, x: Multivector, y: Multivector| x.product(product, y);
+                let (ma, mb, mp, mq) = (a.into(), b.into(), p.into(), q.into());
+                assert_eq!(Multivector::scalar(a.dot(b)), table(Product::Dot, ma, mb));
+                assert_eq!(Multivector::from(a.wedge(b)), table(Product::Wedge, ma, mb));
+                assert_eq!(Multivector::from(a.dot_bivector(q)), table(Product::Dot, ma, mq));
+                assert_eq!(Multivector::from(a.wedge_bivector(q)), table(Product::Wedge, ma, mq));
+                assert_eq!(Multivector::scalar(p.dot(q)), table(Product::Dot, mp, mq));
+                assert_eq!(Multivector::from(p.commutator(q)), table(Product::Commutator, mp, mq));
+                let minus_i = -basis(7);
+                assert_eq!(Multivector::from(a.cross(b)), minus_i * table(Product::Wedge, ma, mb));
+            }
+        }
+    }
+
+    #[test]
+    fn dual_and_involutions_follow_their_definitions() {
+        for i in 0..8 {
+            let m = basis(i);
+            assert_eq!(m.dual(), m * -basis(7));
+            assert_eq!(m.undual(), m * basis(7));
+            let r = G3.blades()[i].grade();
+            let sign = |exponent: usize| if exponent % 2 == 0 { 1.0 } else { -1.0 };
+            assert_eq!(m.reverse(), m * sign(r * r.saturating_sub(1) / 2));
+            assert_eq!(m.grade_involution(), m * sign(r));
+            assert_eq!(m.clifford_conjugate(), m.reverse().grade_involution());
+            assert_eq!(m.grade(r), m);
+        }
+    }
+
+    #[test]
+    fn norm_spans_the_range_of_floats() {
+        for scale in [5e-324, 1e-310, 1e-200, 1.0, 1e200, 1e307] {
+            let norm = Vector([3.0 * scale, 4.0 * scale, 0.0]).norm();
+            assert!((norm / (5.0 * scale) - 1.0).abs() < 4e-16, "{scale} {norm}");
+        }
+        assert_eq!(Vector([f64::NEG_INFINITY, 1.0, 0.0]).norm(), f64::INFINITY);
+        assert!(Vector([f64::NAN, 1.0, 0.0]).norm().is_nan());
+    }
+}

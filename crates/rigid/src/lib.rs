@@ -1,0 +1,13 @@
+//! Rigid-body mechanics in the language of geometric algebra.
+//!
+//! A body's attitude is a rotor `R` that carries body axes to space axes; its angular velocity and
+//! angular momentum are bivectors, `L = R I(Ω_B) ~R` (handout eq. 4.19), where the inertia map `I`
+//! takes the plane of rotation to the plane of angular momentum.
+//!
+//! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
+//! (closed forms), [`mesh`] (triangle meshes and their files), [`units`] and [`scene`] (what a person
+//! writes in a scene file).
+//!
+//! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
+
+pub mod solids;

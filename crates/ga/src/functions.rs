@@ -11,6 +11,7 @@
 //! Each function below is this formula, rearranged so that nothing cancels as `w → 0`.
 
 use crate::complex::Complex;
+use crate::product::Grades;
 use crate::rotor::{MATRIX_TOLERANCE, Rotor};
 use crate::values::{Multivector, scale_of};
 use std::fmt;
@@ -109,6 +110,60 @@ fn finite(m: Multivector) -> Result<Multivector, MathError> {
 
 fn in_range(m: Multivector) -> Result<Multivector, MathError> {
     if m.0.iter().all(|x| x.is_finite()) { Ok(m) } else { Err(MathError::Overflow) }
+}
+
+/// A function of one multivector, and the grades its values may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    /// [`Multivector::inverse`].
+    Inverse,
+    /// [`Multivector::exp`].
+    Exp,
+    /// [`Multivector::log`].
+    Log,
+    /// [`Multivector::sqrt`].
+    Sqrt,
+}
+
+impl Function {
+    /// The function of this name: `inverse`, `exp`, `log`, `sqrt`.
+    pub fn from_name(name: &str) -> Option<Function> {
+        match name {
+            "inverse" => Some(Function::Inverse),
+            "exp" => Some(Function::Exp),
+            "log" => Some(Function::Log),
+            "sqrt" => Some(Function::Sqrt),
+            _ => None,
+        }
+    }
+
+    /// Its value.
+    pub fn apply(self, m: Multivector) -> Result<Multivector, MathError> {
+        match self {
+            Function::Inverse => m.inverse(),
+            Function::Exp => m.exp(),
+            Function::Log => m.log(),
+            Function::Sqrt => m.sqrt(),
+        }
+    }
+
+    /// The grades of the value for an argument of grades `g`.
+    ///
+    /// Two grades that square to a number, such as scalar and vector, are closed under products, and so
+    /// under power series and inverse. Roots and logarithms leave them, except the even elements.
+    pub fn grades(self, g: Grades) -> Grades {
+        const CLOSED: [u16; 3] = [0b0101, 0b0011, 0b1001];
+        // Inverse: M̄ times a number, when M M̄ has no trivector part.
+        const INVERTED: [u16; 9] = [0b0001, 0b0010, 0b0100, 0b1000, 0b0011, 0b0101, 0b1010, 0b1100, 0b1001];
+        let closure =
+            |sets: &[u16]| sets.iter().map(|&s| Grades(s)).find(|&s| g.within(s)).unwrap_or(Grades::ALL);
+        match self {
+            Function::Inverse => closure(&INVERTED),
+            Function::Exp if g == Grades::SCALAR => Grades::SCALAR,
+            Function::Exp => closure(&CLOSED),
+            Function::Log | Function::Sqrt => closure(&CLOSED[..1]),
+        }
+    }
 }
 
 impl Multivector {

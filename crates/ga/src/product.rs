@@ -3,7 +3,8 @@
 //! A product of blades of grades r and s has one grade k, and the rule says whether it is kept. The
 //! handout's dot is the lowest grade, `abs(r − s)`, scalars included (`3·a = 3a`); its wedge the highest.
 
-use crate::table::Algebra;
+use crate::table::{Algebra, G3};
+use std::sync::OnceLock;
 
 /// The products of the handout, and the contractions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -85,6 +86,17 @@ pub struct Grades(pub u16);
 impl Grades {
     /// The scalars alone.
     pub const SCALAR: Grades = Grades(1);
+    /// The bivectors alone.
+    pub const BIVECTOR: Grades = Grades(0b100);
+    /// Scalars and bivectors, the grades of rotors.
+    pub const EVEN: Grades = Grades(0b101);
+    /// Every grade of 3-d space.
+    pub const ALL: Grades = Grades(0b1111);
+
+    /// Whether every grade of this set is in the other.
+    pub fn within(self, other: Grades) -> bool {
+        self.0 & !other.0 == 0
+    }
 
     /// Whether grade `k` is in the set.
     pub fn contains(self, k: usize) -> bool {
@@ -145,12 +157,22 @@ impl Plan {
         found.sort_by_key(|t| (t.out, t.a));
         Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found }
     }
+
+    /// The plan in [`G3`], made once for each product and pair of grades.
+    ///
+    /// # Panics
+    /// If a set holds a grade above 3.
+    pub fn g3(product: Product, ga: Grades, gb: Grades) -> &'static Plan {
+        static PLANS: [OnceLock<Plan>; 7 * 16 * 16] = [const { OnceLock::new() }; 7 * 16 * 16];
+        assert!(ga.0 < 16 && gb.0 < 16, "3-d space has grades 0 to 3");
+        let index = (product as usize * 16 + usize::from(ga.0)) * 16 + usize::from(gb.0);
+        PLANS[index].get_or_init(|| Plan::new(&G3, product, ga, gb))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::G3;
 
     fn grades_of(product: Product, ga: u16, gb: u16) -> u16 {
         Plan::new(&G3, product, Grades(ga), Grades(gb)).grades.0

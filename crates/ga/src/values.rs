@@ -228,7 +228,7 @@ impl Multivector {
 
     /// Any named product, straight from the table.
     pub fn product(self, product: Product, other: Multivector) -> Multivector {
-        let plan = Plan::new(&G3, product, Grades(0b1111), Grades(0b1111));
+        let plan = Plan::g3(product, Grades::ALL, Grades::ALL);
         let mut out = vec![0.0; plan.sizes.2];
         plan.run(&self.0, &other.0, &mut out);
         let mut result = Multivector::default();
@@ -335,7 +335,7 @@ mod tests {
             assert_eq!(m.dual(), m * -basis(7));
             assert_eq!(m.undual(), m * basis(7));
             let r = G3.blades()[i].grade();
-            let sign = |exponent: usize| if exponent % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = |exponent: usize| if exponent.is_multiple_of(2) { 1.0 } else { -1.0 };
             assert_eq!(m.reverse(), m * sign(r * r.saturating_sub(1) / 2));
             assert_eq!(m.grade_involution(), m * sign(r));
             assert_eq!(m.clifford_conjugate(), m.reverse().grade_involution());

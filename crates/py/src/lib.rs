@@ -1,1 +1,22 @@
-//! x
+//! The Python binding: converts arrays, registers functions, releases the GIL. It holds no formula.
+
+use pyo3::prelude::*;
+
+mod algebra;
+
+/// The compiled core of Polhode; private, called through `polhode`.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::algebra::{
+        component_indices, from_pauli, function, norm, product, rotor_apply, rotor_from_components,
+        rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion, rotor_from_rotation_vector,
+        rotor_from_vectors, rotor_plane_angle, rotor_to_matrix, rotor_to_quaternion,
+        rotor_to_rotation_vector, to_pauli,
+    };
+
+    /// The version of the package.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

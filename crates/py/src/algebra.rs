@@ -1,0 +1,242 @@
+//! The algebra over arrays: rows of components in, rows out.
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use polhode_ga::functions::Function;
+use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::table::G3;
+use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// An array of float64 whose last axis holds the components, contiguous.
+type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
+
+fn bad<E: std::fmt::Display>(message: E) -> PyErr {
+    PyValueError::new_err(message.to_string())
+}
+
+/// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.
+fn place(row: usize, batch: &[usize]) -> String {
+    if batch.is_empty() {
+        return String::new();
+    }
+    let mut rest = row;
+    let mut index: Vec<String> = Vec::new();
+    for &length in batch.iter().rev() {
+        index.push((rest % length).to_string());
+        rest /= length;
+    }
+    index.reverse();
+    let comma = if index.len() == 1 { "," } else { "" };
+    format!("at index ({}{comma}): ", index.join(", "))
+}
+
+/// Applies a function of one row to every row.
+fn map_rows<'py, const IN: usize, const OUT: usize>(
+    py: Python<'py>,
+    input: &Rows<'py>,
+    f: impl Fn([f64; IN]) -> Result<[f64; OUT], MathError> + Sync + Send,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let shape = input.shape();
+    let batch = match shape.split_last() {
+        Some((&last, batch)) if last == IN => batch,
+        _ => return Err(bad(format!("expected {IN} components in the last axis, got shape {shape:?}"))),
+    };
+    let data = input.as_slice()?;
+    let result: Result<Vec<f64>, (usize, MathError)> = py.detach(|| {
+        let mut out = Vec::with_capacity(data.len() / IN * OUT);
+        for (row, values) in data.as_chunks::<IN>().0.iter().enumerate() {
+            out.extend(f(*values).map_err(|e| (row, e))?);
+        }
+        Ok(out)
+    });
+    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
+    let mut out_shape = batch.to_vec();
+    out_shape.push(OUT);
+    PyArray1::from_vec(py, out).reshape(out_shape)
+}
+
+/// A product of rows `(n, K)`; a factor of one row meets every row of the other. Returns `(rows, M)` and
+/// the grades of the product as bits.
+#[pyfunction]
+pub(crate) fn product<'py>(
+    py: Python<'py>,
+    name: &str,
+    a: Rows<'py>,
+    a_grades: u16,
+    b: Rows<'py>,
+    b_grades: u16,
+    rows: usize,
+) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, u16)> {
+    let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
+    if a_grades >= 16 || b_grades >= 16 {
+        return Err(bad("3-d space has grades 0 to 3"));
+    }
+    let plan = Plan::g3(product, Grades(a_grades), Grades(b_grades));
+    let (a, b) = (a.as_slice()?, b.as_slice()?);
+    let (na, nb, nout) = plan.sizes;
+    for (length, size) in [(a.len(), na), (b.len(), nb)] {
+        if length != size && length != rows * size {
+            return Err(bad(format!("a factor has {length} numbers, expected {size} or {}", rows * size)));
+        }
+    }
+    let out = py.detach(|| {
+        let mut out = vec![0.0; rows * nout];
+        plan.run(a, b, &mut out);
+        out
+    });
+    Ok((PyArray1::from_vec(py, out).reshape(vec![rows, nout])?, plan.grades.0))
+}
+
+/// `inverse`, `exp`, `log` or `sqrt` of rows of eight components; also the grades of the values.
+#[pyfunction]
+pub(crate) fn function<'py>(
+    py: Python<'py>,
+    name: &str,
+    m: Rows<'py>,
+    grades: u16,
+) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, u16)> {
+    let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
+    let values = map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0))?;
+    Ok((values, f.grades(Grades(grades)).0))
+}
+
+/// Indices of the components of these grades among the eight.
+#[pyfunction]
+pub(crate) fn component_indices(grades: u16) -> Vec<usize> {
+    Grades(grades).indices(&G3)
+}
+
+/// Euclidean norms of the rows, without overflow on the way; the last axis has length 1.
+#[pyfunction]
+pub(crate) fn norm<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &m, |c: [f64; 8]| Ok([Multivector(c).norm()]))
+}
+
+/// Rotors from components, normalised.
+#[pyfunction]
+pub(crate) fn rotor_from_components<'py>(
+    py: Python<'py>,
+    c: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &c, |c| Rotor::from_components(c).map(Rotor::components))
+}
+
+/// Rotors from rows of plane (3) and angle.
+#[pyfunction]
+pub(crate) fn rotor_from_plane_angle<'py>(
+    py: Python<'py>,
+    c: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &c, |[x, y, z, angle]: [f64; 4]| {
+        Rotor::from_plane_angle(Vector([x, y, z]).undual(), angle).map(Rotor::components)
+    })
+}
+
+/// Rotors from rows of two vectors, turning the first to the second.
+#[pyfunction]
+pub(crate) fn rotor_from_vectors<'py>(
+    py: Python<'py>,
+    ab: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &ab, |[x, y, z, u, v, w]: [f64; 6]| {
+        Rotor::from_vectors(Vector([x, y, z]), Vector([u, v, w])).map(Rotor::components)
+    })
+}
+
+/// Rotors from matrices, nine numbers a row.
+#[pyfunction]
+pub(crate) fn rotor_from_matrix<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &m, |m: [f64; 9]| {
+        let row = |i: usize| [m[3 * i], m[3 * i + 1], m[3 * i + 2]];
+        Rotor::from_matrix([row(0), row(1), row(2)]).map(Rotor::components)
+    })
+}
+
+/// Rotors from rotation vectors.
+#[pyfunction]
+pub(crate) fn rotor_from_rotation_vector<'py>(
+    py: Python<'py>,
+    v: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &v, |v| Rotor::from_rotation_vector(Vector(v)).map(Rotor::components))
+}
+
+/// Rotors from quaternions (w, x, y, z).
+#[pyfunction]
+pub(crate) fn rotor_from_quaternion<'py>(
+    py: Python<'py>,
+    q: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &q, |q| Rotor::from_quaternion_wxyz(q).map(Rotor::components))
+}
+
+/// A row of components known to be a rotor's.
+fn rotor(c: [f64; 4]) -> Result<Rotor, MathError> {
+    Rotor::from_components(c)
+}
+
+/// Quaternions (w, x, y, z) of rotors.
+#[pyfunction]
+pub(crate) fn rotor_to_quaternion<'py>(
+    py: Python<'py>,
+    r: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &r, |c| rotor(c).map(Rotor::to_quaternion_wxyz))
+}
+
+/// Matrices of rotors, nine numbers a row.
+#[pyfunction]
+pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &r, |c| {
+        let m = rotor(c)?.to_matrix();
+        Ok::<[f64; 9], _>(std::array::from_fn(|i| m[i / 3][i % 3]))
+    })
+}
+
+/// Rotation vectors of rotors.
+#[pyfunction]
+pub(crate) fn rotor_to_rotation_vector<'py>(
+    py: Python<'py>,
+    r: Rows<'py>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &r, |c| rotor(c).map(|r| r.to_rotation_vector().0))
+}
+
+/// Unit planes (3) and angles of rotors.
+#[pyfunction]
+pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &r, |c| {
+        let (plane, angle) = rotor(c)?.plane_angle();
+        let [x, y, z] = plane.0;
+        Ok([x, y, z, angle])
+    })
+}
+
+/// `R X ~R` for rows of a rotor (4) and a multivector (8).
+#[pyfunction]
+pub(crate) fn rotor_apply<'py>(py: Python<'py>, rx: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &rx, |rx: [f64; 12]| {
+        let c = std::array::from_fn(|i| rx[i]);
+        let m = std::array::from_fn(|i| rx[4 + i]);
+        rotor(c).map(|r| r.apply_multivector(Multivector(m)).0)
+    })
+}
+
+/// 2×2 complex matrices, eight numbers a row, of multivectors.
+#[pyfunction]
+pub(crate) fn to_pauli<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &m, |c: [f64; 8]| {
+        let p = pauli::to_pauli(Multivector(c));
+        Ok::<[f64; 8], _>(std::array::from_fn(|i| p[i / 4][i / 2 % 2][i % 2]))
+    })
+}
+
+/// Multivectors of 2×2 complex matrices, eight numbers a row.
+#[pyfunction]
+pub(crate) fn from_pauli<'py>(py: Python<'py>, p: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    map_rows(py, &p, |p: [f64; 8]| {
+        let matrix = [[[p[0], p[1]], [p[2], p[3]]], [[p[4], p[5]], [p[6], p[7]]]];
+        Ok(pauli::from_pauli(matrix).0)
+    })
+}

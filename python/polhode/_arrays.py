@@ -1,0 +1,55 @@
+"""From what people pass to arrays of float64, and on to rows for the native kernels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Shape = tuple[int, ...]
+
+
+def as_floats(values: Any, what: str) -> Array:
+    """Real numbers of any kind as float64; anything else is a TypeError that names it."""
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise TypeError(f"{what} must be an array of real numbers; the rows have unequal lengths") from error
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
+    return array.astype(np.float64, copy=False)
+
+
+def as_components(values: Any, size: int, what: str) -> Array:
+    """Return a read-only, contiguous copy of shape (..., size)."""
+    array = as_floats(values, what)
+    if array.ndim == 0 or array.shape[-1] != size:
+        raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
+    return frozen(np.array(array, order="C"))
+
+
+def as_vectors(values: Any, what: str) -> Array:
+    """Three components in the last axis, from an array or a value of grade 1 or 2."""
+    return as_components(getattr(values, "components", values), 3, what)
+
+
+def frozen(array: Array) -> Array:
+    """Return the array, marked read-only."""
+    array.flags.writeable = False
+    return array
+
+
+def rows(data: Array, batch: Shape) -> Array:
+    """Return the data as (n, K) for a batch: one row if it is a single value, else one row for each."""
+    size = data.shape[-1]
+    if data.size == size:
+        return data.reshape(1, size)
+    return np.ascontiguousarray(np.broadcast_to(data, (*batch, size))).reshape(-1, size)
+
+
+def joined(*parts: Array) -> Array:
+    """Broadcast the batches together and lay the components side by side in the last axis."""
+    batch = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    return np.concatenate([np.broadcast_to(part, (*batch, part.shape[-1])) for part in parts], axis=-1)

@@ -1,0 +1,453 @@
+"""The values of the algebra: multivectors with leading batch axes."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _format, _native
+from polhode._arrays import Array, Shape, as_components, as_floats, frozen, rows
+
+if TYPE_CHECKING:
+    from polhode._rotor import Rotor
+
+_SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR, _ALL, _EVEN = 0b0001, 0b0010, 0b0100, 0b1000, 0b1111, 0b0101
+_GRADE_OF = np.array([0, 1, 1, 1, 2, 2, 2, 3])
+_INDICES = [_native.component_indices(mask) for mask in range(16)]
+
+
+class Multivector:
+    """An element of the geometric algebra of 3-d space, or an array of them. Immutable.
+
+    The basis is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``. Only the grades
+    present are stored: a vector has 3 components, a product of two vectors 4 (scalar and bivector).
+    Batch axes lead, components are the last axis, and batches broadcast as in NumPy.
+
+    ``A*B`` is the geometric product, ``A^B`` the wedge, ``A|B`` the dot (the lowest grade,
+    ``abs(r - s)``), ``~A`` the reverse. Numbers and NumPy arrays act as scalars, an array as a batch.
+
+    Python binds ``^`` and ``|`` *looser* than ``+`` and ``*``: ``1 ^ e1 + e2`` means ``1 ^ (e1 + e2)``,
+    and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than the product. Put
+    brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
+
+    Made by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
+    """
+
+    __slots__ = ("_data", "_mask")
+    __array_ufunc__ = None  # NumPy arrays leave mixed operations to this class
+    __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
+
+    _data: Array
+    _mask: int
+
+    def __init__(self, *_: object) -> None:
+        raise TypeError(
+            f"{type(self).__name__} is not made directly; use ph.vector, ph.bivector, ph.multivector, "
+            "or one of the Rotor.from_… constructors"
+        )
+
+    @classmethod
+    def _of(cls, data: Array, mask: int) -> Multivector:
+        """Wrap an array (..., K) that nobody else writes to; K components of the grades in `mask`."""
+        self = object.__new__(cls)
+        object.__setattr__(self, "_data", frozen(data))
+        object.__setattr__(self, "_mask", mask)
+        return self
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"multivectors are immutable; cannot set {name!r}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuild, (type(self), np.array(self._data), self._mask)
+
+    # --- what it holds
+
+    @property
+    def grades(self) -> tuple[int, ...]:
+        """The grades it may hold, e.g. ``(0, 2)``."""
+        return tuple(k for k in range(4) if self._mask >> k & 1)
+
+    @property
+    def components(self) -> Array:
+        """Components of the grades present, in basis order: shape ``(*shape, K)``, read-only."""
+        return self._data
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the batch; ``()`` for a single value."""
+        return self._data.shape[:-1]
+
+    @property
+    def dtype(self) -> np.dtype[np.float64]:
+        """The components' type, float64."""
+        return self._data.dtype
+
+    def grade(self, k: int) -> Multivector:
+        """Return the part of grade k (0 to 3); zero if it holds none."""
+        if operator.index(k) not in range(4):
+            raise ValueError(f"3-d space has grades 0 to 3, got {k}")
+        return Multivector._of(self._with_grades(1 << k), 1 << k)
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single multivector has no length; only batches have")
+        return self.shape[0]
+
+    def __getitem__(self, index: Any) -> Multivector:
+        parts = index if isinstance(index, tuple) else (index,)
+        # The Ellipsis keeps the index off the component axis.
+        rest: tuple[Any, ...] = () if any(part is Ellipsis for part in parts) else (Ellipsis,)
+        try:
+            picked = self._data[(*parts, *rest, slice(None))]
+        except IndexError as error:
+            raise IndexError(f"{error} (batch shape {self.shape})") from None
+        return self._of(picked, self._mask)
+
+    def __iter__(self) -> Iterator[Multivector]:
+        return (self[i] for i in range(len(self)))
+
+    def __float__(self) -> float:
+        if self._mask != _SCALAR or self.shape:
+            raise TypeError(
+                f"only a single scalar becomes a float; this has grades {self.grades} and shape {self.shape}; "
+                "take .grade(0) or .components"
+            )
+        return float(self._data[0])
+
+    def __repr__(self) -> str:
+        return _format.value(type(self).__name__, self._data, _INDICES[self._mask])
+
+    # --- sums and scaling
+
+    def _with_grades(self, mask: int) -> Array:
+        """Return the components of the grades in `mask`, zeros for those not held: a new array."""
+        if mask == self._mask:
+            return np.array(self._data)
+        full = np.zeros((*self.shape, 8))
+        full[..., _INDICES[self._mask]] = self._data
+        return full[..., _INDICES[mask]]
+
+    def _linear(self, other: Any, combine: Any) -> Any:
+        """Add or subtract, over the grades of both."""
+        other = _coerced(other)
+        if other is None:
+            return NotImplemented
+        mask = self._mask | other._mask
+        return Multivector._of(combine(self._with_grades(mask), other._with_grades(mask)), mask)
+
+    def __add__(self, other: Any) -> Multivector:
+        return self._linear(other, np.add)  # type: ignore[no-any-return]
+
+    def __radd__(self, other: Any) -> Multivector:
+        return self._linear(other, np.add)  # type: ignore[no-any-return]
+
+    def __sub__(self, other: Any) -> Multivector:
+        return self._linear(other, np.subtract)  # type: ignore[no-any-return]
+
+    def __rsub__(self, other: Any) -> Multivector:
+        return (-self)._linear(other, np.add)  # type: ignore[no-any-return]
+
+    def __neg__(self) -> Multivector:
+        return self._of(-self._data, self._mask)
+
+    def __pos__(self) -> Multivector:
+        return self
+
+    def __truediv__(self, other: Any) -> Multivector:
+        """``A/s``, and ``A/B = A B⁻¹``."""
+        divisor = _coerced(other)
+        if divisor is None:
+            return NotImplemented
+        if divisor._mask != _SCALAR:
+            return self * divisor.inverse()
+        if not divisor._data.all():
+            raise ZeroDivisionError("division of a multivector by zero")
+        return Multivector._of(self._data / divisor._data, self._mask)
+
+    def __rtruediv__(self, other: Any) -> Multivector:
+        dividend = _coerced(other)
+        return NotImplemented if dividend is None else dividend * self.inverse()
+
+    # --- products
+
+    def _product(self, name: str, other: Any) -> Multivector:
+        right = _coerced(other)
+        if right is None:
+            return NotImplemented
+        batch = np.broadcast_shapes(self.shape, right.shape)
+        left_rows, right_rows = rows(self._data, batch), rows(right._data, batch)
+        count = int(np.prod(batch))
+        data, mask = _native.product(name, left_rows, self._mask, right_rows, right._mask, count)
+        return Multivector._of(data.reshape(*batch, data.shape[-1]), mask)
+
+    def _named(self, name: str, other: Any) -> Multivector:
+        result = self._product(name, other)
+        if result is NotImplemented:
+            raise TypeError(f"{name} needs a multivector, a number or an array, got {type(other).__name__}")
+        return result
+
+    def __mul__(self, other: Any) -> Multivector:
+        return self._product("geometric", other)
+
+    def __rmul__(self, other: Any) -> Multivector:
+        left = _coerced(other)
+        return NotImplemented if left is None else left._product("geometric", self)
+
+    def __xor__(self, other: Any) -> Multivector:
+        """``A^B``, the wedge. Binds looser than ``+``: bracket it, or call `wedge`."""
+        return self._product("wedge", other)
+
+    def __rxor__(self, other: Any) -> Multivector:
+        left = _coerced(other)
+        return NotImplemented if left is None else left._product("wedge", self)
+
+    def __or__(self, other: Any) -> Multivector:
+        """``A|B``, the dot. Binds looser than ``+``: bracket it, or call `dot`."""
+        return self._product("dot", other)
+
+    def __ror__(self, other: Any) -> Multivector:
+        left = _coerced(other)
+        return NotImplemented if left is None else left._product("dot", self)
+
+    def wedge(self, other: Any) -> Multivector:
+        """``A∧B``, the highest grade r + s of the product (handout eq. 1.10)."""
+        return self._named("wedge", other)
+
+    def dot(self, other: Any) -> Multivector:
+        """``A·B``, the lowest grade abs(r − s) of the product, scalars included: ``3·a = 3a``."""
+        return self._named("dot", other)
+
+    def commutator(self, other: Any) -> Multivector:
+        """``A×B = ½(AB − BA)``; not the vector cross product, which is `cross`."""
+        return self._named("commutator", other)
+
+    def left_contraction(self, other: Any) -> Multivector:
+        """``A⌋B``, grade s − r; zero where r > s."""
+        return self._named("left_contraction", other)
+
+    def right_contraction(self, other: Any) -> Multivector:
+        """``A⌊B``, grade r − s; zero where r < s."""
+        return self._named("right_contraction", other)
+
+    def scalar_product(self, other: Any) -> Multivector:
+        """``⟨AB⟩``, grade 0."""
+        return self._named("scalar", other)
+
+    def __pow__(self, n: Any) -> Multivector:
+        """Integer powers, negative ones through the inverse."""
+        try:
+            exponent = operator.index(n)
+        except TypeError:
+            raise TypeError(
+                f"a multivector has integer powers, got {n!r}; write (n * A.log()).exp() for others"
+            ) from None
+        base = self.inverse() if exponent < 0 else self
+        exponent = abs(exponent)
+        if exponent == 0:
+            return scalar(np.ones(self.shape))
+        power: Multivector | None = None
+        while True:
+            if exponent & 1:
+                power = base if power is None else power * base
+            exponent >>= 1
+            if not exponent:
+                return power  # type: ignore[return-value]
+            base = base * base
+
+    # --- involutions
+
+    def _signed(self, negative: tuple[int, ...]) -> Multivector:
+        grades = _GRADE_OF[_INDICES[self._mask]]
+        return self._of(np.where(np.isin(grades, negative), -self._data, self._data), self._mask)
+
+    def reverse(self) -> Multivector:
+        """``~A``: reverses the order of all products; grades 2 and 3 change sign (handout eq. 1.28)."""
+        return self._signed((2, 3))
+
+    def __invert__(self) -> Multivector:
+        return self.reverse()
+
+    def grade_involution(self) -> Multivector:
+        """Odd grades change sign."""
+        return Multivector._signed(self, (1, 3))
+
+    def clifford_conjugate(self) -> Multivector:
+        """Reverse and grade involution: grades 1 and 2 change sign."""
+        return self._signed((1, 2))
+
+    def dual(self) -> Multivector:
+        """``A I⁻¹``: the dual of a bivector is its axial vector, ``dual(e1∧e2) = e3``."""
+        return self * _MINUS_I
+
+    def undual(self) -> Multivector:
+        """``A I``, the inverse of `dual`."""
+        return self * I
+
+    # --- sizes
+
+    def norm_squared(self) -> Any:
+        """``⟨A ~A⟩``, the sum of the squared components: a float, or an array of the batch shape."""
+        return np.square(self._data).sum(axis=-1)[()]
+
+    def norm(self) -> Any:
+        """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape."""
+        return _native.norm(self._with_grades(_ALL))[..., 0][()]
+
+    def normalized(self) -> Multivector:
+        """``A/|A|``; zero and non-finite values are an error."""
+        # Scaling by the largest component first keeps subnormal values accurate.
+        largest = np.abs(self._data).max(axis=-1, keepdims=True)
+        _require(np.isfinite(largest[..., 0]) & (largest[..., 0] > 0), "has no direction (norm {})", self.norm())
+        scaled = self._data / largest
+        return self._of(scaled / np.linalg.norm(scaled, axis=-1, keepdims=True), self._mask)
+
+    # --- functions
+
+    def _function(self, name: str) -> Multivector:
+        full, mask = _native.function(name, self._with_grades(_ALL), self._mask)
+        return Multivector._of(np.ascontiguousarray(full[..., _INDICES[mask]]), mask)
+
+    def inverse(self) -> Multivector:
+        """``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``)."""
+        return self._function("inverse")
+
+    def exp(self) -> Multivector | Rotor:
+        """``exp A``; of a bivector it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B."""
+        result = self._function("exp")
+        if self._mask != _BIVECTOR:
+            return result
+        from polhode._rotor import Rotor
+
+        return Rotor._of(np.array(result._data), _EVEN)
+
+    def log(self) -> Multivector:
+        """Return a logarithm: ``exp(log A) = A``.
+
+        Even elements (scalar and bivector) have an even one, so that ``log(−1) = π e1∧e2``; others the
+        principal one. A ValueError, with the batch index, where A is singular.
+        """
+        return self._function("log")
+
+    def sqrt(self) -> Multivector:
+        """Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``."""
+        return self._function("sqrt")
+
+    # --- geometry
+
+    def project(self, blade: Multivector) -> Multivector:
+        """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹`` (a∥ of handout eq. 1.7)."""
+        projected = self.left_contraction(blade) * blade.inverse()
+        return Multivector._of(projected._with_grades(self._mask), self._mask)
+
+    def reject(self, blade: Multivector) -> Multivector:
+        """Return the part perpendicular to the subspace of `blade`: A minus its projection."""
+        return self - self.project(blade)
+
+    # --- comparison
+
+    def __eq__(self, other: object) -> Any:
+        """Exact equality of all components: a bool, or an array of the batch shape."""
+        right = _coerced(other)
+        if right is None:
+            return NotImplemented
+        mask = self._mask | right._mask
+        return (self._with_grades(mask) == right._with_grades(mask)).all(axis=-1)[()]
+
+    def __ne__(self, other: object) -> Any:
+        equal = self.__eq__(other)
+        return equal if equal is NotImplemented else np.logical_not(equal)[()]
+
+    def is_close(self, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
+        """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape."""
+        right = _coerced(other)
+        if right is None:
+            raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
+        with np.errstate(invalid="ignore"):  # inf − inf: equality below decides
+            distance = (self - right).norm()
+            bound = np.maximum(rtol * np.maximum(self.norm(), right.norm()), atol)
+            close = np.isfinite(distance) & (distance <= bound)
+        return np.logical_or(close, self == right)[()]
+
+
+def _rebuild(cls: type[Multivector], data: Array, mask: int) -> Multivector:
+    """Restore a pickled value."""
+    return cls._of(data, mask)
+
+
+def _coerced(value: Any) -> Multivector | None:
+    """Return a multivector; a number or numeric array becomes scalars; None for anything else."""
+    if isinstance(value, Multivector):
+        return value
+    if isinstance(value, np.ndarray | np.number | int | float) and not isinstance(value, bool):
+        return scalar(value)
+    return None
+
+
+def _require(ok: Any, what: str, value: Any) -> None:
+    """Raise a ValueError that names the first batch index where `ok` is false, and the value there."""
+    if np.all(ok):
+        return
+    index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
+    place = f"the multivector at index {index}" if index else "the multivector"
+    raise ValueError(f"{place} {what.format(np.asarray(value)[index])}")
+
+
+def scalar(a: Any) -> Multivector:
+    """Scalars from numbers; an array of shape S is a batch of shape S."""
+    return Multivector._of(np.array(as_floats(a, "scalar"))[..., np.newaxis], _SCALAR)
+
+
+def vector(xyz: Any) -> Multivector:
+    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3)."""
+    return Multivector._of(as_components(xyz, 3, "vector"), _VECTOR)
+
+
+def bivector(c3: Any) -> Multivector:
+    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector."""
+    return Multivector._of(as_components(c3, 3, "bivector"), _BIVECTOR)
+
+
+def trivector(b: Any) -> Multivector:
+    """Trivectors ``b I`` from numbers; an array of shape S is a batch of shape S."""
+    return Multivector._of(np.array(as_floats(b, "trivector"))[..., np.newaxis], _TRIVECTOR)
+
+
+def multivector(c8: Any) -> Multivector:
+    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``."""
+    return Multivector._of(as_components(c8, 8, "multivector"), _ALL)
+
+
+def cross(a: Multivector, b: Multivector) -> Multivector:
+    """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
+    for value in (a, b):
+        if not isinstance(value, Multivector) or value._mask != _VECTOR:
+            raise TypeError(f"the cross product needs two vectors, got {value!r}")
+    return a.wedge(b).dual()
+
+
+def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
+    """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
+    value = _coerced(M)
+    if value is None:
+        raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
+    numbers = _native.to_pauli(value._with_grades(_ALL))
+    return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
+
+
+def from_pauli(matrices: Any) -> Multivector:
+    """Return the multivectors of 2×2 complex matrices, shape (..., 2, 2); the inverse of `to_pauli`."""
+    p = np.asarray(matrices)
+    if p.dtype.kind not in "iufc" or p.shape[-2:] != (2, 2):
+        raise ValueError(f"from_pauli needs numeric matrices of shape (..., 2, 2), got {p.dtype} {p.shape}")
+    numbers = np.ascontiguousarray(p, dtype=np.complex128).view(np.float64).reshape(*p.shape[:-2], 8)
+    return Multivector._of(_native.from_pauli(numbers), _ALL)
+
+
+e1 = vector([1.0, 0.0, 0.0])
+e2 = vector([0.0, 1.0, 0.0])
+e3 = vector([0.0, 0.0, 1.0])
+I = trivector(1.0)  # noqa: E741  # the handout's name
+_MINUS_I = -I

@@ -1,0 +1,194 @@
+"""Rotors: unit even elements, which turn any multivector by ``X ↦ R X ~R``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import Array, Shape, as_components, as_floats, joined
+from polhode._multivector import (
+    _ALL,
+    _BIVECTOR,
+    _EVEN,
+    _INDICES,
+    _VECTOR,
+    Multivector,
+    _coerced,
+)
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+QuaternionOrder = Literal["wxyz", "xyzw"]
+
+
+class Rotor(Multivector):
+    """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
+
+    Active: ``R(X) = R X ~R`` for X of any grade; ``S*R`` turns by R first. Components
+    ``(1, e2e3, e3e1, e1e2)``, always of norm 1. R and −R turn alike; both are kept apart, so that
+    a motion's rotor is continuous. The quaternion ``w + xi + yj + zk`` has the rotor
+    ``w − x e2e3 − y e3e1 − z e1e2``.
+    """
+
+    __slots__ = ()
+
+    # --- constructors
+
+    @staticmethod
+    def _from_rows(data: Array) -> Rotor:
+        return Rotor._of(data, _EVEN)  # type: ignore[return-value]
+
+    @staticmethod
+    def identity(shape: int | Shape = ()) -> Rotor:
+        """Return the rotor 1, which turns nothing."""
+        batch = (shape,) if isinstance(shape, int) else tuple(shape)
+        return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch, 4)).copy())
+
+    @staticmethod
+    def from_components(c4: Any) -> Rotor:
+        """From components (..., 4) over ``(1, e2e3, e3e1, e1e2)``, divided by their norm."""
+        return Rotor._from_rows(_native.rotor_from_components(as_components(c4, 4, "rotor")))
+
+    @staticmethod
+    def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
+        """``exp(−Bθ/2)`` for the plane and sense of the bivector B, whose size is ignored; theta in radians."""
+        if not isinstance(B, Multivector) or B._mask != _BIVECTOR:
+            raise TypeError(f"the plane must be a bivector, such as e1^e2 or ph.bivector([0, 0, 1]), got {B!r}")
+        angle = as_floats(theta, "angle")[..., np.newaxis]
+        return Rotor._from_rows(_native.rotor_from_plane_angle(joined(B.components, angle)))
+
+    @staticmethod
+    def from_vectors(a: Multivector, b: Multivector) -> Rotor:
+        """Turn the direction of a into that of b, the short way; lengths are ignored.
+
+        For opposite directions the plane is not determined: one through a and the basis vector farthest
+        from it is taken.
+        """
+        for value in (a, b):
+            if not isinstance(value, Multivector) or value._mask != _VECTOR:
+                raise TypeError(f"from_vectors needs two vectors, got {value!r}")
+        return Rotor._from_rows(_native.rotor_from_vectors(joined(a.components, b.components)))
+
+    @staticmethod
+    def from_matrix(m: Any) -> Rotor:
+        """From rotation matrices (..., 3, 3) acting on columns; the nearest rotation, within 1e-4 of one.
+
+        A ValueError for a reflection or anything farther off. The rotor's scalar part is >= 0.
+        """
+        matrices = as_floats(m, "rotation matrix")
+        if matrices.shape[-2:] != (3, 3):
+            raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {matrices.shape}")
+        flat = np.ascontiguousarray(matrices).reshape(*matrices.shape[:-2], 9)
+        return Rotor._from_rows(_native.rotor_from_matrix(flat))
+
+    @staticmethod
+    def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
+        """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
+        wxyz = as_components(q, 4, "quaternion")[..., _to_wxyz(order)]
+        return Rotor._from_rows(_native.rotor_from_quaternion(np.ascontiguousarray(wxyz)))
+
+    @staticmethod
+    def from_rotation_vector(v: Any) -> Rotor:
+        """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
+        if isinstance(v, Multivector) and v._mask != _VECTOR:
+            raise TypeError(f"a rotation vector is a vector or an array (..., 3), got grades {v.grades}")
+        components = as_components(getattr(v, "components", v), 3, "rotation vector")
+        return Rotor._from_rows(_native.rotor_from_rotation_vector(components))
+
+    @staticmethod
+    def from_scipy(rot: Rotation) -> Rotor:
+        """From a ``scipy.spatial.transform.Rotation``."""
+        return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
+
+    @staticmethod
+    def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
+        """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
+        batch = (shape,) if isinstance(shape, int) else tuple(shape)
+        return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch, 4)))
+
+    # --- converters
+
+    def to_matrix(self) -> Array:
+        """Rotation matrices (..., 3, 3) acting on columns."""
+        return _native.rotor_to_matrix(self._contiguous()).reshape(*self.shape, 3, 3)
+
+    def to_quaternion(self, *, order: QuaternionOrder) -> Array:
+        """Quaternions (..., 4), Hamilton's and active; the order must be said."""
+        return _native.rotor_to_quaternion(self._contiguous())[..., np.argsort(_to_wxyz(order))]
+
+    def to_rotation_vector(self) -> Array:
+        """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
+        return _native.rotor_to_rotation_vector(self._contiguous())
+
+    def to_scipy(self) -> Rotation:
+        """Return a ``scipy.spatial.transform.Rotation``."""
+        try:
+            from scipy.spatial.transform import Rotation
+        except ImportError as error:
+            raise ImportError("to_scipy needs SciPy: pip install 'polhode[scipy]'") from error
+        return Rotation.from_quat(self.to_quaternion(order="xyzw"))
+
+    def plane_angle(self) -> tuple[Multivector, Any]:
+        """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
+        rows = _native.rotor_plane_angle(self._contiguous())
+        return Multivector._of(rows[..., :3].copy(), _BIVECTOR), rows[..., 3][()]
+
+    # --- action and algebra
+
+    def apply(self, X: Any) -> Multivector:
+        """``R X ~R``: turns a value of any grade (handout eq. 2.4, 2.6); scalars and trivectors stay."""
+        value = _coerced(X)
+        if value is None:
+            raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
+        if isinstance(value, Rotor):
+            return self * value * ~self
+        pairs = joined(self._data, value._with_grades(_ALL))
+        turned = _native.rotor_apply(np.ascontiguousarray(pairs))
+        return Multivector._of(np.ascontiguousarray(turned[..., _INDICES[value._mask]]), value._mask)
+
+    def __call__(self, X: Any) -> Multivector:
+        return self.apply(X)
+
+    def __mul__(self, other: Any) -> Multivector:
+        """``S*R`` is the rotor that turns by R first; with anything else, the geometric product."""
+        product = super().__mul__(other)
+        return Rotor._from_rows(np.array(product._data)) if isinstance(other, Rotor) else product
+
+    def log(self) -> Multivector:
+        """Return the bivector with ``exp(log R) = R`` and ``|log R| <= π``, so ``−Bθ/2``; ``log(−1) = π e1∧e2``."""
+        return super().log().grade(2)
+
+    def inverse(self) -> Rotor:
+        """``~R``."""
+        return ~self  # type: ignore[return-value]
+
+    def sqrt(self) -> Rotor:
+        """Return the half-way rotor, whose square is R."""
+        return self**0.5
+
+    def normalized(self) -> Rotor:
+        """Return itself: a rotor has norm 1."""
+        return self
+
+    def grade_involution(self) -> Rotor:
+        """Return itself: a rotor is even."""
+        return self
+
+    def __pow__(self, n: Any) -> Rotor:
+        """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
+        return (self.log() * as_floats(n, "the power of a rotor")).exp()  # type: ignore[return-value]
+
+    def _contiguous(self) -> Array:
+        return np.ascontiguousarray(self._data)
+
+
+def _to_wxyz(order: str) -> list[int]:
+    """Return where w, x, y, z stand in a quaternion of this order."""
+    if order == "wxyz":
+        return [0, 1, 2, 3]
+    if order == "xyzw":
+        return [3, 0, 1, 2]
+    raise ValueError(f'the quaternion order must be "wxyz" or "xyzw", got {order!r}')

@@ -10,4 +10,9 @@
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
+pub mod elliptic;
+pub mod free;
+pub mod simulate;
 pub mod solids;
+pub mod splitting;
+pub mod torque;

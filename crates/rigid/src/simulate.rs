@@ -1,0 +1,373 @@
+//! Motion at given times, to a tolerance, with a certificate of what was conserved.
+
+use crate::splitting::{Method, Stepper};
+use crate::torque::{Conserved, Phase, Torque, energy};
+use polhode_ga::{Bivector, Rotor};
+use std::fmt;
+
+/// Most steps that a run may take: hours of work, and beyond it rounding adds up.
+const MAX_STEPS: f64 = 1e10;
+
+/// How often, in steps, a run asks whether to go on.
+const STEPS_BETWEEN_CALLS: u64 = 256;
+
+/// Relative tolerance when none is asked for.
+pub const DEFAULT_RTOL: f64 = 1e-10;
+
+/// Why a run failed.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum SimulateError {
+    /// Moments must be positive to turn momentum into rate.
+    SingularInertia { moments: [f64; 3] },
+    /// Output times must be finite and must not fall.
+    BadTime { index: usize, time: f64 },
+    /// A step, tolerance, angular velocity or torque that is not usable.
+    BadValue { what: &'static str, value: f64 },
+    /// More steps than could be taken.
+    TooManySteps { steps: f64, step: f64 },
+    /// Two runs with halved step still differ, and halving no longer helps.
+    NotConverged { rtol: f64, reached: f64, step: f64 },
+    /// A component became NaN or infinite.
+    Diverged { time: f64 },
+    /// The caller asked to stop.
+    Interrupted,
+}
+
+impl fmt::Display for SimulateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SimulateError::SingularInertia { moments: [a, b, c] } => write!(
+                f,
+                "principal moments {a}, {b}, {c} kg m² include a zero: the body has no definite rate about that \
+                 axis; give it some thickness"
+            ),
+            SimulateError::BadTime { index, time } => {
+                write!(
+                    f,
+                    "times[{index}] = {time}: output times must be finite and must not decrease; sort them"
+                )
+            }
+            SimulateError::BadValue { what, value } => write!(
+                f,
+                "{what} is {value}; it must be finite{}",
+                match *what {
+                    "step" | "rtol" => " and positive",
+                    _ => "",
+                }
+            ),
+            SimulateError::TooManySteps { steps, step } => write!(
+                f,
+                "the run would take {steps:.1e} steps of {step:.3e} s, more than {MAX_STEPS:.0e}; shorten it or ask \
+                 for a longer step"
+            ),
+            SimulateError::NotConverged { rtol, reached, step } => write!(
+                f,
+                "rtol = {rtol:.1e} was not reached: halving the step to {step:.3e} s leaves {reached:.1e}; the motion \
+                 magnifies rounding that much, so ask for rtol >= {:.0e} or a shorter run",
+                2.0 * reached
+            ),
+            SimulateError::Diverged { time } => {
+                write!(f, "the motion became NaN or infinite at t = {time} s; use a shorter step")
+            }
+            SimulateError::Interrupted => write!(f, "interrupted"),
+        }
+    }
+}
+
+impl std::error::Error for SimulateError {}
+
+/// What to solve: a body in principal axes and its state at time 0.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// Principal moments in kg m²: about the centre of mass, or about the fixed point if there is one.
+    pub moments: [f64; 3],
+    /// From principal axes to space, at time 0.
+    pub rotor: Rotor,
+    /// Angular velocity in principal axes at time 0, rad/s.
+    pub omega: Bivector,
+    /// The laws that turn the body, in principal axes; none for free motion.
+    pub torques: Vec<Torque>,
+}
+
+/// How to solve it.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The composition.
+    pub method: Method,
+    /// A fixed step in s; `None` lets the tolerance choose it.
+    pub step: Option<f64>,
+    /// Largest relative error of the estimate, where the tolerance chooses the step.
+    pub rtol: f64,
+}
+
+/// How far a run went astray in what it should have conserved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// The method's name.
+    pub method: &'static str,
+    /// Longest step taken, in s.
+    pub step: f64,
+    /// Steps taken, in all passes.
+    pub steps: u64,
+    /// Largest difference from the run with twice the step, over 2^(order/2): a cautious error estimate.
+    pub error_estimate: Option<f64>,
+    /// Each conserved quantity: its initial value, and its largest change over the run relative to the
+    /// terms that make it up.
+    pub drifts: Vec<(Conserved, f64, f64)>,
+    /// Largest `abs(|R| − 1)` at the output times.
+    pub norm_drift: f64,
+}
+
+/// A motion at its output times.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// States in the order of the times.
+    pub states: Vec<Phase>,
+    /// Angular velocities in principal axes, rad/s.
+    pub omegas: Vec<Bivector>,
+    /// Kinetic and gravitational energy, J.
+    pub energies: Vec<f64>,
+    /// What was conserved.
+    pub certificate: Certificate,
+}
+
+/// Where a run stands: which pass, and the fraction of it done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Passes with halved steps count from 1.
+    pub pass: u32,
+    /// From 0 to 1.
+    pub fraction: f64,
+}
+
+/// One pass over all output times with steps of at most `step`.
+struct Pass {
+    states: Vec<Phase>,
+    drifts: Vec<f64>,
+    longest: f64,
+    steps: u64,
+}
+
+/// The steps of one pass, and who wants to know of them.
+struct Walker<'a> {
+    stepper: &'a Stepper,
+    problem: &'a Problem,
+    conserved: &'a [Conserved],
+    start_values: Vec<f64>,
+    scales: Vec<f64>,
+    drifts: Vec<f64>,
+    longest: f64,
+    steps: u64,
+    total_time: f64,
+    pass: u32,
+    progress: &'a mut dyn FnMut(Progress) -> bool,
+}
+
+impl Walker<'_> {
+    /// Steps `state` to `time` in equal steps of at most `step`, watching the conserved quantities.
+    fn walk(&mut self, state: &mut Phase, time: f64, step: f64) -> Result<(), SimulateError> {
+        let (from, span) = (state.time, time - state.time);
+        let count = (span.abs() / step).ceil().max(1.0);
+        if span == 0.0 {
+            return Ok(());
+        }
+        let h = span / count;
+        self.longest = self.longest.max(h.abs());
+        for i in 0..count as u64 {
+            self.stepper.step(state, h);
+            state.time = if i + 1 == count as u64 { time } else { from + span * ((i + 1) as f64 / count) };
+            self.watch(state)?;
+        }
+        Ok(())
+    }
+
+    fn watch(&mut self, state: &Phase) -> Result<(), SimulateError> {
+        for (k, quantity) in self.conserved.iter().enumerate() {
+            let value = quantity.value(self.problem.moments, &self.problem.torques, state);
+            let change = (value - self.start_values[k]).abs() / self.scales[k];
+            self.drifts[k] = self.drifts[k].max(change);
+        }
+        if !state.momentum.norm_squared().is_finite() || !state.rotor.components()[0].is_finite() {
+            return Err(SimulateError::Diverged { time: state.time });
+        }
+        self.steps += 1;
+        if self.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
+            let fraction = (state.time.abs() / self.total_time).min(1.0);
+            if !(self.progress)(Progress { pass: self.pass, fraction }) {
+                return Err(SimulateError::Interrupted);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Problem {
+    /// The motion at `times` (s, not decreasing, of either sign); the state given is that at time 0.
+    ///
+    /// With no fixed step, runs with steps h, h/2, h/4 … until two of them agree within the tolerance in
+    /// the rotor (of size 1) and in the angular velocity relative to its largest size.
+    pub fn simulate(
+        &self,
+        times: &[f64],
+        options: Options,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Motion, SimulateError> {
+        self.check(times, options)?;
+        let stepper = Stepper::new(self.moments, self.torques.clone(), options.method);
+        let (mut pass, estimate, steps) = match options.step {
+            Some(step) => {
+                let pass = self.pass(&stepper, times, step, 1, progress)?;
+                let steps = pass.steps;
+                (pass, None, steps)
+            }
+            None => self.converge(&stepper, times, options.rtol, progress)?,
+        };
+        let conserved = Conserved::under(&self.torques);
+        let start = self.start();
+        let drifts = conserved
+            .iter()
+            .zip(pass.drifts.drain(..))
+            .map(|(quantity, drift)| (*quantity, quantity.value(self.moments, &self.torques, &start), drift));
+        let off_unit = |s: &Phase| s.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
+        let certificate = Certificate {
+            method: options.method.name,
+            step: pass.longest,
+            steps,
+            error_estimate: estimate,
+            drifts: drifts.collect(),
+            norm_drift: pass.states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
+        };
+        let omegas = pass.states.iter().map(|s| stepper.omega(s.momentum)).collect();
+        let energies = pass.states.iter().map(|s| energy(self.moments, &self.torques, s)).collect();
+        Ok(Motion { states: pass.states, omegas, energies, certificate })
+    }
+
+    fn check(&self, times: &[f64], options: Options) -> Result<(), SimulateError> {
+        if !self.moments.iter().all(|i| *i > 0.0 && i.is_finite()) {
+            return Err(SimulateError::SingularInertia { moments: self.moments });
+        }
+        for (index, &time) in times.iter().enumerate() {
+            if !time.is_finite() || index > 0 && time < times[index - 1] {
+                return Err(SimulateError::BadTime { index, time });
+            }
+        }
+        if let Some(&value) = self.omega.0.iter().find(|x| !x.is_finite()) {
+            return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+        }
+        for torque in &self.torques {
+            let value = torque.size(self.moments) + torque.damping_rate();
+            if !value.is_finite() {
+                return Err(SimulateError::BadValue { what: "the size of a torque", value });
+            }
+        }
+        for (what, value) in [("step", options.step.unwrap_or(1.0)), ("rtol", options.rtol)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(SimulateError::BadValue { what, value });
+            }
+        }
+        Ok(())
+    }
+
+    fn start(&self) -> Phase {
+        let momentum = Bivector([0, 1, 2].map(|k| self.moments[k] * self.omega.0[k]));
+        Phase { rotor: self.rotor, momentum, time: 0.0 }
+    }
+
+    fn pass(
+        &self,
+        stepper: &Stepper,
+        times: &[f64],
+        step: f64,
+        number: u32,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Pass, SimulateError> {
+        let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+        let total_time = last.max(0.0) - first.min(0.0);
+        let steps = total_time / step + times.len() as f64;
+        if steps > MAX_STEPS {
+            return Err(SimulateError::TooManySteps { steps, step });
+        }
+        let conserved = Conserved::under(&self.torques);
+        let start = self.start();
+        let start_values =
+            conserved.iter().map(|q| q.value(self.moments, &self.torques, &start)).collect::<Vec<_>>();
+        // A quantity that starts at zero with nothing to compare to counts absolutely.
+        let scales = conserved.iter().map(|q| match q.scale(self.moments, &self.torques, &start) {
+            0.0 => 1.0,
+            scale => scale,
+        });
+        let mut walker = Walker {
+            stepper,
+            problem: self,
+            conserved: &conserved,
+            start_values,
+            scales: scales.collect(),
+            drifts: vec![0.0; conserved.len()],
+            longest: 0.0,
+            steps: 0,
+            total_time: total_time.max(f64::MIN_POSITIVE),
+            pass: number,
+            progress,
+        };
+        let split = times.partition_point(|&t| t < 0.0);
+        let mut states = Vec::with_capacity(times.len());
+        let mut state = start;
+        for &time in times[..split].iter().rev() {
+            walker.walk(&mut state, time, step)?;
+            states.push(state);
+        }
+        states.reverse();
+        state = start;
+        for &time in &times[split..] {
+            walker.walk(&mut state, time, step)?;
+            states.push(state);
+        }
+        Ok(Pass { states, drifts: walker.drifts, longest: walker.longest, steps: walker.steps })
+    }
+
+    /// Halves the step until two runs agree.
+    fn converge(
+        &self,
+        stepper: &Stepper,
+        times: &[f64],
+        rtol: f64,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<(Pass, Option<f64>, u64), SimulateError> {
+        let rate = stepper.fastest_rate(self.start().momentum);
+        let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+        let mut step = if rate > 0.0 { 0.5 / rate } else { longest.max(1.0) };
+        let mut coarse = self.pass(stepper, times, step, 1, progress)?;
+        let mut steps = coarse.steps;
+        let mut previous = f64::INFINITY;
+        for number in 2.. {
+            // Where output times are closer than the step, they set it: halve what was really taken.
+            step = 0.5 * step.min(if coarse.longest > 0.0 { coarse.longest } else { step });
+            let fine = self.pass(stepper, times, step, number, progress)?;
+            steps += fine.steps;
+            // The error of the finer run is about difference / 2^order; half the exponent is the margin.
+            let error = self.difference(stepper, &coarse, &fine) / f64::from(1 << (stepper.order() / 2));
+            if error <= rtol {
+                return Ok((fine, Some(error), steps));
+            }
+            if error > 0.5 * previous && previous < 1e-2 || number > 30 {
+                return Err(SimulateError::NotConverged { rtol, reached: error, step });
+            }
+            previous = error;
+            coarse = fine;
+        }
+        unreachable!("the loop returns")
+    }
+
+    /// Largest difference of two runs in rotor and relative angular velocity.
+    fn difference(&self, stepper: &Stepper, coarse: &Pass, fine: &Pass) -> f64 {
+        let omega = |s: &Phase| stepper.omega(s.momentum);
+        let fastest = fine.states.iter().map(|s| omega(s).norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let apart = |(a, b): (&Phase, &Phase)| {
+            let (r, s) = (a.rotor.components(), b.rotor.components());
+            let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
+            turn.max((omega(a) - omega(b)).norm() / fastest)
+        };
+        coarse.states.iter().zip(&fine.states).map(apart).fold(0.0, f64::max)
+    }
+}

@@ -1,60 +1,12 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use crate::arrays::{Out, Rows, bad, map_rows};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::table::G3;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-
-/// An array of float64 whose last axis holds the components, contiguous.
-type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
-
-fn bad<E: std::fmt::Display>(message: E) -> PyErr {
-    PyValueError::new_err(message.to_string())
-}
-
-/// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.
-fn place(row: usize, batch: &[usize]) -> String {
-    if batch.is_empty() {
-        return String::new();
-    }
-    let mut rest = row;
-    let mut index: Vec<String> = Vec::new();
-    for &length in batch.iter().rev() {
-        index.push((rest % length).to_string());
-        rest /= length;
-    }
-    index.reverse();
-    let comma = if index.len() == 1 { "," } else { "" };
-    format!("at index ({}{comma}): ", index.join(", "))
-}
-
-/// Applies a function of one row to every row.
-fn map_rows<'py, const IN: usize, const OUT: usize>(
-    py: Python<'py>,
-    input: &Rows<'py>,
-    f: impl Fn([f64; IN]) -> Result<[f64; OUT], MathError> + Sync + Send,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let shape = input.shape();
-    let batch = match shape.split_last() {
-        Some((&last, batch)) if last == IN => batch,
-        _ => return Err(bad(format!("expected {IN} components in the last axis, got shape {shape:?}"))),
-    };
-    let data = input.as_slice()?;
-    let result: Result<Vec<f64>, (usize, MathError)> = py.detach(|| {
-        let mut out = Vec::with_capacity(data.len() / IN * OUT);
-        for (row, values) in data.as_chunks::<IN>().0.iter().enumerate() {
-            out.extend(f(*values).map_err(|e| (row, e))?);
-        }
-        Ok(out)
-    });
-    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
-    let mut out_shape = batch.to_vec();
-    out_shape.push(OUT);
-    PyArray1::from_vec(py, out).reshape(out_shape)
-}
 
 /// A product of rows `(n, K)`; a factor of one row meets every row of the other. Returns `(rows, M)` and
 /// the grades of the product as bits.
@@ -109,8 +61,8 @@ pub(crate) fn component_indices(grades: u16) -> Vec<usize> {
 
 /// Euclidean norms of the rows, without overflow on the way; the last axis has length 1.
 #[pyfunction]
-pub(crate) fn norm<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    map_rows(py, &m, |c: [f64; 8]| Ok([Multivector(c).norm()]))
+pub(crate) fn norm<'py>(py: Python<'py>, m: Rows<'py>) -> Out<'py> {
+    map_rows(py, &m, |c: [f64; 8]| Ok::<_, MathError>([Multivector(c).norm()]))
 }
 
 /// Rotors from components, normalised.
@@ -118,7 +70,7 @@ pub(crate) fn norm<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, Py
 pub(crate) fn rotor_from_components<'py>(
     py: Python<'py>,
     c: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &c, |c| Rotor::from_components(c).map(Rotor::components))
 }
 
@@ -127,7 +79,7 @@ pub(crate) fn rotor_from_components<'py>(
 pub(crate) fn rotor_from_plane_angle<'py>(
     py: Python<'py>,
     c: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &c, |[x, y, z, angle]: [f64; 4]| {
         Rotor::from_plane_angle(Vector([x, y, z]).undual(), angle).map(Rotor::components)
     })
@@ -138,7 +90,7 @@ pub(crate) fn rotor_from_plane_angle<'py>(
 pub(crate) fn rotor_from_vectors<'py>(
     py: Python<'py>,
     ab: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &ab, |[x, y, z, u, v, w]: [f64; 6]| {
         Rotor::from_vectors(Vector([x, y, z]), Vector([u, v, w])).map(Rotor::components)
     })
@@ -146,7 +98,7 @@ pub(crate) fn rotor_from_vectors<'py>(
 
 /// Rotors from matrices, nine numbers a row.
 #[pyfunction]
-pub(crate) fn rotor_from_matrix<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn rotor_from_matrix<'py>(py: Python<'py>, m: Rows<'py>) -> Out<'py> {
     map_rows(py, &m, |m: [f64; 9]| {
         let row = |i: usize| [m[3 * i], m[3 * i + 1], m[3 * i + 2]];
         Rotor::from_matrix([row(0), row(1), row(2)]).map(Rotor::components)
@@ -158,7 +110,7 @@ pub(crate) fn rotor_from_matrix<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<
 pub(crate) fn rotor_from_rotation_vector<'py>(
     py: Python<'py>,
     v: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &v, |v| Rotor::from_rotation_vector(Vector(v)).map(Rotor::components))
 }
 
@@ -167,7 +119,7 @@ pub(crate) fn rotor_from_rotation_vector<'py>(
 pub(crate) fn rotor_from_quaternion<'py>(
     py: Python<'py>,
     q: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &q, |q| Rotor::from_quaternion_wxyz(q).map(Rotor::components))
 }
 
@@ -181,16 +133,16 @@ fn rotor(c: [f64; 4]) -> Result<Rotor, MathError> {
 pub(crate) fn rotor_to_quaternion<'py>(
     py: Python<'py>,
     r: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &r, |c| rotor(c).map(Rotor::to_quaternion_wxyz))
 }
 
 /// Matrices of rotors, nine numbers a row.
 #[pyfunction]
-pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| {
         let m = rotor(c)?.to_matrix();
-        Ok::<[f64; 9], _>(std::array::from_fn(|i| m[i / 3][i % 3]))
+        Ok::<[f64; 9], MathError>(std::array::from_fn(|i| m[i / 3][i % 3]))
     })
 }
 
@@ -199,23 +151,23 @@ pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> PyResult<Bo
 pub(crate) fn rotor_to_rotation_vector<'py>(
     py: Python<'py>,
     r: Rows<'py>,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Out<'py> {
     map_rows(py, &r, |c| rotor(c).map(|r| r.to_rotation_vector().0))
 }
 
 /// Unit planes (3) and angles of rotors.
 #[pyfunction]
-pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| {
         let (plane, angle) = rotor(c)?.plane_angle();
         let [x, y, z] = plane.0;
-        Ok([x, y, z, angle])
+        Ok::<_, MathError>([x, y, z, angle])
     })
 }
 
 /// `R X ~R` for rows of a rotor (4) and a multivector (8).
 #[pyfunction]
-pub(crate) fn rotor_apply<'py>(py: Python<'py>, rx: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn rotor_apply<'py>(py: Python<'py>, rx: Rows<'py>) -> Out<'py> {
     map_rows(py, &rx, |rx: [f64; 12]| {
         let c = std::array::from_fn(|i| rx[i]);
         let m = std::array::from_fn(|i| rx[4 + i]);
@@ -225,18 +177,18 @@ pub(crate) fn rotor_apply<'py>(py: Python<'py>, rx: Rows<'py>) -> PyResult<Bound
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.
 #[pyfunction]
-pub(crate) fn to_pauli<'py>(py: Python<'py>, m: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn to_pauli<'py>(py: Python<'py>, m: Rows<'py>) -> Out<'py> {
     map_rows(py, &m, |c: [f64; 8]| {
         let p = pauli::to_pauli(Multivector(c));
-        Ok::<[f64; 8], _>(std::array::from_fn(|i| p[i / 4][i / 2 % 2][i % 2]))
+        Ok::<[f64; 8], MathError>(std::array::from_fn(|i| p[i / 4][i / 2 % 2][i % 2]))
     })
 }
 
 /// Multivectors of 2×2 complex matrices, eight numbers a row.
 #[pyfunction]
-pub(crate) fn from_pauli<'py>(py: Python<'py>, p: Rows<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn from_pauli<'py>(py: Python<'py>, p: Rows<'py>) -> Out<'py> {
     map_rows(py, &p, |p: [f64; 8]| {
         let matrix = [[[p[0], p[1]], [p[2], p[3]]], [[p[4], p[5]], [p[6], p[7]]]];
-        Ok(pauli::from_pauli(matrix).0)
+        Ok::<_, MathError>(pauli::from_pauli(matrix).0)
     })
 }

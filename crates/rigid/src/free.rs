@@ -17,6 +17,7 @@
 //! `n = −c(b−a)/(a(c−b))`.
 
 use crate::elliptic::{complete_k, complete_pi};
+use crate::inertia::Inertia;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::f64::consts::PI;
 use std::fmt;
@@ -93,9 +94,10 @@ fn equal(x: f64, y: f64) -> bool {
     (x - y).abs() <= ROUNDING * x.abs().max(y.abs())
 }
 
-/// Describes the free motion of a body with principal moments `i` and principal components `w` of the
-/// angular velocity.
-pub fn describe(i: [f64; 3], w: [f64; 3]) -> FreeDescription {
+/// Describes the free motion of a body with angular velocity `omega` in body axes.
+pub fn describe(inertia: &Inertia, omega: Bivector) -> FreeDescription {
+    let i = inertia.principal_moments();
+    let w = inertia.principal_frame().reverse().apply_bivector(omega).0;
     let energy = 0.5 * (i[0] * w[0] * w[0] + i[1] * w[1] * w[1] + i[2] * w[2] * w[2]);
     let angular_momentum = Vector([i[0] * w[0], i[1] * w[1], i[2] * w[2]]).norm();
     let mut order = [0, 1, 2];
@@ -161,18 +163,20 @@ pub struct SymmetricTop {
 }
 
 impl SymmetricTop {
-    /// The motion that starts at `rotor` (principal axes to space) with angular velocity `omega` (in
-    /// principal axes). `None` unless two of the moments are equal to rounding.
-    pub fn new(moments: [f64; 3], rotor: Rotor, omega: Bivector) -> Option<SymmetricTop> {
+    /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes.
+    /// `None` unless two of the principal moments are equal to rounding.
+    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> Option<SymmetricTop> {
+        let (moments, frame) = (inertia.principal_moments(), inertia.principal_frame());
         let axis = (0..3).find(|&k| equal(moments[(k + 1) % 3], moments[(k + 2) % 3]))?;
         let (i1, i3) = (moments[(axis + 1) % 3], moments[axis]);
-        let momentum = Bivector([0, 1, 2].map(|k| if k == axis { i3 } else { i1 } * omega.0[k]));
-        let mut right = Bivector::default();
-        right.0[axis] = (i1 - i3) / i1 * omega.0[axis];
-        Some(SymmetricTop { rotor, omega, left: rotor.apply_bivector(momentum) / i1, right })
+        let mut spin = Bivector::default();
+        spin.0[axis] = frame.reverse().apply_bivector(omega).0[axis];
+        let momentum = rotor.apply_bivector(inertia.apply(omega));
+        let right = frame.apply_bivector(spin) * ((i1 - i3) / i1);
+        Some(SymmetricTop { rotor, omega, left: momentum / i1, right })
     }
 
-    /// The constant bivectors `Ω_l` (in space) and `Ω_r` (in principal axes), in rad/s.
+    /// The constant bivectors `Ω_l` (in space) and `Ω_r` (in body axes), in rad/s.
     pub fn rates(&self) -> (Bivector, Bivector) {
         (self.left, self.right)
     }

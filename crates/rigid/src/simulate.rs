@@ -1,5 +1,6 @@
 //! Motion at given times, to a tolerance, with a certificate of what was conserved.
 
+use crate::inertia::Inertia;
 use crate::splitting::{Method, Stepper};
 use crate::torque::{Conserved, Phase, Torque, energy};
 use polhode_ga::{Bivector, Rotor};
@@ -77,17 +78,14 @@ impl fmt::Display for SimulateError {
 
 impl std::error::Error for SimulateError {}
 
-/// What to solve: a body in principal axes and its state at time 0.
+/// What to solve: a body and its state at time 0. Kept in principal axes.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// Principal moments in kg m²: about the centre of mass, or about the fixed point if there is one.
-    pub moments: [f64; 3],
-    /// From principal axes to space, at time 0.
-    pub rotor: Rotor,
-    /// Angular velocity in principal axes at time 0, rad/s.
-    pub omega: Bivector,
-    /// The laws that turn the body, in principal axes; none for free motion.
-    pub torques: Vec<Torque>,
+    frame: Rotor,
+    moments: [f64; 3],
+    rotor: Rotor,
+    omega: Bivector,
+    torques: Vec<Torque>,
 }
 
 /// How to solve it.
@@ -122,10 +120,12 @@ pub struct Certificate {
 /// A motion at its output times.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// States in the order of the times.
-    pub states: Vec<Phase>,
-    /// Angular velocities in principal axes, rad/s.
+    /// From body axes to space.
+    pub rotors: Vec<Rotor>,
+    /// Angular velocities in body axes, rad/s.
     pub omegas: Vec<Bivector>,
+    /// Angular momenta in space, kg m²/s.
+    pub momenta_space: Vec<Bivector>,
     /// Kinetic and gravitational energy, J.
     pub energies: Vec<f64>,
     /// What was conserved.
@@ -203,6 +203,19 @@ impl Walker<'_> {
 }
 
 impl Problem {
+    /// A body with its rotor (body axes to space) and its angular velocity and torques in body axes. The
+    /// inertia is about the centre of mass, or about the fixed point if there is one.
+    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Problem {
+        let frame = inertia.principal_frame();
+        Problem {
+            frame,
+            moments: inertia.principal_moments(),
+            rotor: rotor * frame,
+            omega: frame.reverse().apply_bivector(omega),
+            torques: torques.iter().map(|t| t.in_axes(frame)).collect(),
+        }
+    }
+
     /// The motion at `times` (s, not decreasing, of either sign); the state given is that at time 0.
     ///
     /// With no fixed step, runs with steps h, h/2, h/4 … until two of them agree within the tolerance in
@@ -238,9 +251,14 @@ impl Problem {
             drifts: drifts.collect(),
             norm_drift: pass.states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
         };
-        let omegas = pass.states.iter().map(|s| stepper.omega(s.momentum)).collect();
-        let energies = pass.states.iter().map(|s| energy(self.moments, &self.torques, s)).collect();
-        Ok(Motion { states: pass.states, omegas, energies, certificate })
+        let (states, frame) = (&pass.states, self.frame);
+        Ok(Motion {
+            rotors: states.iter().map(|s| s.rotor * frame.reverse()).collect(),
+            omegas: states.iter().map(|s| frame.apply_bivector(stepper.omega(s.momentum))).collect(),
+            momenta_space: states.iter().map(|s| s.rotor.apply_bivector(s.momentum)).collect(),
+            energies: states.iter().map(|s| energy(self.moments, &self.torques, s)).collect(),
+            certificate,
+        })
     }
 
     fn check(&self, times: &[f64], options: Options) -> Result<(), SimulateError> {

@@ -1,0 +1,69 @@
+//! Between NumPy arrays and fixed-size rows.
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// An array of float64 whose last axis holds the components, contiguous.
+pub(crate) type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
+
+/// A new array.
+pub(crate) type Out<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
+/// Any Rust error as a ValueError.
+pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {
+    PyValueError::new_err(message.to_string())
+}
+
+/// A single row of N numbers.
+pub(crate) fn one<const N: usize>(row: &Rows<'_>) -> PyResult<[f64; N]> {
+    let data = row.as_slice()?;
+    data.try_into().map_err(|_| bad(format!("expected {N} numbers, got shape {:?}", row.shape())))
+}
+
+/// Rows of N numbers as an array of shape (rows, N).
+pub(crate) fn table<'py, const N: usize>(py: Python<'py>, rows: impl ExactSizeIterator<Item = [f64; N]>) -> Out<'py> {
+    let shape = vec![rows.len(), N];
+    PyArray1::from_vec(py, rows.flatten().collect()).reshape(shape)
+}
+
+/// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.
+fn place(row: usize, batch: &[usize]) -> String {
+    if batch.is_empty() {
+        return String::new();
+    }
+    let mut rest = row;
+    let mut index: Vec<String> = Vec::new();
+    for &length in batch.iter().rev() {
+        index.push((rest % length).to_string());
+        rest /= length;
+    }
+    index.reverse();
+    let comma = if index.len() == 1 { "," } else { "" };
+    format!("at index ({}{comma}): ", index.join(", "))
+}
+
+/// Applies a function of one row to every row; an error names the batch index.
+pub(crate) fn map_rows<'py, const IN: usize, const OUT: usize, E: std::fmt::Display + Send>(
+    py: Python<'py>,
+    input: &Rows<'py>,
+    f: impl Fn([f64; IN]) -> Result<[f64; OUT], E> + Sync + Send,
+) -> Out<'py> {
+    let shape = input.shape();
+    let batch = match shape.split_last() {
+        Some((&last, batch)) if last == IN => batch,
+        _ => return Err(bad(format!("expected {IN} components in the last axis, got shape {shape:?}"))),
+    };
+    let data = input.as_slice()?;
+    let result: Result<Vec<f64>, (usize, E)> = py.detach(|| {
+        let mut out = Vec::with_capacity(data.len() / IN * OUT);
+        for (row, values) in data.as_chunks::<IN>().0.iter().enumerate() {
+            out.extend(f(*values).map_err(|e| (row, e))?);
+        }
+        Ok(out)
+    });
+    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
+    let mut out_shape = batch.to_vec();
+    out_shape.push(OUT);
+    PyArray1::from_vec(py, out).reshape(out_shape)
+}

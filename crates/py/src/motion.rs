@@ -1,0 +1,167 @@
+//! Motion: the closed form of the symmetric top, and simulation.
+
+use crate::arrays::{Out, Rows, bad, one, table};
+use crate::bodies::{Inertia, rotor};
+use polhode_ga::{Bivector, Vector};
+use polhode_rigid::free::{SymmetricTop, describe};
+use polhode_rigid::simulate::{DEFAULT_RTOL, Options, Problem, Progress, SimulateError};
+use polhode_rigid::splitting::{METHODS, Method};
+use polhode_rigid::torque::Torque;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::time::{Duration, Instant};
+
+/// How often a run looks for Ctrl-C and reports where it stands.
+const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
+
+/// Names of the methods, by rising order.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<&'static str> {
+    METHODS.iter().map(|m| m.name).collect()
+}
+
+/// The relative tolerance when none is asked for.
+#[pyfunction]
+pub(crate) fn default_rtol() -> f64 {
+    DEFAULT_RTOL
+}
+
+fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
+    match (name, values) {
+        ("heavy", &[x, y, z]) => Ok(Torque::Heavy(Vector([x, y, z]))),
+        ("gravity_gradient", &[n]) => Ok(Torque::GravityGradient(n)),
+        ("constant_body", &[x, y, z]) => Ok(Torque::ConstantBody(Bivector([x, y, z]))),
+        ("constant_space", &[x, y, z]) => Ok(Torque::ConstantSpace(Bivector([x, y, z]))),
+        ("damping", &[g]) => Ok(Torque::Damping(g)),
+        _ => Err(bad(format!("no torque law {name} with {} numbers", values.len()))),
+    }
+}
+
+/// Rotors (n, 4) and angular velocities (n, 3) of the free symmetric top at times (n,).
+#[pyfunction]
+pub(crate) fn symmetric_top<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    rotor_row: Rows<'py>,
+    omega: Rows<'py>,
+    times: Rows<'py>,
+) -> PyResult<(Bound<'py, numpy::PyArrayDyn<f64>>, Bound<'py, numpy::PyArrayDyn<f64>>)> {
+    let times = times.as_slice()?;
+    if let Some(index) = times.iter().position(|t| !t.is_finite()) {
+        return Err(bad(format!("time {} at index {index} is not finite", times[index])));
+    }
+    let omega: [f64; 3] = one(&omega)?;
+    if !omega.iter().all(|x| x.is_finite()) {
+        return Err(bad(format!("the angular velocity {omega:?} is not finite")));
+    }
+    let top = SymmetricTop::new(&inertia.0, rotor(&rotor_row)?, Bivector(omega)).ok_or_else(|| {
+        let [a, b, c] = inertia.0.principal_moments();
+        bad(format!("the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use ph.simulate"))
+    })?;
+    let states: Vec<_> = times.iter().map(|&t| top.at(t)).collect();
+    let rotors = table(py, states.iter().map(|s| s.0.components()))?;
+    Ok((rotors, table(py, states.iter().map(|s| s.1.0))?))
+}
+
+/// What the invariants of a free motion tell, as a dict.
+#[pyfunction]
+pub(crate) fn describe_free<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    omega: Rows<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let d = describe(&inertia.0, Bivector(one(&omega)?));
+    let result = PyDict::new(py);
+    result.set_item("regime", d.regime.to_string())?;
+    result.set_item("axis", d.axis + 1)?;
+    result.set_item("modulus", d.modulus)?;
+    result.set_item("energy", d.energy)?;
+    result.set_item("angular_momentum", d.angular_momentum)?;
+    result.set_item("period", d.period)?;
+    result.set_item("precession_rate", d.precession_rate)?;
+    result.set_item("precession_period", d.precession_period())?;
+    result.set_item("flip_time", d.flip_time())?;
+    Ok(result)
+}
+
+/// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.
+struct Watcher<'a> {
+    progress: Option<&'a Py<PyAny>>,
+    last: Instant,
+    error: Option<PyErr>,
+}
+
+impl Watcher<'_> {
+    fn go_on(&mut self, at: Progress) -> bool {
+        if self.last.elapsed() < BETWEEN_SIGNALS {
+            return true;
+        }
+        self.last = Instant::now();
+        let outcome = Python::attach(|py| {
+            py.check_signals()?;
+            self.progress.map_or(Ok(()), |call| call.call1(py, (at.pass, at.fraction)).map(drop))
+        });
+        self.error = outcome.err();
+        self.error.is_none()
+    }
+}
+
+/// Simulates: rotors (n, 4), angular velocities (n, 3) in the body, momenta (n, 3) in space, energies
+/// (n,), and the certificate as a dict.
+#[pyfunction]
+#[pyo3(signature = (inertia, rotor_row, omega, laws, times, method, step, rtol, progress))]
+#[allow(clippy::too_many_arguments, clippy::type_complexity)]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    rotor_row: Rows<'py>,
+    omega: Rows<'py>,
+    laws: Vec<(String, Vec<f64>)>,
+    times: Rows<'py>,
+    method: &str,
+    step: Option<f64>,
+    rtol: f64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(
+    Bound<'py, numpy::PyArrayDyn<f64>>,
+    Bound<'py, numpy::PyArrayDyn<f64>>,
+    Bound<'py, numpy::PyArrayDyn<f64>>,
+    Vec<f64>,
+    Bound<'py, PyDict>,
+)> {
+    let method = Method::from_name(method).ok_or_else(|| bad(format!("unknown method {method}")))?;
+    let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
+    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
+    let times = times.as_slice()?;
+    let mut watcher = Watcher { progress: progress.as_ref(), last: Instant::now(), error: None };
+    let outcome = py.detach(|| {
+        let result = problem.simulate(times, Options { method, step, rtol }, &mut |at| watcher.go_on(at));
+        (result, watcher.error)
+    });
+    let motion = match outcome {
+        (Ok(motion), _) => motion,
+        (Err(SimulateError::Interrupted), Some(error)) => return Err(error),
+        (Err(error), _) => return Err(bad(error)),
+    };
+    let proof = &motion.certificate;
+    let certificate = PyDict::new(py);
+    certificate.set_item("method", proof.method)?;
+    certificate.set_item("step", proof.step)?;
+    certificate.set_item("steps", proof.steps)?;
+    certificate.set_item("error_estimate", proof.error_estimate)?;
+    let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
+    for (quantity, value, change) in &proof.drifts {
+        conserved.set_item(quantity.name(), value)?;
+        drift.set_item(quantity.name(), change)?;
+    }
+    certificate.set_item("conserved", conserved)?;
+    certificate.set_item("drift", drift)?;
+    certificate.set_item("norm_drift", proof.norm_drift)?;
+    Ok((
+        table(py, motion.rotors.iter().map(|r| r.components()))?,
+        table(py, motion.omegas.iter().map(|w| w.0))?,
+        table(py, motion.momenta_space.iter().map(|l| l.0))?,
+        motion.energies,
+        certificate,
+    ))
+}

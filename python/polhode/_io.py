@@ -1,0 +1,92 @@
+"""Trajectories as labelled data, and as netCDF files."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._files import write_atomically
+
+if TYPE_CHECKING:
+    import xarray
+
+    from polhode._motion import Trajectory
+
+CONVENTIONS = (
+    "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, actively: "
+    "a_space = R a_body ~R. Quaternion [w, x, y, z] is Hamilton's and active; R = w - x e2e3 - y e3e1 - z e1e2. "
+    "Bivectors (angular velocity, angular momentum) are given by the components of their axial vectors, "
+    "(e2e3, e3e1, e1e2) = (x, y, z). R' = -1/2 Omega_space R = -1/2 R Omega_body. "
+    "omega_body is in body axes, momentum_space in space axes."
+)
+
+
+def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
+    """Return a dataset with dimensions time, quaternion and axis, units and conventions."""
+    try:
+        import xarray as xr
+    except ImportError as error:
+        raise ImportError("labelled data needs xarray: pip install 'polhode[io]'") from error
+
+    def variable(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
+        return (dims, np.array(data), {"units": units, "long_name": text})
+
+    along, axes = ("time",), ("time", "axis")
+    variables = {
+        "attitude": variable(
+            ("time", "quaternion"), trajectory.rotor.to_quaternion(order="wxyz"), "1", "attitude, body to space"
+        ),
+        "omega_body": variable(
+            axes, trajectory.omega_body.components, "rad/s", "angular velocity in body axes"
+        ),
+        "momentum_space": variable(
+            axes, trajectory.momentum_space.components, "kg m^2/s", "angular momentum in space axes"
+        ),
+        "position": variable(axes, trajectory.position.components, "m", "centre of mass in space"),
+        "velocity": variable(axes, trajectory.velocity.components, "m/s", "velocity of the centre of mass"),
+        "energy": variable(along, trajectory.energy, "J", "rotational kinetic and potential energy"),
+        "inertia": variable(
+            ("axis", "axis_"), trajectory.inertia.matrix, "kg m^2", "inertia matrix in body axes"
+        ),
+    }
+    coordinates = {
+        "time": ("time", trajectory.time, {"units": "s", "long_name": "time", "axis": "T"}),
+        "quaternion": ["w", "x", "y", "z"],
+        "axis": ["x", "y", "z"],
+        "axis_": ["x", "y", "z"],
+    }
+    return xr.Dataset(variables, coordinates, _attributes(trajectory))
+
+
+def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
+    """Write a netCDF4 file atomically: it is made in memory first, so that no partial file is left."""
+    dataset = to_xarray(trajectory)
+    try:
+        import h5netcdf  # noqa: F401
+    except ImportError as error:
+        raise ImportError("netCDF files need h5netcdf: pip install 'polhode[io]'") from error
+    buffer = io.BytesIO()
+    dataset.to_netcdf(buffer, engine="h5netcdf", encoding={"time": {"_FillValue": None}})
+    write_atomically(path, buffer.getvalue())
+
+
+def _attributes(trajectory: Trajectory) -> dict[str, Any]:
+    """Flat text and numbers, which every netCDF reader shows."""
+    proof = trajectory.certificate
+    attributes: dict[str, Any] = {
+        "conventions": CONVENTIONS,
+        "source": f"polhode {_native.__version__}",
+        "method": proof.method,
+        "step_s": proof.step,
+        "steps": proof.steps,
+        "conserved": json.dumps(proof.conserved),
+        "drift": json.dumps({**proof.drift, "rotor_norm": proof.norm_drift}),
+    }
+    if proof.error_estimate is not None:
+        attributes["error_estimate"] = proof.error_estimate
+    return {**attributes, **trajectory.attributes}

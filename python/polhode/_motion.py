@@ -1,0 +1,305 @@
+"""Motion: states, the symmetric top in closed form, simulation, and the trajectory that comes out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import Array, as_floats, as_vectors, frozen
+from polhode._bodies import Body, Inertia
+from polhode._multivector import _BIVECTOR, Multivector, bivector, vector
+from polhode._rotor import Rotor
+from polhode.torque import Torque
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+METHODS: tuple[str, ...] = ("auto", *_native.methods())
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A body's state: attitude, rotation, place.
+
+    Attributes
+    ----------
+    rotor
+        From body axes to space axes.
+    omega_body
+        Angular velocity in body axes, a bivector in rad/s; an array (..., 3) of its components
+        ``(e2e3, e3e1, e1e2)``, which are those of the axial vector, is taken too.
+    position, velocity
+        Of the centre of mass in space, vectors in m and m/s.
+    """
+
+    rotor: Rotor
+    omega_body: Multivector
+    position: Multivector = 0  # type: ignore[assignment]
+    velocity: Multivector = 0  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.rotor, Rotor):
+            raise TypeError(f"rotor must be a Rotor, got {type(self.rotor).__name__}; see Rotor.from_components")
+        object.__setattr__(self, "omega_body", _angular_velocity(self.omega_body))
+        for name in ("position", "velocity"):
+            value = getattr(self, name)
+            components = np.zeros(3) if np.isscalar(value) and value == 0 else as_vectors(value, name)
+            object.__setattr__(self, name, vector(components))
+
+
+class SymmetricTop:
+    """The free top with two equal moments, in closed form at any time (handout eq. 4.35).
+
+    ``R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)``, ``Ω_l = L/i1``, ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` with the
+    symmetry axis e3 of the body, or whichever it is. A ValueError if all three moments differ.
+    """
+
+    def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any) -> None:
+        self._start = _single(State(rotor, omega_body))
+        self._inertia = inertia
+        self.at(0.0)
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        times = as_floats(t, "time")
+        start = self._start
+        rotors, omegas = _native.symmetric_top(
+            self._inertia._core, start.rotor._contiguous(), start.omega_body.components, np.ravel(times)
+        )
+        return State(
+            Rotor._from_rows(rotors.reshape(*times.shape, 4)),
+            Multivector._of(omegas.reshape(*times.shape, 3), _BIVECTOR),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A motion at n times.
+
+    Attributes
+    ----------
+    time
+        Times in s, (n,).
+    rotor
+        Rotors from body axes to space axes, batch (n,), continuous in time on the double cover.
+    omega_body
+        Angular velocities in body axes, bivectors in rad/s, batch (n,).
+    momentum_space
+        Angular momenta in space axes, bivectors in kg m²/s, batch (n,).
+    energy
+        Kinetic energy of rotation plus potential energy of gravity, in J, (n,).
+    position, velocity
+        Of the centre of mass (of the fixed point, where there is one), vectors in m and m/s, batch (n,).
+    inertia
+        The inertia that ruled the motion.
+    certificate
+        How the run was made and what it conserved.
+    attributes
+        Text and numbers to be written with the data: title, scene, version.
+    """
+
+    time: Array
+    rotor: Rotor
+    omega_body: Multivector
+    momentum_space: Multivector
+    energy: Array
+    position: Multivector
+    velocity: Multivector
+    inertia: Inertia
+    certificate: Certificate
+    attributes: dict[str, Any] = field(default_factory=dict)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return an `xarray.Dataset` with labelled dimensions, units and the conventions."""
+        from polhode._io import to_xarray
+
+        return to_xarray(self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a netCDF file, whole or not at all: an older file stays until the new one is complete."""
+        from polhode._io import save
+
+        save(self, path)
+
+    def plot(self) -> Figure:
+        """Draw angular velocity, attitude and conserved quantities over time; a matplotlib figure."""
+        from polhode._plot import motion_figure
+
+        return motion_figure(self)
+
+    def __repr__(self) -> str:
+        n = len(self.time)
+        span = f", t = {self.time[0]:.6g} … {self.time[-1]:.6g} s" if n else ""
+        return f"Trajectory({n} times{span}, {self.certificate.method})"
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How a run was made, and how far it went astray in what the law conserves.
+
+    Attributes
+    ----------
+    method, step, steps
+        The method's name, its longest step in s, and the steps of all passes.
+    error_estimate
+        Estimate of the relative error in rotor and angular velocity, from two passes; None for a step
+        that was given.
+    conserved
+        Each conserved quantity's initial value in SI.
+    drift
+        Its largest change over the run, relative to the terms that make it up.
+    norm_drift
+        Largest ``abs(|R| − 1)``.
+    """
+
+    method: str
+    step: float
+    steps: int
+    error_estimate: float | None
+    conserved: dict[str, float]
+    drift: dict[str, float]
+    norm_drift: float
+
+    @property
+    def worst(self) -> float:
+        """The largest drift of all."""
+        return max([self.norm_drift, *self.drift.values()])
+
+
+def simulate(
+    body: Body | Inertia,
+    state: State,
+    times: Any,
+    torque: Torque | None = None,
+    force: Any = None,
+    method: str = "auto",
+    rtol: float | None = None,
+    atol: float | None = None,
+    step: float | None = None,
+    *,
+    progress: Callable[[int, float], object] | None = None,
+) -> Trajectory:
+    """Return the motion of a body at given times, by steps that keep |R| and L to rounding.
+
+    Parameters
+    ----------
+    body
+        A `Body` or its `Inertia` in kg m². With `ph.torque.heavy` a body is held at the origin of its
+        axes, and an inertia is that about the fixed point.
+    state
+        The state at time 0.
+    times
+        Output times in s, (n,), not decreasing, of either sign.
+    torque
+        A law of `polhode.torque`, or a sum of them; None for free motion.
+    force
+        A constant force in space on the centre of mass, a vector or (3,) in N; it needs a `Body`.
+    method
+        ``"auto"``, or one of ``strang`` (order 2), ``yoshida4``, ``kahan_li6``, ``kahan_li8``; auto is
+        the last. All are symmetric compositions of exact turns and kicks.
+    rtol, atol
+        Without a `step`, it is halved until two runs differ by less than the larger of the two: in the
+        rotor, and in the angular velocity relative to its largest size. rtol is 1e-10 by default.
+    step
+        A fixed step in s; shortened a little so that steps end on the output times.
+    progress
+        Called now and then with the pass (from 1) and the fraction of it done. Ctrl-C stops the run.
+
+    Raises
+    ------
+    ValueError
+        For input that is not usable, or a tolerance that was not reached.
+    """
+    start = _single(state)
+    mass = body.mass if isinstance(body, Body) else None
+    inertia = _ruling_inertia(body, torque)
+    when = np.atleast_1d(as_floats(times, "times"))
+    if when.ndim != 1:
+        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
+    if method not in METHODS:
+        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
+    if torque is not None and not isinstance(torque, Torque):
+        raise TypeError(f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}")
+    position, velocity = _center_of_mass(start, when, force, mass)
+    rotors, omegas, momenta, energies, certificate = _native.simulate(
+        inertia._core,
+        start.rotor._contiguous(),
+        np.ascontiguousarray(start.omega_body.components),
+        list(torque.laws) if torque else [],
+        np.ascontiguousarray(when),
+        _native.methods()[-1] if method == "auto" else method,
+        None if step is None else float(step),
+        _tolerance(rtol, atol),
+        progress,
+    )
+    return Trajectory(
+        time=frozen(when.copy()),
+        rotor=Rotor._from_rows(rotors),
+        omega_body=Multivector._of(omegas, _BIVECTOR),
+        momentum_space=Multivector._of(momenta, _BIVECTOR),
+        energy=frozen(energies),
+        position=position,
+        velocity=velocity,
+        inertia=inertia,
+        certificate=Certificate(**certificate),
+    )
+
+
+def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
+    """Say what the invariants of a free motion tell: regime, modulus, energy, |L|, periods in s."""
+    omega = _angular_velocity(omega_body)
+    return _native.describe_free(inertia._core, np.ascontiguousarray(omega.components))
+
+
+def _tolerance(rtol: float | None, atol: float | None) -> float:
+    """Both measure the same scaled difference, so the larger one rules."""
+    given = [float(x) for x in (rtol, atol) if x is not None]
+    return max(given) if given else _native.default_rtol()
+
+
+def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
+    if isinstance(body, Inertia):
+        return body
+    if not isinstance(body, Body):
+        raise TypeError(f"body must be a Body or an Inertia, got {type(body).__name__}")
+    held = torque is not None and any(name == "heavy" for name, _ in torque.laws)
+    return body.inertia_about(np.zeros(3)) if held else body.inertia
+
+
+def _center_of_mass(
+    start: State, when: Array, force: Any, mass: float | None
+) -> tuple[Multivector, Multivector]:
+    """``x0(t)`` of handout eq. (4.1) under a constant force."""
+    acceleration = np.zeros(3)
+    if force is not None:
+        if mass is None:
+            raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
+        acceleration = as_vectors(force, "force") / mass
+    x, v, t = start.position.components, start.velocity.components, when[:, np.newaxis]
+    return vector(x + v * t + 0.5 * acceleration * t**2), vector(v + acceleration * t)
+
+
+def _angular_velocity(value: Any) -> Multivector:
+    if not isinstance(value, Multivector):
+        return bivector(value)
+    if value._mask != _BIVECTOR:
+        raise TypeError(
+            f"an angular velocity is a bivector, got grades {value.grades}; the plane of an axial vector w is "
+            "w.undual()"
+        )
+    return value
+
+
+def _single(state: State) -> State:
+    if not isinstance(state, State):
+        raise TypeError(f"state must be a State, got {type(state).__name__}")
+    shapes = (state.rotor.shape, state.omega_body.shape, state.position.shape, state.velocity.shape)
+    if any(shapes):
+        raise ValueError(f"the state must be a single one, got batch shapes {shapes}")
+    return state

@@ -1,0 +1,68 @@
+"""Torque laws for `polhode.simulate`: values that say what turns the body.
+
+Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from polhode._arrays import as_vectors
+from polhode._multivector import Multivector
+
+
+@dataclass(frozen=True)
+class Torque:
+    """A sum of laws; made by the functions of this module."""
+
+    laws: tuple[tuple[str, tuple[float, ...]], ...]
+
+    def __add__(self, other: Torque) -> Torque:
+        if not isinstance(other, Torque):
+            return NotImplemented
+        return Torque(self.laws + other.laws)
+
+
+def heavy(c: Any) -> Torque:
+    """Uniform gravity along −e3 on a body held at a fixed point, the origin of its axes.
+
+    ``V = c·γ`` with ``γ = ~R e3 R``; ``c = m g (centre of mass)`` in body axes, a vector or (3,) in N m.
+    The inertia that counts is that about the fixed point: an `Inertia` is taken as such, a `Body` is
+    taken about the origin of its axes.
+    """
+    return Torque((("heavy", _three(c, 1, "c")),))
+
+
+def gravity_gradient(n: float) -> Torque:
+    """Return the gradient of a planet's field on a circular orbit of rate n (rad/s) in the plane e1e2.
+
+    With ``u = cos(nt) e1 + sin(nt) e2`` from planet to body, the axial vector of the torque is
+    ``3n² u x I(u)``.
+    """
+    return Torque((("gravity_gradient", (float(n),)),))
+
+
+def damping(g: float) -> Torque:
+    """Return the torque ``−g L``, g in 1/s: spin dies away as ``exp(−g t)``."""
+    return Torque((("damping", (float(g),)),))
+
+
+def constant_body(N: Any) -> Torque:
+    """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
+    return Torque((("constant_body", _three(N, 2, "N")),))
+
+
+def constant_space(N: Any) -> Torque:
+    """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
+    return Torque((("constant_space", _three(N, 2, "N")),))
+
+
+def _three(value: Any, grade: int, name: str) -> tuple[float, ...]:
+    if isinstance(value, Multivector) and value.grades != (grade,):
+        kind = {1: "vector", 2: "bivector"}[grade]
+        raise TypeError(f"{name} must be a {kind} or an array (3,), got grades {value.grades}")
+    components = as_vectors(value, name)
+    if components.shape != (3,):
+        raise ValueError(f"{name} must be a single value, got shape {components.shape}")
+    return tuple(components.tolist())

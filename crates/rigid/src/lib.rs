@@ -10,4 +10,14 @@
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
+pub mod body;
+mod eigen;
+pub mod inertia;
+pub mod mesh;
 pub mod solids;
+mod sum;
+
+pub use body::{Body, BodyError};
+pub use inertia::Inertia;
+pub use mesh::TriangleMesh;
+pub use solids::{Amount, Solid};

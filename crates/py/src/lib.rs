@@ -3,6 +3,9 @@
 use pyo3::prelude::*;
 
 mod algebra;
+mod arrays;
+mod bodies;
+mod motion;
 
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
@@ -14,6 +17,11 @@ mod _native {
         rotor_from_vectors, rotor_plane_angle, rotor_to_matrix, rotor_to_quaternion,
         rotor_to_rotation_vector, to_pauli,
     };
+
+    #[pymodule_export]
+    use crate::bodies::{Body, Inertia};
+    #[pymodule_export]
+    use crate::motion::{default_rtol, describe_free, methods, simulate, symmetric_top};
 
     /// The version of the package.
     #[pymodule_export]

@@ -5,14 +5,24 @@
 //! takes the plane of rotation to the plane of angular momentum.
 //!
 //! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
-//! (closed forms), [`mesh`] (triangle meshes and their files), [`units`] and [`scene`] (what a person
-//! writes in a scene file).
+//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] and [`elliptic`] (the free top),
+//! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
+pub mod body;
+mod eigen;
 pub mod elliptic;
 pub mod free;
+pub mod inertia;
+pub mod mesh;
 pub mod simulate;
 pub mod solids;
 pub mod splitting;
+mod sum;
 pub mod torque;
+
+pub use body::{Body, BodyError};
+pub use inertia::Inertia;
+pub use mesh::TriangleMesh;
+pub use solids::{Amount, Solid};

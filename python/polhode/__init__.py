@@ -1,5 +1,14 @@
 """Polhode: geometric algebra of 3-d space, rotors and the motion of rigid bodies."""
 
+from polhode import torque as torque
+from polhode._bodies import Body as Body
+from polhode._bodies import Inertia as Inertia
+from polhode._motion import Certificate as Certificate
+from polhode._motion import State as State
+from polhode._motion import SymmetricTop as SymmetricTop
+from polhode._motion import Trajectory as Trajectory
+from polhode._motion import describe_free as describe_free
+from polhode._motion import simulate as simulate
 from polhode._multivector import I as I
 from polhode._multivector import Multivector as Multivector
 from polhode._multivector import bivector as bivector

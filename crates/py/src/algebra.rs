@@ -1,7 +1,7 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Out, Rows, bad, map_rows};
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use crate::arrays::{Array, Out, Rows, bad, map_rows};
+use numpy::{PyArray1, PyArrayMethods};
 use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::table::G3;
@@ -19,7 +19,7 @@ pub(crate) fn product<'py>(
     b: Rows<'py>,
     b_grades: u16,
     rows: usize,
-) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, u16)> {
+) -> PyResult<(Array<'py>, u16)> {
     let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
     if a_grades >= 16 || b_grades >= 16 {
         return Err(bad("3-d space has grades 0 to 3"));
@@ -47,7 +47,7 @@ pub(crate) fn function<'py>(
     name: &str,
     m: Rows<'py>,
     grades: u16,
-) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, u16)> {
+) -> PyResult<(Array<'py>, u16)> {
     let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
     let values = map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0))?;
     Ok((values, f.grades(Grades(grades)).0))
@@ -67,19 +67,13 @@ pub(crate) fn norm<'py>(py: Python<'py>, m: Rows<'py>) -> Out<'py> {
 
 /// Rotors from components, normalised.
 #[pyfunction]
-pub(crate) fn rotor_from_components<'py>(
-    py: Python<'py>,
-    c: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_from_components<'py>(py: Python<'py>, c: Rows<'py>) -> Out<'py> {
     map_rows(py, &c, |c| Rotor::from_components(c).map(Rotor::components))
 }
 
 /// Rotors from rows of plane (3) and angle.
 #[pyfunction]
-pub(crate) fn rotor_from_plane_angle<'py>(
-    py: Python<'py>,
-    c: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_from_plane_angle<'py>(py: Python<'py>, c: Rows<'py>) -> Out<'py> {
     map_rows(py, &c, |[x, y, z, angle]: [f64; 4]| {
         Rotor::from_plane_angle(Vector([x, y, z]).undual(), angle).map(Rotor::components)
     })
@@ -87,10 +81,7 @@ pub(crate) fn rotor_from_plane_angle<'py>(
 
 /// Rotors from rows of two vectors, turning the first to the second.
 #[pyfunction]
-pub(crate) fn rotor_from_vectors<'py>(
-    py: Python<'py>,
-    ab: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_from_vectors<'py>(py: Python<'py>, ab: Rows<'py>) -> Out<'py> {
     map_rows(py, &ab, |[x, y, z, u, v, w]: [f64; 6]| {
         Rotor::from_vectors(Vector([x, y, z]), Vector([u, v, w])).map(Rotor::components)
     })
@@ -107,19 +98,13 @@ pub(crate) fn rotor_from_matrix<'py>(py: Python<'py>, m: Rows<'py>) -> Out<'py> 
 
 /// Rotors from rotation vectors.
 #[pyfunction]
-pub(crate) fn rotor_from_rotation_vector<'py>(
-    py: Python<'py>,
-    v: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_from_rotation_vector<'py>(py: Python<'py>, v: Rows<'py>) -> Out<'py> {
     map_rows(py, &v, |v| Rotor::from_rotation_vector(Vector(v)).map(Rotor::components))
 }
 
 /// Rotors from quaternions (w, x, y, z).
 #[pyfunction]
-pub(crate) fn rotor_from_quaternion<'py>(
-    py: Python<'py>,
-    q: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_from_quaternion<'py>(py: Python<'py>, q: Rows<'py>) -> Out<'py> {
     map_rows(py, &q, |q| Rotor::from_quaternion_wxyz(q).map(Rotor::components))
 }
 
@@ -130,10 +115,7 @@ fn rotor(c: [f64; 4]) -> Result<Rotor, MathError> {
 
 /// Quaternions (w, x, y, z) of rotors.
 #[pyfunction]
-pub(crate) fn rotor_to_quaternion<'py>(
-    py: Python<'py>,
-    r: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_to_quaternion<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| rotor(c).map(Rotor::to_quaternion_wxyz))
 }
 
@@ -148,10 +130,7 @@ pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
 
 /// Rotation vectors of rotors.
 #[pyfunction]
-pub(crate) fn rotor_to_rotation_vector<'py>(
-    py: Python<'py>,
-    r: Rows<'py>,
-) -> Out<'py> {
+pub(crate) fn rotor_to_rotation_vector<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| rotor(c).map(|r| r.to_rotation_vector().0))
 }
 

@@ -7,8 +7,11 @@ use pyo3::prelude::*;
 /// An array of float64 whose last axis holds the components, contiguous.
 pub(crate) type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
 
-/// A new array.
-pub(crate) type Out<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+/// A new array of float64.
+pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// A new array, or a Python exception.
+pub(crate) type Out<'py> = PyResult<Array<'py>>;
 
 /// Any Rust error as a ValueError.
 pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {
@@ -21,8 +24,16 @@ pub(crate) fn one<const N: usize>(row: &Rows<'_>) -> PyResult<[f64; N]> {
     data.try_into().map_err(|_| bad(format!("expected {N} numbers, got shape {:?}", row.shape())))
 }
 
+/// Numbers as an array of one axis.
+pub(crate) fn line<'py>(py: Python<'py>, numbers: Vec<f64>) -> Array<'py> {
+    PyArray1::from_vec(py, numbers).to_dyn().clone()
+}
+
 /// Rows of N numbers as an array of shape (rows, N).
-pub(crate) fn table<'py, const N: usize>(py: Python<'py>, rows: impl ExactSizeIterator<Item = [f64; N]>) -> Out<'py> {
+pub(crate) fn table<'py, const N: usize>(
+    py: Python<'py>,
+    rows: impl ExactSizeIterator<Item = [f64; N]>,
+) -> Out<'py> {
     let shape = vec![rows.len(), N];
     PyArray1::from_vec(py, rows.flatten().collect()).reshape(shape)
 }

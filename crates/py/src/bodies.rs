@@ -1,6 +1,6 @@
 //! Inertia and bodies.
 
-use crate::arrays::{Out, Rows, bad, map_rows, one, table};
+use crate::arrays::{Array, Out, Rows, bad, line, map_rows, one, table};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::{Amount, Solid, TriangleMesh, body, inertia};
 use pyo3::prelude::*;
@@ -53,12 +53,12 @@ impl Inertia {
         table(py, self.0.matrix().into_iter())
     }
 
-    fn principal_moments(&self) -> [f64; 3] {
-        self.0.principal_moments()
+    fn principal_moments<'py>(&self, py: Python<'py>) -> Array<'py> {
+        line(py, self.0.principal_moments().to_vec())
     }
 
-    fn principal_frame(&self) -> [f64; 4] {
-        self.0.principal_frame().components()
+    fn principal_frame<'py>(&self, py: Python<'py>) -> Array<'py> {
+        line(py, self.0.principal_frame().components().to_vec())
     }
 }
 
@@ -81,7 +81,9 @@ fn solid(kind: &str, sizes: &[f64]) -> Option<Solid> {
         ("box", &[x, y, z]) => Solid::Box { lengths: [x, y, z] },
         ("ellipsoid", &[x, y, z]) => Solid::Ellipsoid { semi_axes: [x, y, z] },
         ("sphere", &[radius]) => Solid::Sphere { radius },
-        ("hollow_sphere", &[outer_radius, inner_radius]) => Solid::HollowSphere { outer_radius, inner_radius },
+        ("hollow_sphere", &[outer_radius, inner_radius]) => {
+            Solid::HollowSphere { outer_radius, inner_radius }
+        }
         ("cylinder", &[radius, height]) => Solid::Cylinder { radius, height },
         ("cone", &[radius, height]) => Solid::Cone { radius, height },
         ("rod", &[length]) => Solid::Rod { length },
@@ -96,7 +98,7 @@ fn solid(kind: &str, sizes: &[f64]) -> Option<Solid> {
 impl Body {
     #[new]
     fn new(mass: f64, inertia: &Inertia, center_of_mass: Rows<'_>) -> PyResult<Body> {
-        body::Body::new(mass, inertia.0.clone(), Vector(one(&center_of_mass)?)).map(Body).map_err(bad)
+        body::Body::new(mass, inertia.0, Vector(one(&center_of_mass)?)).map(Body).map_err(bad)
     }
 
     #[staticmethod]
@@ -125,7 +127,7 @@ impl Body {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(bad(format!("scale is {scale}; it must be positive and finite")));
         }
-        py.detach(|| TriangleMesh::read(Path::new(path))?.scaled(scale).body(amount))
+        py.detach(|| TriangleMesh::read(Path::new(path))?.scaled(scale)?.body(amount))
             .map(Body)
             .map_err(|e| bad(format!("{path}: {e}")))
     }
@@ -134,12 +136,12 @@ impl Body {
         self.0.mass
     }
 
-    fn center_of_mass(&self) -> [f64; 3] {
-        self.0.center_of_mass.0
+    fn center_of_mass<'py>(&self, py: Python<'py>) -> Array<'py> {
+        line(py, self.0.center_of_mass.0.to_vec())
     }
 
     fn inertia(&self) -> Inertia {
-        Inertia(self.0.inertia.clone())
+        Inertia(self.0.inertia)
     }
 
     fn inertia_about(&self, point: Rows<'_>) -> PyResult<Inertia> {

@@ -1,6 +1,6 @@
 //! Motion: the closed form of the symmetric top, and simulation.
 
-use crate::arrays::{Out, Rows, bad, one, table};
+use crate::arrays::{Array, Rows, bad, line, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::free::{SymmetricTop, describe};
@@ -45,7 +45,7 @@ pub(crate) fn symmetric_top<'py>(
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
     times: Rows<'py>,
-) -> PyResult<(Bound<'py, numpy::PyArrayDyn<f64>>, Bound<'py, numpy::PyArrayDyn<f64>>)> {
+) -> PyResult<(Array<'py>, Array<'py>)> {
     let times = times.as_slice()?;
     if let Some(index) = times.iter().position(|t| !t.is_finite()) {
         return Err(bad(format!("time {} at index {index} is not finite", times[index])));
@@ -56,7 +56,9 @@ pub(crate) fn symmetric_top<'py>(
     }
     let top = SymmetricTop::new(&inertia.0, rotor(&rotor_row)?, Bivector(omega)).ok_or_else(|| {
         let [a, b, c] = inertia.0.principal_moments();
-        bad(format!("the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use ph.simulate"))
+        bad(format!(
+            "the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use ph.simulate"
+        ))
     })?;
     let states: Vec<_> = times.iter().map(|&t| top.at(t)).collect();
     let rotors = table(py, states.iter().map(|s| s.0.components()))?;
@@ -122,13 +124,7 @@ pub(crate) fn simulate<'py>(
     step: Option<f64>,
     rtol: f64,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(
-    Bound<'py, numpy::PyArrayDyn<f64>>,
-    Bound<'py, numpy::PyArrayDyn<f64>>,
-    Bound<'py, numpy::PyArrayDyn<f64>>,
-    Vec<f64>,
-    Bound<'py, PyDict>,
-)> {
+) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Bound<'py, PyDict>)> {
     let method = Method::from_name(method).ok_or_else(|| bad(format!("unknown method {method}")))?;
     let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
@@ -161,7 +157,7 @@ pub(crate) fn simulate<'py>(
         table(py, motion.rotors.iter().map(|r| r.components()))?,
         table(py, motion.omegas.iter().map(|w| w.0))?,
         table(py, motion.momenta_space.iter().map(|l| l.0))?,
-        motion.energies,
+        line(py, motion.energies),
         certificate,
     ))
 }

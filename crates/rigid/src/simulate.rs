@@ -227,7 +227,7 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         self.check(times, options)?;
-        let stepper = Stepper::new(self.moments, self.torques.clone(), options.method);
+        let stepper = Stepper::new(self.moments, self.torques.clone(), options.method, &self.start());
         let (mut pass, estimate, steps) = match options.step {
             Some(step) => {
                 let pass = self.pass(&stepper, times, step, 1, progress)?;
@@ -352,7 +352,7 @@ impl Problem {
         rtol: f64,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<(Pass, Option<f64>, u64), SimulateError> {
-        let rate = stepper.fastest_rate(self.start().momentum);
+        let rate = stepper.fastest_rate(&self.start());
         let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
         let mut step = if rate > 0.0 { 0.5 / rate } else { longest.max(1.0) };
         let mut coarse = self.pass(stepper, times, step, 1, progress)?;

@@ -16,8 +16,12 @@
 //! A torque kicks the momentum at fixed attitude: `m ← m + h N`; with damping, `m' = N − g m` solved
 //! exactly. The symmetric product kick–a–b–a–kick is of order 2, and symmetric compositions
 //! `S(γ_1 h) … S(γ_s h)` of it reach orders 4, 6 and 8.
+//!
+//! Without a torque L is constant in space. Rounding would let `R m ~R` wander from it, so after each
+//! step |m| is scaled back and R is turned by the tiny angle that carries `R m ~R` to L. The direction
+//! of m is left alone: on an unstable axis a component that is zero stays zero.
 
-use crate::torque::{Phase, Torque};
+use crate::torque::{Phase, Torque, kinetic};
 use polhode_ga::{Bivector, Rotor};
 
 /// A symmetric composition of the second-order step.
@@ -42,7 +46,7 @@ pub const METHODS: [Method; 4] = [
         name: "kahan_li6",
         order: 6,
         half: &[
-            0.392_161_444_007_314_14,
+            0.392_161_444_007_314_1,
             0.332_599_136_789_359_44,
             -0.706_246_172_557_639_4,
             0.082_213_596_293_550_8,
@@ -95,11 +99,13 @@ pub struct Stepper {
     axes: [usize; 2],
     kappa: [f64; 2],
     middle: f64,
+    /// L in space, constant without torques.
+    fixed: Bivector,
 }
 
 impl Stepper {
     /// Moments must be positive; torques in principal axes.
-    pub fn new(moments: [f64; 3], torques: Vec<Torque>, method: Method) -> Stepper {
+    pub fn new(moments: [f64; 3], torques: Vec<Torque>, method: Method, start: &Phase) -> Stepper {
         let mut order = [0, 1, 2];
         order.sort_by(|&x, &y| moments[x].total_cmp(&moments[y]));
         let [a, p, b] = order;
@@ -114,6 +120,7 @@ impl Stepper {
             axes: [a, b],
             kappa: [kappa(a), kappa(b)],
             middle: moments[p],
+            fixed: start.rotor.apply_bivector(start.momentum),
         }
     }
 
@@ -121,14 +128,11 @@ impl Stepper {
     pub fn step(&self, state: &mut Phase, h: f64) {
         let start = state.time;
         if self.torques.is_empty() {
-            let fixed = state.rotor.apply_bivector(state.momentum);
             for gamma in self.method.stages() {
                 self.turn_about_axes(state, gamma * h);
             }
             self.turn_about_momentum(state, h);
-            state.rotor = state.rotor.renormalized();
-            // L is constant in space: take the momentum from it, so that rounding cannot add up.
-            state.momentum = state.rotor.reverse().apply_bivector(fixed);
+            self.restore_momentum(state);
         } else {
             let mut kick = 0.0;
             for gamma in self.method.stages() {
@@ -139,9 +143,21 @@ impl Stepper {
                 kick = 0.5 * gamma;
             }
             self.kick(state, kick * h);
-            state.rotor = state.rotor.renormalized();
         }
+        state.rotor = state.rotor.renormalized();
         state.time = start + h;
+    }
+
+    /// Takes the rounding of one free step out of |m| and the direction of `R m ~R`, to first order.
+    fn restore_momentum(&self, state: &mut Phase) {
+        let size = self.fixed.norm_squared();
+        if size > 0.0 {
+            state.momentum = state.momentum * (1.5 - 0.5 * state.momentum.norm_squared() / size);
+            let wandered = state.rotor.apply_bivector(state.momentum);
+            // exp(−½ a∧b/|a||b|) turns the axial vector a into b.
+            let back = wandered.dual().wedge(self.fixed.dual()) * (-0.5 / size);
+            state.rotor = Rotor::exp(back) * state.rotor;
+        }
     }
 
     /// The method's order of convergence.
@@ -154,11 +170,16 @@ impl Stepper {
         Bivector([0, 1, 2].map(|k| momentum.0[k] / self.moments[k]))
     }
 
-    /// A rate to which steps are compared, in rad/s: the spin, and the swing in the torque.
-    pub fn fastest_rate(&self, momentum: Bivector) -> f64 {
-        let smallest = self.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
+    /// The rate of the fastest turn, in rad/s, a scale for steps: each turn's for the largest momentum
+    /// that the energy allows, `m_k² <= 2E i_k`, and the swing in the torque.
+    pub fn fastest_rate(&self, start: &Phase) -> f64 {
         let torque: f64 = self.torques.iter().map(|t| t.size(self.moments)).sum();
-        momentum.norm() / smallest + (torque / smallest).sqrt() + self.damping.abs()
+        let energy = kinetic(self.moments, start.momentum) + 2.0 * torque;
+        let largest = |i: f64| (2.0 * energy * i).sqrt();
+        let axes = (0..2).map(|w| self.kappa[w].abs() * largest(self.moments[self.axes[w]]));
+        let smallest = self.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
+        let about_momentum = start.momentum.norm().max(largest(self.middle)) / self.middle;
+        axes.sum::<f64>() + about_momentum + (torque / smallest).sqrt() + self.damping.abs()
     }
 
     fn turn_about_momentum(&self, state: &mut Phase, h: f64) {

@@ -10,4 +10,7 @@
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
+pub mod diagnostic;
+pub mod scene;
 pub mod solids;
+pub mod units;

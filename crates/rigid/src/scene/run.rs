@@ -1,0 +1,124 @@
+//! The table `[run]`: for how long, and how.
+
+use super::reader::{Reader, Table};
+use crate::units::Quantity;
+
+/// The integrators that a scene may name; `auto` leaves the choice to the program.
+pub const METHODS: [&str; 5] = ["auto", "strang", "yoshida4", "kahan_li6", "kahan_li8"];
+
+const DEFAULT_SAMPLES: usize = 1001;
+const MOST_SAMPLES: usize = 10_000_000;
+/// How far a duration may be from a whole number of intervals, relatively: decimals are written rounded.
+const INTERVAL_TOLERANCE: f64 = 1e-9;
+
+/// How long to run and what to keep of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// In seconds.
+    pub duration: f64,
+    /// How many states are kept, the first and the last included.
+    pub samples: usize,
+    /// One of [`METHODS`].
+    pub method: String,
+    /// The integrator's step in seconds, if it is fixed.
+    pub step: Option<f64>,
+    /// The relative error that the integrator may make.
+    pub rtol: Option<f64>,
+    /// The largest relative drift of a conserved quantity that counts as success.
+    pub drift_bound: Option<f64>,
+}
+
+impl Run {
+    /// The times of the samples, `i · duration / (samples − 1)`.
+    pub fn times(&self) -> Vec<f64> {
+        let last = self.samples.saturating_sub(1).max(1);
+        let time = |i: usize| if i == last { self.duration } else { i as f64 * self.duration / last as f64 };
+        (0..self.samples).map(time).collect()
+    }
+}
+
+pub fn read(reader: &mut Reader, table: &Table) -> Option<Run> {
+    reader.only(table, &["duration", "samples", "interval", "method", "step", "rtol", "drift_bound"]);
+    let duration = duration(reader, table);
+    let samples = match reader.at_most_one(table, &["samples", "interval"]) {
+        Some("samples") => samples(reader, table),
+        Some(_) => duration.and_then(|duration| samples_of_interval(reader, table, duration)),
+        None => Some(DEFAULT_SAMPLES),
+    };
+    let method = match table.get("method") {
+        Some(value) => reader.word(value, "method", &METHODS),
+        None => Some("auto"),
+    };
+    let step = optional(table.get("step"), |value| reader.positive(value, Quantity::Time));
+    let rtol = optional(table.get("rtol"), |value| {
+        let rtol = reader.number(value)?;
+        let inside = 0.0 < rtol && rtol < 1.0;
+        if !inside {
+            reader.report(value.span(), format!("must be between 0 and 1, such as `1e-10`, found {rtol}"));
+        }
+        inside.then_some(rtol)
+    });
+    let drift_bound = optional(table.get("drift_bound"), |value| {
+        let bound = reader.number(value)?;
+        reader.check_positive(value, bound)
+    });
+    Some(Run {
+        duration: duration?,
+        samples: samples?,
+        method: method?.to_owned(),
+        step: step?,
+        rtol: rtol?,
+        drift_bound: drift_bound?,
+    })
+}
+
+/// `None` when the field is there and wrong, `Some(None)` when it is not there.
+fn optional<V, T>(value: Option<V>, read: impl FnOnce(V) -> Option<T>) -> Option<Option<T>> {
+    match value {
+        Some(value) => read(value).map(Some),
+        None => Some(None),
+    }
+}
+
+fn duration(reader: &mut Reader, table: &Table) -> Option<f64> {
+    let value = reader.required(table, "duration")?;
+    let duration = reader.positive(value, Quantity::Time)?;
+    if (duration * MOST_SAMPLES as f64).is_finite() {
+        return Some(duration);
+    }
+    reader.report(value.span(), format!("a duration of {duration:e} s is too long to divide into samples"));
+    None
+}
+
+fn samples(reader: &mut Reader, table: &Table) -> Option<usize> {
+    let value = table.get("samples")?;
+    let samples = reader.integer(value)?;
+    match usize::try_from(samples) {
+        Ok(samples) if (2..=MOST_SAMPLES).contains(&samples) => Some(samples),
+        _ => {
+            reader.report(value.span(), format!("must be from 2 to {MOST_SAMPLES}, found {samples}"));
+            None
+        }
+    }
+}
+
+/// Both ends of the run are samples, so the interval must divide the duration.
+fn samples_of_interval(reader: &mut Reader, table: &Table, duration: f64) -> Option<usize> {
+    let value = table.get("interval")?;
+    let interval = reader.positive(value, Quantity::Time)?;
+    let intervals = (duration / interval).round();
+    if intervals > (MOST_SAMPLES - 1) as f64 {
+        let problem = format!("gives more than {MOST_SAMPLES} samples in {duration} s, make it longer");
+        reader.report(value.span(), problem);
+        return None;
+    }
+    if intervals < 1.0 || (duration / interval - intervals).abs() > INTERVAL_TOLERANCE * intervals {
+        let near = intervals.max(1.0) + 1.0;
+        let problem =
+            format!("does not divide the duration of {duration} s, write `samples = {near}` instead");
+        reader.report(value.span(), problem);
+        return None;
+    }
+    // From 1 to MOST_SAMPLES − 1 by the tests above.
+    Some(intervals as usize + 1)
+}

@@ -6,7 +6,7 @@
 //!
 //! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
 //! (closed forms), [`mesh`] (triangle meshes and their files), [`units`] and [`scene`] (what a person
-//! writes in a scene file).
+//! writes in a scene file), [`diagnostic`] (errors that show their place in a file).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 

@@ -64,14 +64,14 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<BodySpec> {
             Some(BodySpec::Solid { solid: solid?, amount: amount? })
         }
         "moments" => {
-            let read = |value| reader.quantities(value, Quantity::MomentOfInertia);
-            let moments = table.get("moments").and_then(read);
+            let moments = reader
+                .field(table, "moments", |reader, value| reader.quantities(value, Quantity::MomentOfInertia));
             let (mass, center_of_mass) = placed_mass(reader, table)?;
             Some(BodySpec::Moments { moments: moments?, mass, center_of_mass })
         }
         _ => {
             let row = |reader: &mut Reader, row: &Value| reader.quantities(row, Quantity::MomentOfInertia);
-            let matrix = table.get("inertia").and_then(|value| reader.array(value, "rows", row));
+            let matrix = reader.field(table, "inertia", |reader, value| reader.array(value, "rows", row));
             let (mass, center_of_mass) = placed_mass(reader, table)?;
             Some(BodySpec::Inertia { matrix: matrix?, mass, center_of_mass })
         }
@@ -79,16 +79,16 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<BodySpec> {
 }
 
 fn mesh(reader: &mut Reader, table: &Table) -> Option<BodySpec> {
-    let file = table.get("mesh").and_then(|value| match reader.string(value)? {
+    let file = reader.field(table, "mesh", |reader, value| match reader.string(value)? {
         "" => {
             reader.report(value.span(), "expected the path of a mesh file, relative to the scene file");
             None
         }
         file => Some(file.to_owned()),
     });
-    let length_unit = table.get("length_unit").map_or(Some(1.0), |value| length_unit(reader, value));
+    let length_unit = reader.optional(table, "length_unit", length_unit);
     let amount = amount(reader, table);
-    Some(BodySpec::Mesh { file: file?, length_unit: length_unit?, amount: amount? })
+    Some(BodySpec::Mesh { file: file?, length_unit: length_unit?.unwrap_or(1.0), amount: amount? })
 }
 
 /// A unit by its name, or a number of metres.
@@ -107,25 +107,21 @@ fn length_unit(reader: &mut Reader, value: &Value) -> Option<f64> {
 
 fn solid(reader: &mut Reader, table: &Table) -> Option<Solid> {
     let names = SOLIDS.map(|(name, _)| name);
-    let name = reader.word(table.get("solid")?, "solid", &names)?;
+    let name = reader.field(table, "solid", |reader, value| reader.word(value, "solid", &names))?;
     let own = SOLIDS.iter().find(|(solid, _)| *solid == name).map_or(&[][..], |(_, sizes)| sizes);
     for size in SIZES.iter().filter(|size| !own.contains(size)) {
         reader.misplaced(table, size, name, own);
     }
-    let mut lengths = |name| {
-        let length = |reader: &mut Reader, value: &Value| reader.positive(value, Quantity::Length);
-        reader.required(table, name).and_then(|value| reader.array(value, "lengths", length))
-    };
+    let length = |reader: &mut Reader, value: &Value| reader.positive(value, Quantity::Length);
+    let mut lengths =
+        |name| reader.field(table, name, |reader, value| reader.array(value, "lengths", length));
     match name {
         "box" => return Some(Solid::Box { lengths: lengths("lengths")? }),
         "ellipsoid" => return Some(Solid::Ellipsoid { semi_axes: lengths("semi_axes")? }),
         _ => {}
     }
     // Every size is read before the first missing one ends it, so that all are reported.
-    let sizes: Vec<Option<f64>> = own
-        .iter()
-        .map(|size| reader.required(table, size).and_then(|value| reader.positive(value, Quantity::Length)))
-        .collect();
+    let sizes: Vec<Option<f64>> = own.iter().map(|size| reader.field(table, size, length)).collect();
     let mut sizes = sizes.into_iter();
     let mut size = || sizes.next().flatten();
     Some(match name {
@@ -141,23 +137,17 @@ fn solid(reader: &mut Reader, table: &Table) -> Option<Solid> {
 }
 
 fn amount(reader: &mut Reader, table: &Table) -> Option<Amount> {
-    let given = reader.exactly_one(table, &AMOUNTS)?;
-    let value = table.get(given)?;
-    match given {
-        "density" => reader.positive(value, Quantity::Density).map(Amount::Density),
-        _ => reader.positive(value, Quantity::Mass).map(Amount::Mass),
+    let positive = |quantity| move |reader: &mut Reader, value: &Value| reader.positive(value, quantity);
+    match reader.exactly_one(table, &AMOUNTS)? {
+        "density" => reader.field(table, "density", positive(Quantity::Density)).map(Amount::Density),
+        _ => reader.field(table, "mass", positive(Quantity::Mass)).map(Amount::Mass),
     }
 }
 
 /// The optional mass and centre of mass of a body given by its inertia.
 fn placed_mass(reader: &mut Reader, table: &Table) -> Option<(Option<f64>, Vector)> {
-    let mass = match table.get("mass") {
-        Some(value) => reader.positive(value, Quantity::Mass).map(Some),
-        None => Some(None),
-    };
-    let center = match table.get("center_of_mass") {
-        Some(value) => reader.quantities(value, Quantity::Length).map(Vector),
-        None => Some(Vector::default()),
-    };
-    Some((mass?, center?))
+    let mass = reader.optional(table, "mass", |reader, value| reader.positive(value, Quantity::Mass));
+    let center =
+        reader.optional(table, "center_of_mass", |reader, value| reader.quantities(value, Quantity::Length));
+    Some((mass?, Vector(center?.unwrap_or_default())))
 }

@@ -7,10 +7,9 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use toml::de::DeValue;
 
 /// The axes in which a spin is given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpinFrame {
     /// Turning with the body.
-    #[default]
     Body,
     /// At rest.
     Space,
@@ -32,16 +31,16 @@ const SPINS: [Form; 3] = [
 /// The attitude and the spin.
 pub fn read(reader: &mut Reader, table: &Table) -> Option<(Rotor, Bivector, SpinFrame)> {
     reader.only(table, &["attitude", "spin"]);
-    let attitude = match table.get("attitude") {
-        Some(value) => reader.table(value, "`attitude`").and_then(|table| attitude(reader, &table)),
-        None => Some(Rotor::IDENTITY),
-    };
-    let spin = reader
-        .required(table, "spin")
-        .and_then(|value| reader.table(value, "`spin`"))
-        .and_then(|table| spin(reader, &table));
+    let attitude = reader.optional(table, "attitude", |reader, value| {
+        let table = reader.table(value, "`attitude`")?;
+        attitude(reader, &table)
+    });
+    let spin = reader.field(table, "spin", |reader, value| {
+        let table = reader.table(value, "`spin`")?;
+        spin(reader, &table)
+    });
     let (spin, frame) = spin?;
-    Some((attitude?, spin, frame))
+    Some((attitude?.unwrap_or(Rotor::IDENTITY), spin, frame))
 }
 
 fn attitude(reader: &mut Reader, table: &Table) -> Option<Rotor> {
@@ -50,15 +49,14 @@ fn attitude(reader: &mut Reader, table: &Table) -> Option<Rotor> {
     let rotor = match form {
         "plane" => {
             let plane = plane(reader, value);
-            let angle = reader.required(table, "angle");
-            let angle = angle.and_then(|value| reader.quantity(value, Quantity::Angle));
+            let angle = reader.field(table, "angle", |reader, value| reader.quantity(value, Quantity::Angle));
             Rotor::from_plane_angle(plane?, angle?)
         }
         "rotor" => Rotor::from_components(reader.numbers(value)?),
         "quaternion" => {
             let components = reader.numbers::<4>(value);
-            let order = reader.required(table, "order");
-            let order = order.and_then(|value| reader.word(value, "order", &["wxyz", "xyzw"]));
+            let orders = ["wxyz", "xyzw"];
+            let order = reader.field(table, "order", |reader, value| reader.word(value, "order", &orders));
             let mut wxyz = components?;
             if order? == "xyzw" {
                 wxyz.rotate_right(1);
@@ -71,27 +69,26 @@ fn attitude(reader: &mut Reader, table: &Table) -> Option<Rotor> {
 }
 
 fn spin(reader: &mut Reader, table: &Table) -> Option<(Bivector, SpinFrame)> {
-    let frame = match table.get("frame") {
-        None => Some(SpinFrame::default()),
-        Some(value) => reader.word(value, "frame", &["body", "space"]).map(|word| match word {
-            "space" => SpinFrame::Space,
-            _ => SpinFrame::Body,
-        }),
-    };
+    let frames = ["body", "space"];
+    let frame = reader.optional(table, "frame", |reader, value| reader.word(value, "frame", &frames));
     let form = reader.form(table, &SPINS, &["frame"])?;
     let value = table.get(form)?;
     let spin = match form {
         "plane" => {
             let plane = plane(reader, value);
-            let rate = reader.required(table, "rate");
-            let rate = rate.and_then(|value| reader.quantity(value, Quantity::AngularRate));
+            let rate =
+                reader.field(table, "rate", |reader, value| reader.quantity(value, Quantity::AngularRate));
             plane? * rate?
         }
         // The axial vector's dual plane has the same components.
         "vector" => Vector(reader.quantities(value, Quantity::AngularRate)?).undual(),
         _ => Bivector(reader.quantities(value, Quantity::AngularRate)?),
     };
-    Some((spin, frame?))
+    let frame = match frame? {
+        Some("space") => SpinFrame::Space,
+        _ => SpinFrame::Body,
+    };
+    Some((spin, frame))
 }
 
 /// A plane as a unit bivector: `"e1e2"`, `"-e2∧e3"`, or three numbers (e2e3, e3e1, e1e2).

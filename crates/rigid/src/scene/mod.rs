@@ -45,7 +45,7 @@ use crate::units::Quantity;
 pub use body::BodySpec;
 pub use initial::SpinFrame;
 use polhode_ga::{Bivector, Rotor, Vector};
-use reader::{Reader, Table};
+use reader::{Reader, Table, Value};
 pub use run::{METHODS, Run};
 use std::fs::File;
 use std::io::Read;
@@ -163,17 +163,11 @@ impl Scene {
 
 fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
     reader.only(root, &["title", "body", "initial", "gravity", "run"]);
-    let title = match root.get("title") {
-        Some(value) => reader.string(value).map(|title| Some(title.to_owned())),
-        None => Some(None),
-    };
+    let title = reader.optional(root, "title", |reader, value| reader.string(value).map(str::to_owned));
     let body = section(reader, root, "body", "[body]").and_then(|table| body::read(reader, &table));
     let initial =
         section(reader, root, "initial", "[initial]").and_then(|table| initial::read(reader, &table));
-    let gravity = match root.get("gravity") {
-        Some(value) => reader.table(value, "[gravity]").and_then(|table| gravity(reader, &table)).map(Some),
-        None => Some(None),
-    };
+    let gravity = reader.optional(root, "gravity", gravity);
     let run = section(reader, root, "run", "[run]").and_then(|table| run::read(reader, &table));
     let (attitude, spin, spin_frame) = initial?;
     Some(Scene {
@@ -198,15 +192,13 @@ fn section<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'stati
     reader.table(value, title)
 }
 
-fn gravity(reader: &mut Reader, table: &Table) -> Option<Gravity> {
-    reader.only(table, &["acceleration", "pivot"]);
-    let acceleration = reader.required(table, "acceleration");
-    let acceleration = acceleration.and_then(|value| reader.quantity(value, Quantity::Acceleration));
-    let pivot = match table.get("pivot") {
-        Some(value) => reader.quantities(value, Quantity::Length).map(Vector),
-        None => Some(Vector::default()),
-    };
-    Some(Gravity { acceleration: acceleration?, pivot: pivot? })
+fn gravity(reader: &mut Reader, value: &Value) -> Option<Gravity> {
+    let table = reader.table(value, "[gravity]")?;
+    reader.only(&table, &["acceleration", "pivot"]);
+    let acceleration =
+        reader.field(&table, "acceleration", |reader, value| reader.quantity(value, Quantity::Acceleration));
+    let pivot = reader.optional(&table, "pivot", |reader, value| reader.quantities(value, Quantity::Length));
+    Some(Gravity { acceleration: acceleration?, pivot: Vector(pivot?.unwrap_or_default()) })
 }
 
 /// The bytes of a file that is small enough, or what is wrong with it.

@@ -77,13 +77,31 @@ impl Reader {
         }
     }
 
-    /// The field's value; reports a missing one at the table.
-    pub fn required<'t>(&mut self, table: &Table<'t>, name: &str) -> Option<&'t Value<'t>> {
-        let value = table.get(name);
-        if value.is_none() {
+    /// What `read` makes of the field; a missing one is reported at the table.
+    pub fn field<'t, T>(
+        &mut self,
+        table: &Table<'t>,
+        name: &str,
+        read: impl FnOnce(&mut Reader, &'t Value<'t>) -> Option<T>,
+    ) -> Option<T> {
+        let Some(value) = table.get(name) else {
             self.report(table.span.clone(), format!("missing field `{name}` in {}", table.title));
+            return None;
+        };
+        read(self, value)
+    }
+
+    /// What `read` makes of the field: `Some(None)` without it, `None` when it is wrong.
+    pub fn optional<'t, T>(
+        &mut self,
+        table: &Table<'t>,
+        name: &str,
+        read: impl FnOnce(&mut Reader, &'t Value<'t>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match table.get(name) {
+            Some(value) => read(self, value).map(Some),
+            None => Some(None),
         }
-        value
     }
 
     /// Reports every field of the table that is not among the known ones.
@@ -127,7 +145,11 @@ impl Reader {
         followers.sort_unstable();
         followers.dedup();
         self.only(table, &[&choices, &followers[..], always].concat());
+        let before = self.problems.len();
         let chosen = self.exactly_one(table, &choices)?;
+        if self.problems.len() > before {
+            return Some(chosen);
+        }
         let own: Vec<&str> =
             forms.iter().filter(|form| form.field == chosen).flat_map(Form::followers).collect();
         for follower in followers.iter().filter(|follower| !own.contains(follower)) {

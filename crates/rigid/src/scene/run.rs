@@ -1,6 +1,6 @@
 //! The table `[run]`: for how long, and how.
 
-use super::reader::{Reader, Table};
+use super::reader::{Reader, Table, Value};
 use crate::units::Quantity;
 
 /// The integrators that a scene may name; `auto` leaves the choice to the program.
@@ -39,49 +39,30 @@ impl Run {
 
 pub fn read(reader: &mut Reader, table: &Table) -> Option<Run> {
     reader.only(table, &["duration", "samples", "interval", "method", "step", "rtol", "drift_bound"]);
-    let duration = duration(reader, table);
+    let duration = reader.field(table, "duration", duration);
     let samples = match reader.at_most_one(table, &["samples", "interval"]) {
-        Some("samples") => samples(reader, table),
-        Some(_) => duration.and_then(|duration| samples_of_interval(reader, table, duration)),
+        Some("samples") => reader.field(table, "samples", samples),
+        Some(_) => reader.field(table, "interval", |reader, value| interval(reader, value, duration)),
         None => Some(DEFAULT_SAMPLES),
     };
-    let method = match table.get("method") {
-        Some(value) => reader.word(value, "method", &METHODS),
-        None => Some("auto"),
-    };
-    let step = optional(table.get("step"), |value| reader.positive(value, Quantity::Time));
-    let rtol = optional(table.get("rtol"), |value| {
-        let rtol = reader.number(value)?;
-        let inside = 0.0 < rtol && rtol < 1.0;
-        if !inside {
-            reader.report(value.span(), format!("must be between 0 and 1, such as `1e-10`, found {rtol}"));
-        }
-        inside.then_some(rtol)
-    });
-    let drift_bound = optional(table.get("drift_bound"), |value| {
+    let method = reader.optional(table, "method", |reader, value| reader.word(value, "method", &METHODS));
+    let step = reader.optional(table, "step", |reader, value| reader.positive(value, Quantity::Time));
+    let rtol = reader.optional(table, "rtol", rtol);
+    let drift_bound = reader.optional(table, "drift_bound", |reader, value| {
         let bound = reader.number(value)?;
         reader.check_positive(value, bound)
     });
     Some(Run {
         duration: duration?,
         samples: samples?,
-        method: method?.to_owned(),
+        method: method?.unwrap_or("auto").to_owned(),
         step: step?,
         rtol: rtol?,
         drift_bound: drift_bound?,
     })
 }
 
-/// `None` when the field is there and wrong, `Some(None)` when it is not there.
-fn optional<V, T>(value: Option<V>, read: impl FnOnce(V) -> Option<T>) -> Option<Option<T>> {
-    match value {
-        Some(value) => read(value).map(Some),
-        None => Some(None),
-    }
-}
-
-fn duration(reader: &mut Reader, table: &Table) -> Option<f64> {
-    let value = reader.required(table, "duration")?;
+fn duration(reader: &mut Reader, value: &Value) -> Option<f64> {
     let duration = reader.positive(value, Quantity::Time)?;
     if (duration * MOST_SAMPLES as f64).is_finite() {
         return Some(duration);
@@ -90,8 +71,16 @@ fn duration(reader: &mut Reader, table: &Table) -> Option<f64> {
     None
 }
 
-fn samples(reader: &mut Reader, table: &Table) -> Option<usize> {
-    let value = table.get("samples")?;
+fn rtol(reader: &mut Reader, value: &Value) -> Option<f64> {
+    let rtol = reader.number(value)?;
+    if 0.0 < rtol && rtol < 1.0 {
+        return Some(rtol);
+    }
+    reader.report(value.span(), format!("must be between 0 and 1, such as `1e-10`, found {rtol}"));
+    None
+}
+
+fn samples(reader: &mut Reader, value: &Value) -> Option<usize> {
     let samples = reader.integer(value)?;
     match usize::try_from(samples) {
         Ok(samples) if (2..=MOST_SAMPLES).contains(&samples) => Some(samples),
@@ -102,10 +91,10 @@ fn samples(reader: &mut Reader, table: &Table) -> Option<usize> {
     }
 }
 
-/// Both ends of the run are samples, so the interval must divide the duration.
-fn samples_of_interval(reader: &mut Reader, table: &Table, duration: f64) -> Option<usize> {
-    let value = table.get("interval")?;
+/// The number of samples. Both ends of the run are samples, so the interval must divide the duration.
+fn interval(reader: &mut Reader, value: &Value, duration: Option<f64>) -> Option<usize> {
     let interval = reader.positive(value, Quantity::Time)?;
+    let duration = duration?;
     let intervals = (duration / interval).round();
     if intervals > (MOST_SAMPLES - 1) as f64 {
         let problem = format!("gives more than {MOST_SAMPLES} samples in {duration} s, make it longer");

@@ -4,7 +4,6 @@ use super::reader::{Form, Reader, Table, Value};
 use crate::solids::{Amount, Solid};
 use crate::units::{self, Quantity};
 use polhode_ga::Vector;
-use toml::de::DeValue;
 
 /// What a scene says of its body.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,17 +90,14 @@ fn mesh(reader: &mut Reader, table: &Table) -> Option<BodySpec> {
     Some(BodySpec::Mesh { file: file?, length_unit: length_unit?.unwrap_or(1.0), amount: amount? })
 }
 
-/// A unit by its name, or a number of metres.
+/// A unit by its name, `mm`, or a length, `25.4 mm`.
 fn length_unit(reader: &mut Reader, value: &Value) -> Option<f64> {
-    let DeValue::String(name) = value.get_ref() else {
-        return reader.positive(value, Quantity::Length);
-    };
-    match units::parse_unit(name, Quantity::Length) {
-        Ok(metres) => Some(metres),
-        Err(error) => {
-            reader.report(value.span(), error.to_string());
-            None
+    match value.get_ref().as_str() {
+        Some(name) if name.starts_with(char::is_alphabetic) => {
+            let unit = units::parse_unit(name, Quantity::Length);
+            unit.map_err(|error| reader.report(value.span(), error.to_string())).ok()
         }
+        _ => reader.positive(value, Quantity::Length),
     }
 }
 

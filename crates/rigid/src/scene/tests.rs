@@ -135,6 +135,19 @@ fn every_solid_is_read() {
 }
 
 #[test]
+fn the_unit_of_a_mesh_has_a_name_or_a_size() {
+    for (unit, metres) in [("'mm'", 0.001), ("'inch'", 0.0254), ("0.5", 0.5), ("'25.4 mm'", 0.0254)] {
+        let mesh = format!("mesh = 'a.stl'\nlength_unit = {unit}\nmass = 1");
+        match scene(&LEAST.replace("moments = [3, 2, 1]", &mesh)).body {
+            BodySpec::Mesh { length_unit, .. } => assert_eq!(length_unit, metres, "{unit}"),
+            other => panic!("{other:?}"),
+        }
+    }
+    let found = errors_with("moments = [3, 2, 1]", "mesh = 'a.stl'\nlength_unit = 'kg'\nmass = 1");
+    assert_eq!(found, ["3:15: expected a length such as `5 cm`, found a mass (`kg`)"]);
+}
+
+#[test]
 fn an_inertia_may_have_a_mass_and_a_place() {
     let inertia =
         "inertia = [['3 kg m^2', 0, 0], [0, 2, 0.5], [0, 0.5, 1]]\nmass = 2\ncenter_of_mass = [0, 0, 1]";

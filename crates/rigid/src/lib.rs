@@ -10,7 +10,19 @@
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
+pub mod body;
 pub mod diagnostic;
+mod eigen;
+pub mod inertia;
+pub mod mesh;
 pub mod scene;
 pub mod solids;
+mod sum;
 pub mod units;
+
+pub use body::{Body, BodyError};
+pub use diagnostic::Diagnostic;
+pub use inertia::Inertia;
+pub use mesh::TriangleMesh;
+pub use scene::Scene;
+pub use solids::{Amount, Solid};

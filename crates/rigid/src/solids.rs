@@ -1,5 +1,10 @@
 //! Uniform solids with a closed-form inertia, in the axes in which it is diagonal.
 
+use crate::body::{Body, BodyError};
+use crate::inertia::Inertia;
+use polhode_ga::Vector;
+use std::f64::consts::PI;
+
 /// How much of a solid or a mesh there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
@@ -53,4 +58,140 @@ pub enum Solid {
         radius: f64,
         height: f64,
     },
+}
+
+impl Amount {
+    /// The mass that this amount of a volume has; `name` is the solid's, for the message.
+    pub(crate) fn mass(self, volume: Option<f64>, name: &'static str) -> Result<f64, BodyError> {
+        let mass = match self {
+            Amount::Mass(m) => m,
+            Amount::Density(d) if !(d > 0.0 && d.is_finite()) => return Err(BodyError::Density(d)),
+            Amount::Density(d) => d * volume.ok_or(BodyError::NoVolume { solid: name })?,
+        };
+        if mass > 0.0 && mass.is_finite() { Ok(mass) } else { Err(BodyError::Mass(mass)) }
+    }
+}
+
+impl Solid {
+    /// The solid as a body, its centre of mass on the axis e3.
+    pub fn body(self, amount: Amount) -> Result<Body, BodyError> {
+        self.check()?;
+        let mass = amount.mass(self.volume(), self.name())?;
+        let moments = self.gyration_squared().map(|k| mass * k);
+        Body::extended(mass, Inertia::from_principal_moments(moments)?, self.center())
+    }
+
+    /// The volume in m³; none for a rod, a disc, a thin shell, and for lengths that no solid has.
+    pub fn volume(self) -> Option<f64> {
+        self.check().ok()?;
+        match self {
+            Solid::Box { lengths: [a, b, c] } => Some(a * b * c),
+            Solid::Ellipsoid { semi_axes: [a, b, c] } => Some(4.0 / 3.0 * PI * a * b * c),
+            Solid::Sphere { radius: r } => Some(4.0 / 3.0 * PI * r * r * r),
+            Solid::HollowSphere { outer_radius: r, inner_radius: s } => {
+                // r³ − s³, with the small difference taken first.
+                (r > s).then(|| 4.0 / 3.0 * PI * (r - s) * (r * r + r * s + s * s))
+            }
+            Solid::Cylinder { radius: r, height: h } => Some(PI * r * r * h),
+            Solid::Cone { radius: r, height: h } => Some(PI / 3.0 * r * r * h),
+            Solid::Rod { .. } | Solid::Disc { .. } => None,
+            // Pappus: the area of the tube's section times the way of its centre.
+            Solid::Torus { major_radius: a, minor_radius: r } => Some(2.0 * PI * PI * a * r * r),
+            Solid::Capsule { radius: r, height: h } => Some(PI * r * r * (h + 4.0 / 3.0 * r)),
+        }
+    }
+
+    /// The squared radii of gyration `i_k / m` about the centre of mass.
+    fn gyration_squared(self) -> [f64; 3] {
+        let about_e3 = |across: f64, along: f64| [across, across, along];
+        match self {
+            Solid::Box { lengths: [a, b, c] } => {
+                [(b * b + c * c) / 12.0, (c * c + a * a) / 12.0, (a * a + b * b) / 12.0]
+            }
+            Solid::Ellipsoid { semi_axes: [a, b, c] } => {
+                [(b * b + c * c) / 5.0, (c * c + a * a) / 5.0, (a * a + b * b) / 5.0]
+            }
+            Solid::Sphere { radius: r } => [0.4 * r * r; 3],
+            Solid::HollowSphere { outer_radius: r, inner_radius: s } => {
+                // ⅖ (r⁵ − s⁵)/(r³ − s³) with r − s divided out; q = s/r.
+                let q = s / r;
+                let (fifth, third) = (1.0 + q * (1.0 + q * (1.0 + q * (1.0 + q))), 1.0 + q * (1.0 + q));
+                [0.4 * r * r * (fifth / third); 3]
+            }
+            Solid::Cylinder { radius: r, height: h } => about_e3((3.0 * r * r + h * h) / 12.0, 0.5 * r * r),
+            Solid::Cone { radius: r, height: h } => about_e3(0.15 * r * r + 0.0375 * h * h, 0.3 * r * r),
+            Solid::Rod { length } => about_e3(length * length / 12.0, 0.0),
+            Solid::Disc { radius: r } => about_e3(0.25 * r * r, 0.5 * r * r),
+            Solid::Torus { major_radius: a, minor_radius: r } => {
+                about_e3(0.5 * a * a + 0.625 * r * r, a * a + 0.75 * r * r)
+            }
+            Solid::Capsule { radius: r, height: h } => {
+                // Shares of the two hemispheres and of the cylinder between them. A hemisphere's centre
+                // of mass is 3r/8 beyond its base, which lies h/2 from the middle.
+                let ends = 4.0 * r / (4.0 * r + 3.0 * h);
+                let barrel = 3.0 * h / (4.0 * r + 3.0 * h);
+                about_e3(
+                    barrel * (3.0 * r * r + h * h) / 12.0
+                        + ends * (0.4 * r * r + 0.25 * h * h + 0.375 * r * h),
+                    barrel * 0.5 * r * r + ends * 0.4 * r * r,
+                )
+            }
+        }
+    }
+
+    /// The centre of mass: the origin, but for the cone a quarter of the way to its apex.
+    fn center(self) -> Vector {
+        match self {
+            Solid::Cone { height, .. } => Vector([0.0, 0.0, 0.25 * height]),
+            _ => Vector::default(),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Solid::Box { .. } => "box",
+            Solid::Ellipsoid { .. } => "ellipsoid",
+            Solid::Sphere { .. } => "sphere",
+            Solid::HollowSphere { .. } => "hollow sphere with equal radii",
+            Solid::Cylinder { .. } => "cylinder",
+            Solid::Cone { .. } => "cone",
+            Solid::Rod { .. } => "rod",
+            Solid::Disc { .. } => "disc",
+            Solid::Torus { .. } => "torus",
+            Solid::Capsule { .. } => "capsule",
+        }
+    }
+
+    /// Every length positive and finite; a torus that does not run through itself; a cavity that fits.
+    fn check(self) -> Result<(), BodyError> {
+        let positive = |lengths: &[(&'static str, f64)]| match lengths
+            .iter()
+            .find(|(_, x)| !(*x > 0.0 && x.is_finite()))
+        {
+            Some(&(name, value)) => Err(BodyError::Length { name, value }),
+            None => Ok(()),
+        };
+        match self {
+            Solid::Box { lengths: [a, b, c] } => {
+                positive(&[("lengths[0]", a), ("lengths[1]", b), ("lengths[2]", c)])
+            }
+            Solid::Ellipsoid { semi_axes: [a, b, c] } => {
+                positive(&[("semi_axes[0]", a), ("semi_axes[1]", b), ("semi_axes[2]", c)])
+            }
+            Solid::Sphere { radius } | Solid::Disc { radius } => positive(&[("radius", radius)]),
+            Solid::HollowSphere { outer_radius: outer, inner_radius: inner } => {
+                positive(&[("outer_radius", outer)])?;
+                let fits = (0.0..=outer).contains(&inner);
+                if fits { Ok(()) } else { Err(BodyError::InnerRadius { inner, outer }) }
+            }
+            Solid::Cylinder { radius, height }
+            | Solid::Cone { radius, height }
+            | Solid::Capsule { radius, height } => positive(&[("radius", radius), ("height", height)]),
+            Solid::Rod { length } => positive(&[("length", length)]),
+            Solid::Torus { major_radius: major, minor_radius: minor } => {
+                positive(&[("major_radius", major), ("minor_radius", minor)])?;
+                if minor <= major { Ok(()) } else { Err(BodyError::SpindleTorus { major, minor }) }
+            }
+        }
+    }
 }

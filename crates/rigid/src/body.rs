@@ -1,0 +1,303 @@
+//! Bodies: how much, where, and how it turns.
+//!
+//! All that the motion of a rigid body needs of its shape is the mass, the centre of mass and the inertia
+//! map about it (handout eq. 4.15, 4.18). Moving the point from the centre of mass by `d` adds the
+//! inertia of the whole mass at distance `d`, the theorem of parallel axes:
+//!
+//! ```text
+//! I_P(B) = I(B) + m d∧(d·B).
+//! ```
+
+use crate::inertia::Inertia;
+use crate::sum::{Sum, SymmetricSum};
+use polhode_ga::{Rotor, Vector};
+use std::array::from_fn;
+use std::fmt;
+
+/// A rigid body: mass in kg, centre of mass in m, inertia about the centre of mass in kg m², all in body
+/// axes. [`Body::new`] checks them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Mass, positive.
+    pub mass: f64,
+    /// Where the centre of mass is in body axes.
+    pub center_of_mass: Vector,
+    /// The inertia map about the centre of mass.
+    pub inertia: Inertia,
+}
+
+impl Body {
+    /// A body of positive mass.
+    pub fn new(mass: f64, inertia: Inertia, center_of_mass: Vector) -> Result<Body, BodyError> {
+        check_mass(mass)?;
+        if let Some(k) = center_of_mass.0.iter().position(|x| !x.is_finite()) {
+            let what = format!("the centre of mass's component e{}", k + 1);
+            return Err(BodyError::NotFinite { what, value: center_of_mass.0[k] });
+        }
+        Ok(Body { mass, center_of_mass, inertia })
+    }
+
+    /// A body that has an extent: were its moments too small for floating point they would read as zero.
+    pub(crate) fn extended(mass: f64, inertia: Inertia, center_of_mass: Vector) -> Result<Body, BodyError> {
+        let largest = inertia.principal_moments().into_iter().fold(0.0, f64::max);
+        if largest < f64::MIN_POSITIVE {
+            return Err(BodyError::TooSmall { moment: largest });
+        }
+        Body::new(mass, inertia, center_of_mass)
+    }
+
+    /// The body made of point masses. Zero masses are allowed as long as some mass is left.
+    pub fn from_points(masses: &[f64], positions: &[Vector]) -> Result<Body, BodyError> {
+        check_points(masses, positions)?;
+        let Some(&first) = positions.first() else { return Err(BodyError::NoPoints) };
+        // Relative to the first point: points far from the origin then lose no digits.
+        let mut mass = Sum::default();
+        let mut moment = [Sum::default(); 3];
+        for (&m, &x) in masses.iter().zip(positions) {
+            mass.add(m);
+            moment.iter_mut().zip((x - first).0).for_each(|(sum, c)| sum.add(m * c));
+        }
+        let mass = mass.value();
+        check_mass(mass)?;
+        let center = Vector(moment.map(|sum| sum.value() / mass));
+        let mut second = SymmetricSum::default();
+        for (&m, &x) in masses.iter().zip(positions) {
+            let d = (x - first - center).0;
+            second.add(|i, j| m * d[i] * d[j]);
+        }
+        Body::new(mass, Inertia::from_second_moment(second.matrix())?, first + center)
+    }
+
+    /// The inertia map about another point, in the same axes.
+    pub fn inertia_about(&self, point: Vector) -> Inertia {
+        let shift = point_inertia(self.mass, self.center_of_mass - point);
+        Inertia::from_symmetric(sum(self.inertia.matrix(), shift))
+    }
+
+    /// The body after `x ↦ R x ~R + position`.
+    pub fn moved(&self, rotor: Rotor, position: Vector) -> Body {
+        Body {
+            mass: self.mass,
+            center_of_mass: rotor.apply(self.center_of_mass) + position,
+            inertia: self.inertia.rotated(rotor),
+        }
+    }
+
+    /// The two bodies joined rigidly. About their common centre of mass the parallel axes of both
+    /// together amount to one term: the reduced mass `m1 m2/(m1 + m2)` at their distance.
+    pub fn combine(&self, other: &Body) -> Body {
+        let mass = self.mass + other.mass;
+        let distance = other.center_of_mass - self.center_of_mass;
+        let share = other.mass / mass;
+        let reduced = point_inertia(self.mass * share, distance);
+        let matrix = sum(sum(self.inertia.matrix(), other.inertia.matrix()), reduced);
+        Body {
+            mass,
+            center_of_mass: self.center_of_mass + distance * share,
+            inertia: Inertia::from_symmetric(matrix),
+        }
+    }
+}
+
+/// The matrix of `B ↦ m d∧(d·B)`, `m (d² − d dᵀ)`.
+fn point_inertia(m: f64, Vector([x, y, z]): Vector) -> [[f64; 3]; 3] {
+    [
+        [m * (y * y + z * z), -m * x * y, -m * x * z],
+        [-m * x * y, m * (z * z + x * x), -m * y * z],
+        [-m * x * z, -m * y * z, m * (x * x + y * y)],
+    ]
+}
+
+fn sum(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    from_fn(|i| from_fn(|j| a[i][j] + b[i][j]))
+}
+
+fn check_mass(mass: f64) -> Result<(), BodyError> {
+    if mass > 0.0 && mass.is_finite() { Ok(()) } else { Err(BodyError::Mass(mass)) }
+}
+
+fn check_points(masses: &[f64], positions: &[Vector]) -> Result<(), BodyError> {
+    if masses.len() != positions.len() {
+        return Err(BodyError::PointCount { masses: masses.len(), positions: positions.len() });
+    }
+    if let Some(index) = masses.iter().position(|m| !(*m >= 0.0 && m.is_finite())) {
+        return Err(BodyError::PointMass { index, mass: masses[index] });
+    }
+    if let Some(index) = positions.iter().position(|x| !x.0.iter().all(|c| c.is_finite())) {
+        return Err(BodyError::PointPosition { index, position: positions[index] });
+    }
+    Ok(())
+}
+
+/// Why there is no such body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyError {
+    /// A mass that is zero, negative or not finite.
+    Mass(f64),
+    /// A density that is zero, negative or not finite.
+    Density(f64),
+    /// A length of a solid that is zero, negative or not finite.
+    Length {
+        /// Which length.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A hollow sphere whose inner radius is negative or exceeds the outer.
+    InnerRadius {
+        /// The inner radius.
+        inner: f64,
+        /// The outer radius.
+        outer: f64,
+    },
+    /// A torus that runs through itself.
+    SpindleTorus {
+        /// Distance of the tube's centre from the axis.
+        major: f64,
+        /// Radius of the tube.
+        minor: f64,
+    },
+    /// A density for something without volume.
+    NoVolume {
+        /// Its name.
+        solid: &'static str,
+    },
+    /// A number that is NaN or infinite.
+    NotFinite {
+        /// Which number.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A principal moment below zero.
+    NegativeMoment {
+        /// Which, from 1.
+        number: usize,
+        /// All three.
+        moments: [f64; 3],
+    },
+    /// A principal moment larger than the sum of the other two.
+    ImpossibleMoments {
+        /// Which is too large, from 1.
+        number: usize,
+        /// All three.
+        moments: [f64; 3],
+    },
+    /// An inertia matrix whose halves differ by more than rounding.
+    NotSymmetric {
+        /// Row of the entry in the upper half, from 1.
+        row: usize,
+        /// Its column, from 1.
+        column: usize,
+        /// The entry.
+        entry: f64,
+        /// The entry that should be equal.
+        mirrored: f64,
+    },
+    /// The inverse of an inertia map with a zero moment.
+    Singular {
+        /// Which moment, from 1.
+        number: usize,
+        /// The axis it belongs to.
+        axis: Vector,
+    },
+    /// An extended body whose moments vanish in floating point.
+    TooSmall {
+        /// The largest moment.
+        moment: f64,
+    },
+    /// No point at all.
+    NoPoints,
+    /// Not one mass for every position.
+    PointCount {
+        /// How many masses.
+        masses: usize,
+        /// How many positions.
+        positions: usize,
+    },
+    /// A point mass that is negative or not finite.
+    PointMass {
+        /// Which, from 0.
+        index: usize,
+        /// Its value.
+        mass: f64,
+    },
+    /// A position that is not finite.
+    PointPosition {
+        /// Which, from 0.
+        index: usize,
+        /// Its value.
+        position: Vector,
+    },
+}
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            BodyError::Mass(m) => {
+                write!(f, "a mass of {m:?} kg is impossible; give a positive, finite mass")
+            }
+            BodyError::Density(d) => {
+                write!(f, "a density of {d:?} kg/m³ is impossible; give a positive, finite density")
+            }
+            BodyError::Length { name, value } => {
+                write!(f, "{name} = {value:?} m is impossible; give a positive, finite length")
+            }
+            BodyError::InnerRadius { inner, outer } => write!(
+                f,
+                "inner_radius = {inner:?} m does not fit outer_radius = {outer:?} m; give one from 0 to the outer radius"
+            ),
+            BodyError::SpindleTorus { major, minor } => write!(
+                f,
+                "a torus with minor_radius = {minor:?} m and major_radius = {major:?} m runs through itself; the major radius must not be the smaller"
+            ),
+            BodyError::NoVolume { solid } => {
+                write!(f, "a {solid} has no volume, so a density gives it no mass; give the mass")
+            }
+            BodyError::NotFinite { what, value } => {
+                write!(f, "{what} is {value:?}; give a finite number")
+            }
+            BodyError::NegativeMoment { number, moments: [a, b, c] } => write!(
+                f,
+                "no body has the principal moments {a:?}, {b:?}, {c:?}: i{number} is negative; moments are integrals of squares, check the signs"
+            ),
+            BodyError::ImpossibleMoments { number, moments } => {
+                let [a, b, c] = moments;
+                let (j, k) = (number % 3, (number + 1) % 3);
+                let (j, k) = (j.min(k), j.max(k));
+                write!(
+                    f,
+                    "no body has the principal moments {a:?}, {b:?}, {c:?}: i{number} = {:?} exceeds i{} + i{} = {:?}; check the units and the point they refer to (the centre of mass)",
+                    moments[number - 1],
+                    j + 1,
+                    k + 1,
+                    moments[j] + moments[k]
+                )
+            }
+            BodyError::NotSymmetric { row, column, entry, mirrored } => write!(
+                f,
+                "the inertia matrix is not symmetric: row {row}, column {column} is {entry:?} but row {column}, column {row} is {mirrored:?}; make them equal"
+            ),
+            BodyError::Singular { number, axis: Vector([x, y, z]) } => write!(
+                f,
+                "the inertia has no inverse: the moment i{number} about the axis ({x:?}, {y:?}, {z:?}) is zero, as for a thin rod; give the body a thickness"
+            ),
+            BodyError::TooSmall { moment } => write!(
+                f,
+                "the largest moment of inertia comes out as {moment:?} kg m², below the range of floating point; check the units of mass and lengths"
+            ),
+            BodyError::NoPoints => write!(f, "a body needs at least one point mass; none is given"),
+            BodyError::PointCount { masses, positions } => {
+                write!(f, "{masses} masses for {positions} positions; give one mass for every position")
+            }
+            BodyError::PointMass { index, mass } => {
+                write!(f, "masses[{index}] = {mass:?} kg is impossible; give finite masses >= 0")
+            }
+            BodyError::PointPosition { index, position: Vector([x, y, z]) } => {
+                write!(f, "positions[{index}] = ({x:?}, {y:?}, {z:?}) is not finite; remove the point")
+            }
+        }
+    }
+}
+
+impl std::error::Error for BodyError {}

@@ -1,0 +1,167 @@
+//! What a mesh must be to enclose a volume.
+//!
+//! Its boundary must vanish: along every edge as many triangles run one way as the other. Two triangles
+//! at each edge, in opposite directions, is the usual case; two bodies that touch along an edge have
+//! four. Vertices count as the same where their coordinates are equal, so seams for textures are closed.
+
+use super::error::{Edge, MeshProblem};
+use super::integrals::Integrals;
+use super::{TriangleMesh, Welder};
+use polhode_ga::Vector;
+use std::array::from_fn;
+
+/// Extents in this range keep fifth powers of lengths, down to 1e-10 of the extent, in range.
+const EXTENTS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
+
+/// Finite vertices, not too many, and indices that have one.
+pub(super) fn numbers(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), MeshProblem> {
+    let count = vertices.len().max(faces.len());
+    if u32::try_from(count).is_err() {
+        return Err(MeshProblem::TooMany { count });
+    }
+    if let Some(vertex) = vertices.iter().position(|x| !x.0.iter().all(|c| c.is_finite())) {
+        return Err(MeshProblem::NotFinite { vertex, position: vertices[vertex], place: None });
+    }
+    for (triangle, face) in faces.iter().enumerate() {
+        if let Some(&index) = face.iter().find(|&&i| i as usize >= vertices.len()) {
+            return Err(MeshProblem::NoSuchVertex { triangle, index, vertices: vertices.len() });
+        }
+    }
+    Ok(())
+}
+
+/// The least and the greatest coordinates.
+fn bounds(vertices: &[Vector]) -> (Vector, Vector) {
+    let mut bounds = (Vector([f64::INFINITY; 3]), Vector([f64::NEG_INFINITY; 3]));
+    for x in vertices {
+        bounds.0 = Vector(from_fn(|i| bounds.0.0[i].min(x.0[i])));
+        bounds.1 = Vector(from_fn(|i| bounds.1.0[i].max(x.0[i])));
+    }
+    bounds
+}
+
+/// The middle of the bounding box.
+pub(super) fn middle(vertices: &[Vector]) -> Vector {
+    let (least, greatest) = bounds(vertices);
+    if vertices.is_empty() { Vector::default() } else { least * 0.5 + greatest * 0.5 }
+}
+
+/// Some triangles, of a size that can be computed with.
+pub(super) fn size(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
+    if mesh.faces.is_empty() {
+        return Err(MeshProblem::NoTriangles);
+    }
+    let (least, greatest) = bounds(&mesh.vertices);
+    let extent = (greatest - least).norm();
+    // A mesh all in one point is degenerate, which says more.
+    if extent == 0.0 || EXTENTS.contains(&extent) { Ok(()) } else { Err(MeshProblem::Extent(extent)) }
+}
+
+/// No triangle without area.
+pub(super) fn triangles(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
+    let corners = |face: &[u32; 3]| face.map(|i| mesh.vertices[i as usize]);
+    let mut flat = mesh.faces.iter().map(corners).enumerate().filter(|(_, c)| is_flat(*c));
+    match flat.next() {
+        None => Ok(()),
+        Some((triangle, corners)) => {
+            Err(MeshProblem::Degenerate { count: 1 + flat.count(), triangle, corners })
+        }
+    }
+}
+
+/// Whether the corners coincide or lie in a line: each component of the cross product of two edges is a
+/// difference of two products, each of two rounded differences, and rounds to at most 4 half-ulps of them.
+fn is_flat([a, b, c]: [Vector; 3]) -> bool {
+    let (u, v) = ((b - a).0, (c - a).0);
+    (0..3).all(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (plus, minus) = (u[j] * v[k], u[k] * v[j]);
+        (plus - minus).abs() <= 2.0 * f64::EPSILON * (plus.abs() + minus.abs())
+    })
+}
+
+/// A triangle's edge between two welded vertices; sorted, the edges between the same two come together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    low: u32,
+    high: u32,
+    triangle: u32,
+    /// Whether the triangle runs from low to high.
+    upward: bool,
+}
+
+/// How many edges have one fault, and the first.
+struct Fault<T> {
+    count: usize,
+    first: Option<(u32, T)>,
+}
+
+impl<T> Fault<T> {
+    const NONE: Fault<T> = Fault { count: 0, first: None };
+
+    fn add(&mut self, triangle: u32, found: T) {
+        self.count += 1;
+        if self.first.as_ref().is_none_or(|(earliest, _)| triangle < *earliest) {
+            self.first = Some((triangle, found));
+        }
+    }
+}
+
+/// Every edge runs as often one way as the other.
+pub(super) fn edges(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
+    let (sides, welder) = sides(mesh);
+    let (mut open, mut winding, mut tangle) = (Fault::NONE, Fault::NONE, Fault::NONE);
+    for group in sides.chunk_by(|s, t| (s.low, s.high) == (t.low, t.high)) {
+        let first = group[0];
+        let along = group.iter().filter(|s| s.upward == first.upward).count();
+        let against = group.len() - along;
+        match (group, along == against) {
+            (_, true) => {}
+            ([_], _) => open.add(first.triangle, first),
+            ([_, other], _) => winding.add(first.triangle, (first, other.triangle)),
+            _ => tangle.add(first.triangle, (first, along, against)),
+        }
+    }
+    let edge = |side: Side| {
+        let (low, high) = (welder.vertices[side.low as usize], welder.vertices[side.high as usize]);
+        let (from, to) = if side.upward { (low, high) } else { (high, low) };
+        Edge { from, to, triangle: side.triangle as usize }
+    };
+    if let Some((_, side)) = open.first {
+        return Err(MeshProblem::Open { count: open.count, edge: edge(side) });
+    }
+    if let Some((_, (side, other))) = winding.first {
+        let other = other as usize;
+        return Err(MeshProblem::Winding { count: winding.count, edge: edge(side), other });
+    }
+    if let Some((_, (side, along, against))) = tangle.first {
+        return Err(MeshProblem::NonManifold { count: tangle.count, edge: edge(side), along, against });
+    }
+    Ok(())
+}
+
+/// The sides of all triangles, sorted, and the welded vertices that they refer to.
+fn sides(mesh: &TriangleMesh) -> (Vec<Side>, Welder) {
+    let mut welder = Welder::default();
+    let mut sides = Vec::with_capacity(3 * mesh.faces.len());
+    for (triangle, face) in (0..).zip(&mesh.faces) {
+        let [a, b, c] = face.map(|i| welder.number(mesh.vertices[i as usize]));
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            sides.push(Side { low: from.min(to), high: from.max(to), triangle, upward: from < to });
+        }
+    }
+    sides.sort_unstable();
+    (sides, welder)
+}
+
+/// A volume, and on the inside.
+pub(super) fn volume(integrals: &Integrals) -> Result<(), MeshProblem> {
+    let volume = integrals.volume;
+    if volume.abs() <= integrals.rounding {
+        Err(MeshProblem::NoVolume { volume })
+    } else if volume < 0.0 {
+        Err(MeshProblem::InsideOut { volume })
+    } else {
+        Ok(())
+    }
+}

@@ -1,0 +1,149 @@
+//! STL: a list of triangles with their corners written out.
+//!
+//! Binary: an 80-byte header, the number of triangles as a little-endian u32, then 50 bytes for each:
+//! twelve f32 (normal and corners) and a 16-bit attribute. Text: `solid`, then for each triangle
+//! `facet normal … outer loop vertex … vertex … vertex … endloop endfacet`, then `endsolid`. A binary
+//! header may begin with "solid" too; but only binary files contain zero bytes. Normals are not read:
+//! the order of the corners says the same. Corners at equal coordinates become one vertex.
+
+use super::error::{MeshProblem, Place};
+use super::text::{corrupt, finite, lines, number, quoted, words};
+use super::{Parsed, Welder};
+use std::array::from_fn;
+
+const HEADER: usize = 84;
+const RECORD: usize = 50;
+
+pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
+    let start = bytes.trim_ascii_start();
+    let solid = start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    if solid && !bytes.contains(&0) { parse_text(bytes) } else { parse_binary(bytes) }
+}
+
+fn parse_binary(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
+    let end = Place::Byte(bytes.len());
+    let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER) else {
+        let what = "neither a text STL nor long enough for the 84-byte header of a binary one".into();
+        return Err(MeshProblem::Truncated { place: end, what });
+    };
+    let count = u32::from_le_bytes([a, b, c, d]);
+    let expected = HEADER as u64 + RECORD as u64 * u64::from(count);
+    let what = format!("{count} triangles need {expected} bytes, but there are {}", bytes.len());
+    if (bytes.len() as u64) < expected {
+        return Err(MeshProblem::Truncated { place: end, what });
+    }
+    if bytes.len() as u64 > expected {
+        return Err(corrupt(Place::Byte(HEADER - 4), format!("the count is wrong: {what}")));
+    }
+    let mut welder = Welder::default();
+    let mut faces = Vec::new();
+    for (record, offset) in bytes[HEADER..].chunks_exact(RECORD).zip((HEADER..).step_by(RECORD)) {
+        let mut face = [0; 3];
+        for (k, corner) in face.iter_mut().enumerate() {
+            let at = 12 + 12 * k;
+            let coordinates = from_fn(|i| {
+                let bytes = from_fn(|byte| record[at + 4 * i + byte]);
+                f64::from(f32::from_le_bytes(bytes))
+            });
+            let position = finite(coordinates, 3 * faces.len() + k, Place::Byte(offset + at))?;
+            *corner = welder.number(position);
+        }
+        faces.push(face);
+    }
+    Ok((welder.vertices, faces))
+}
+
+fn parse_text(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
+    let mut words = Words::of(bytes);
+    let mut welder = Welder::default();
+    let mut faces = Vec::new();
+    let mut in_solid = false;
+    while let Some(word) = words.next() {
+        match (word.to_ascii_lowercase().as_slice(), in_solid) {
+            (b"solid", false) | (b"endsolid", true) => {
+                // The rest of the line is a name.
+                words.skip_line();
+                in_solid = !in_solid;
+            }
+            (b"facet", true) => faces.push(facet(&mut words, faces.len(), &mut welder)?),
+            (_, true) => return Err(words.unexpected(word, "'facet' or 'endsolid'")),
+            (_, false) => return Err(words.unexpected(word, "'solid'")),
+        }
+    }
+    if in_solid { Err(words.truncated("'endsolid'")) } else { Ok((welder.vertices, faces)) }
+}
+
+/// The rest of a facet.
+fn facet(words: &mut Words, index: usize, welder: &mut Welder) -> Result<[u32; 3], MeshProblem> {
+    words.expect("normal")?;
+    for _ in 0..3 {
+        words.required("a normal")?;
+    }
+    words.expect("outer")?;
+    words.expect("loop")?;
+    let mut face = [0; 3];
+    for (k, corner) in face.iter_mut().enumerate() {
+        words.expect("vertex")?;
+        let mut position = [0.0; 3];
+        for x in &mut position {
+            let word = words.required("a coordinate")?;
+            *x = number(word, words.place())?;
+        }
+        *corner = welder.number(finite(position, 3 * index + k, words.place())?);
+    }
+    words.expect("endloop")?;
+    words.expect("endfacet")?;
+    Ok(face)
+}
+
+/// The words of a text, wherever its lines end.
+struct Words<'a> {
+    lines: Box<dyn Iterator<Item = (usize, &'a [u8])> + 'a>,
+    rest: Box<dyn Iterator<Item = &'a [u8]> + 'a>,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn of(bytes: &'a [u8]) -> Words<'a> {
+        Words { lines: Box::new(lines(bytes)), rest: Box::new(std::iter::empty()), line: 1 }
+    }
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        loop {
+            if let Some(word) = self.rest.next() {
+                return Some(word);
+            }
+            let (number, line) = self.lines.next()?;
+            self.line = number;
+            self.rest = Box::new(words(line));
+        }
+    }
+
+    fn skip_line(&mut self) {
+        self.rest = Box::new(std::iter::empty());
+    }
+
+    fn place(&self) -> Place {
+        Place::Line(self.line)
+    }
+
+    fn required(&mut self, what: &str) -> Result<&'a [u8], MeshProblem> {
+        self.next().ok_or_else(|| self.truncated(what))
+    }
+
+    fn expect(&mut self, keyword: &str) -> Result<(), MeshProblem> {
+        let word = self.required(&format!("'{keyword}'"))?;
+        if word.eq_ignore_ascii_case(keyword.as_bytes()) {
+            return Ok(());
+        }
+        Err(self.unexpected(word, &format!("'{keyword}'")))
+    }
+
+    fn unexpected(&self, word: &[u8], wanted: &str) -> MeshProblem {
+        corrupt(self.place(), format!("{} stands where {wanted} should", quoted(word)))
+    }
+
+    fn truncated(&self, wanted: &str) -> MeshProblem {
+        MeshProblem::Truncated { place: self.place(), what: format!("{wanted} should follow") }
+    }
+}

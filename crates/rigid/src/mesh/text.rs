@@ -1,0 +1,43 @@
+//! Lines, words and numbers of the text formats.
+
+use super::error::{MeshProblem, Place};
+use polhode_ga::Vector;
+
+/// The lines of a file, numbered from 1, without their ends.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
+    (1..).zip(bytes.split(|&b| b == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
+}
+
+/// The words of a line.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+/// A word as it is quoted in a message, shortened.
+pub(super) fn quoted(word: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&word[..word.len().min(160)]);
+    let short: String = text.chars().take(40).collect();
+    let dots = if short.len() < word.len() && text.chars().count() > 40 { "…" } else { "" };
+    format!("'{short}{dots}'")
+}
+
+/// A word read as a number; infinities and NaN are numbers here.
+pub(super) fn number(word: &[u8], place: Place) -> Result<f64, MeshProblem> {
+    let value = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
+    value.ok_or_else(|| corrupt(place, format!("{} is no number", quoted(word))))
+}
+
+/// The position of the file's given vertex, if it is finite.
+pub(super) fn finite(position: [f64; 3], vertex: usize, place: Place) -> Result<Vector, MeshProblem> {
+    let position = Vector(position);
+    if position.0.iter().all(|x| x.is_finite()) {
+        Ok(position)
+    } else {
+        Err(MeshProblem::NotFinite { vertex, position, place: Some(place) })
+    }
+}
+
+/// The error for something that the format does not allow.
+pub(super) fn corrupt(place: Place, what: impl Into<String>) -> MeshProblem {
+    MeshProblem::Corrupt { place, what: what.into() }
+}

@@ -117,7 +117,12 @@ fn solid(reader: &mut Reader, table: &Table) -> Option<Solid> {
         _ => {}
     }
     // Every size is read before the first missing one ends it, so that all are reported.
-    let sizes: Vec<Option<f64>> = own.iter().map(|size| reader.field(table, size, length)).collect();
+    let read = |name: &&str| match *name {
+        // A hollow sphere may be full.
+        "inner_radius" => reader.field(table, name, |reader, value| reader.quantity(value, Quantity::Length)),
+        _ => reader.field(table, name, length),
+    };
+    let sizes: Vec<Option<f64>> = own.iter().map(read).collect();
     let mut sizes = sizes.into_iter();
     let mut size = || sizes.next().flatten();
     Some(match name {

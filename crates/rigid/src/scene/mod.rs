@@ -34,6 +34,9 @@
 //! [`Scene::diagnose`].
 
 mod body;
+mod build;
+#[cfg(test)]
+mod file_tests;
 mod initial;
 mod reader;
 mod run;

@@ -425,26 +425,6 @@ fn what_turns_out_wrong_later_finds_its_place() {
     );
 }
 
-#[test]
-fn files_that_are_no_scenes_are_refused() {
-    let folder = std::env::temp_dir().join(format!("polhode-scene-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let file = folder.join("x.toml");
-    let message =
-        |path: &Path| Scene::read(path).unwrap_err()[0].to_string().replace(path.to_str().unwrap(), "P");
-
-    assert_eq!(message(&folder), "P: error: is a directory, expected a scene file");
-    assert_eq!(message(&folder.join("none")), "P: error: no such file");
-    std::fs::write(&file, b"a = 1\nb = \"\xff\"").unwrap();
-    let not_utf8 = "P:2:6: error: not UTF-8 text from here on, save the file as UTF-8\n  |\n2 | b = \"\u{fffd}\"\n  |      ^";
-    assert_eq!(message(&file), not_utf8);
-    std::fs::write(&file, vec![b'#'; 10_000_001]).unwrap();
-    assert_eq!(message(&file), "P: error: larger than 10 MB, expected a scene file");
-    std::fs::write(&file, GOOD).unwrap();
-    assert_eq!(Scene::read(&file), Scene::parse(GOOD, &file));
-    std::fs::remove_dir_all(&folder).unwrap();
-}
-
 proptest! {
     #[test]
     fn any_text_has_an_answer(text in "(\\PC|[\t\r\n=\\[\\]{}\"'.,#])*") {

@@ -6,6 +6,7 @@ mod algebra;
 mod arrays;
 mod bodies;
 mod motion;
+mod scene;
 
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
@@ -22,6 +23,9 @@ mod _native {
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
     use crate::motion::{default_rtol, describe_free, methods, simulate, symmetric_top};
+
+    #[pymodule_export]
+    use crate::scene::{SceneError, read_scene};
 
     /// The version of the package.
     #[pymodule_export]

@@ -6,23 +6,29 @@
 //!
 //! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
 //! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] and [`elliptic`] (the free top),
-//! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs).
+//! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs); [`units`] and
+//! [`scene`] (what a person writes in a scene file), [`diagnostic`] (errors that show their place in a file).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
 pub mod body;
+pub mod diagnostic;
 mod eigen;
 pub mod elliptic;
 pub mod free;
 pub mod inertia;
 pub mod mesh;
+pub mod scene;
 pub mod simulate;
 pub mod solids;
 pub mod splitting;
 mod sum;
 pub mod torque;
+pub mod units;
 
 pub use body::{Body, BodyError};
+pub use diagnostic::Diagnostic;
 pub use inertia::Inertia;
 pub use mesh::TriangleMesh;
+pub use scene::Scene;
 pub use solids::{Amount, Solid};

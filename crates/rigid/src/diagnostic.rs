@@ -1,0 +1,251 @@
+//! Errors with a place in a text file, shown the way compilers show them.
+//!
+//! ```text
+//! top.toml:12:1: error: unknown field `durration`, expected `duration`
+//!    |
+//! 12 | durration = "10 s"
+//!    | ^^^^^^^^^
+//! ```
+
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// A longer line is cut around the place.
+const LINE_SHOWN: usize = 100;
+/// How much of a cut line stands before the place.
+const BEFORE_PLACE: usize = 30;
+/// How much of a person's text a message quotes.
+const QUOTED: usize = 40;
+
+/// One thing wrong in one file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// The file.
+    pub path: PathBuf,
+    /// Line and column, from 1, the column in characters; none when the file as a whole is wrong.
+    pub position: Option<(usize, usize)>,
+    /// What is wrong, and what to do.
+    pub message: String,
+    excerpt: String,
+}
+
+impl Diagnostic {
+    /// About the bytes `span` of `text`, the content of the file at `path`.
+    pub fn at(path: &Path, text: &str, span: Range<usize>, message: impl Into<String>) -> Diagnostic {
+        let start = char_boundary(text, span.start);
+        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let line = text[line_start..line_end].trim_end_matches('\r');
+        let start = (start - line_start).min(line.len());
+        let end = char_boundary(text, span.end).saturating_sub(line_start).clamp(start, line.len());
+
+        let number = text[..line_start].matches('\n').count() + 1;
+        let before = line[..start].chars().count();
+        let marked = line[start..end].chars().count();
+        Diagnostic {
+            path: path.to_owned(),
+            position: Some((number, before + 1)),
+            message: message.into(),
+            excerpt: excerpt(line, number, before, marked),
+        }
+    }
+
+    /// About the file as a whole.
+    pub fn of_file(path: &Path, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { path: path.to_owned(), position: None, message: message.into(), excerpt: String::new() }
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some((line, column)) = self.position {
+            write!(f, ":{line}:{column}")?;
+        }
+        write!(f, ": error: {}{}", self.message, self.excerpt)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+/// The largest character boundary of `text` that is at most `index`.
+fn char_boundary(text: &str, index: usize) -> usize {
+    (0..=index.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
+}
+
+/// The line with carets under `marked` characters, at least one, that have `before` others before them.
+fn excerpt(line: &str, number: usize, before: usize, marked: usize) -> String {
+    let length = line.chars().count();
+    let first = if length > LINE_SHOWN { before.saturating_sub(BEFORE_PLACE) } else { 0 };
+    let shown = (length - first).min(LINE_SHOWN);
+
+    let mut source = String::new();
+    let (mut indent, mut carets) = (0, 0);
+    if first > 0 {
+        source.push('…');
+        indent = 1;
+    }
+    for (i, c) in line.chars().enumerate().skip(first).take(shown) {
+        let (glyph, width) = glyph(c);
+        source.extend(glyph);
+        if i < before {
+            indent += width;
+        } else if i < before + marked {
+            carets += width;
+        }
+    }
+    if first + shown < length {
+        source.push('…');
+    }
+    let gutter = " ".repeat(number.to_string().len());
+    let (indent, carets) = (" ".repeat(indent), "^".repeat(carets.max(1)));
+    format!("\n{gutter} |\n{number} | {source}\n{gutter} | {indent}{carets}")
+}
+
+/// How a character is shown, and how many columns of a terminal that takes.
+fn glyph(c: char) -> (std::iter::RepeatN<char>, usize) {
+    let (shown, count, width) = match c {
+        '\t' => (' ', 4, 4),
+        // Control characters, also those that reorder text, would move the caret.
+        _ if c.is_control() => ('\u{fffd}', 1, 1),
+        '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => ('\u{fffd}', 1, 1),
+        // Combining marks and variation selectors.
+        '\u{300}'..='\u{36f}' | '\u{20d0}'..='\u{20ff}' | '\u{fe00}'..='\u{fe0f}' => (c, 1, 0),
+        // East Asian wide characters and emoji.
+        '\u{1100}'..='\u{115f}' | '\u{2e80}'..='\u{a4cf}' | '\u{ac00}'..='\u{d7a3}' => (c, 1, 2),
+        '\u{f900}'..='\u{faff}' | '\u{fe30}'..='\u{fe6f}' | '\u{ff00}'..='\u{ff60}' => (c, 1, 2),
+        '\u{ffe0}'..='\u{ffe6}' | '\u{1f300}'..='\u{1faff}' | '\u{20000}'..='\u{3fffd}' => (c, 1, 2),
+        _ => (c, 1, 1),
+    };
+    (std::iter::repeat_n(shown, count), width)
+}
+
+/// A person's text between backticks for a message: cut when long, control characters escaped.
+pub(crate) fn quote(text: &str) -> String {
+    let cut: String = text.chars().take(QUOTED).flat_map(visible).collect();
+    let rest = if text.chars().nth(QUOTED).is_some() { "…" } else { "" };
+    format!("`{cut}{rest}`")
+}
+
+/// The character, or its escape when it is a control character.
+fn visible(c: char) -> impl Iterator<Item = char> {
+    let (plain, escaped) = if c.is_control() { (None, Some(c.escape_default())) } else { (Some(c), None) };
+    plain.into_iter().chain(escaped.into_iter().flatten())
+}
+
+/// `` `a`, `b`, `c` ``.
+pub(crate) fn list(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    quoted.join(", ")
+}
+
+/// `` `a` `` alone, otherwise `` one of `a`, `b`, `c` ``.
+pub(crate) fn alternatives(names: &[&str]) -> String {
+    let several = if names.len() > 1 { "one of " } else { "" };
+    several.to_owned() + &list(names)
+}
+
+/// The name that `word` probably stands for: equal but for case, or within one edit per three letters.
+pub(crate) fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    let letters = word.chars().count();
+    if letters > QUOTED {
+        return None;
+    }
+    let lower = word.to_lowercase();
+    let distances = names.into_iter().map(|name| (edits(&lower, &name.to_lowercase()), name));
+    let (distance, name) = distances.min_by_key(|&(distance, _)| distance)?;
+    (distance <= letters / 3).then_some(name)
+}
+
+/// Levenshtein's distance: the fewest insertions, deletions and replacements of one character.
+///
+/// `row[j]` is the distance from the part of `a` read so far to the first j characters of `b`.
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn shown(text: &str, span: Range<usize>) -> String {
+        Diagnostic::at(Path::new("f"), text, span, "m").to_string()
+    }
+
+    #[test]
+    fn the_caret_stands_under_the_span() {
+        assert_eq!(shown("ab\ncde fg\nh", 7..9), "f:2:5: error: m\n  |\n2 | cde fg\n  |     ^^");
+        let tenth = "\n".repeat(9) + "xy";
+        assert_eq!(shown(&tenth, 9..10), "f:10:1: error: m\n   |\n10 | xy\n   | ^");
+    }
+
+    #[test]
+    fn tabs_wide_and_combining_characters_keep_the_caret_in_place() {
+        assert_eq!(shown("\ta\tb", 3..4), "f:1:4: error: m\n  |\n1 |     a    b\n  |          ^");
+        assert_eq!(shown("日本x", 6..7), "f:1:3: error: m\n  |\n1 | 日本x\n  |     ^");
+        assert_eq!(shown("日本x", 0..3), "f:1:1: error: m\n  |\n1 | 日本x\n  | ^^");
+        assert_eq!(shown("e\u{301}x", 3..4), "f:1:3: error: m\n  |\n1 | e\u{301}x\n  |  ^");
+        assert_eq!(
+            shown("\u{1b}[1m\u{202e}x", 7..8),
+            "f:1:6: error: m\n  |\n1 | \u{fffd}[1m\u{fffd}x\n  |      ^"
+        );
+    }
+
+    #[test]
+    fn ends_of_lines_and_of_the_text_have_a_place() {
+        assert_eq!(shown("", 0..0), "f:1:1: error: m\n  |\n1 | \n  | ^");
+        assert_eq!(shown("ab\r\ncd", 3..4), "f:1:3: error: m\n  |\n1 | ab\n  |   ^");
+        assert_eq!(shown("ab\ncd", 1..5), "f:1:2: error: m\n  |\n1 | ab\n  |  ^");
+        assert_eq!(shown("ab\n", 99..99), "f:2:1: error: m\n  |\n2 | \n  | ^");
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place() {
+        let text = "a".repeat(500) + "XYZ" + &"b".repeat(500);
+        let (before, after) = ("a".repeat(30), "b".repeat(67));
+        let caret = " ".repeat(31);
+        assert_eq!(
+            shown(&text, 500..503),
+            format!("f:1:501: error: m\n  |\n1 | …{before}XYZ{after}…\n  | {caret}^^^")
+        );
+    }
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        assert_eq!(nearest("durration", ["samples", "duration"]), Some("duration"));
+        assert_eq!(nearest("KG", ["g", "kg"]), Some("kg"));
+        assert_eq!(nearest("ab", ["abc"]), None);
+        assert_eq!(nearest("colour", ["duration", "samples"]), None);
+        assert_eq!(nearest(&"x".repeat(1_000_000), ["duration"]), None);
+        assert_eq!(edits("kitten", "sitting"), 3);
+    }
+
+    #[test]
+    fn quoted_text_is_short_and_printable() {
+        assert_eq!(quote("a\u{1b}\n"), "`a\\u{1b}\\n`");
+        assert_eq!(quote(&"x".repeat(41)), format!("`{}…`", "x".repeat(40)));
+        assert_eq!(alternatives(&["a"]), "`a`");
+        assert_eq!(alternatives(&["a", "b", "c"]), "one of `a`, `b`, `c`");
+    }
+
+    proptest! {
+        #[test]
+        fn any_span_of_any_text_has_a_place(text in "(\\PC|[\t\r\n])*", a in 0usize..99, b in 0usize..99) {
+            let shown = shown(&text, a..b);
+            prop_assert_eq!(shown.lines().count(), 4);
+        }
+    }
+}

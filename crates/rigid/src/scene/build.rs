@@ -1,0 +1,97 @@
+//! From what a scene says of its body to the body.
+
+use super::{BodySpec, Scene};
+use crate::body::{Body, BodyError};
+use crate::diagnostic::Diagnostic;
+use crate::inertia::Inertia;
+use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
+use crate::simulate::SimulateError;
+use crate::solids::Amount;
+use crate::torque::Torque;
+use polhode_ga::{Rotor, Vector};
+use std::path::Path;
+
+impl Scene {
+    /// The body and what turns it, ready to move. Under gravity the body is shifted so that the fixed
+    /// point is the origin of its axes; then `c = m g (centre of mass)`.
+    pub fn build(&self) -> Result<(Body, Vec<Torque>), Vec<Diagnostic>> {
+        let body = self.build_body()?;
+        let (body, torques) = match self.gravity {
+            None => (body, Vec::new()),
+            Some(gravity) => {
+                let body = body.moved(Rotor::IDENTITY, -gravity.pivot);
+                let torque = Torque::Heavy(body.center_of_mass * (body.mass * gravity.acceleration));
+                (body, vec![torque])
+            }
+        };
+        let held = self.gravity.is_some();
+        let inertia = if held { body.inertia_about(Vector::default()) } else { body.inertia };
+        let moments = inertia.principal_moments();
+        if moments.iter().any(|i| *i <= 0.0) {
+            let message = SimulateError::SingularInertia { moments }.to_string();
+            return Err(vec![self.diagnose("body", message)]);
+        }
+        Ok((body, torques))
+    }
+
+    /// The body; what no body can have is reported at the field that says it. A mesh is read from its
+    /// file, relative to the scene's.
+    ///
+    /// A free motion is the same for every mass, so a body given by its inertia alone has 1 kg; under
+    /// gravity the mass must be said.
+    pub fn build_body(&self) -> Result<Body, Vec<Diagnostic>> {
+        let body = match &self.body {
+            BodySpec::Mesh { file, length_unit, amount } => self.mesh_body(file, *length_unit, *amount),
+            BodySpec::Solid { solid, amount } => {
+                solid.body(*amount).map_err(|error| self.body_error(&error, "body.solid", Some(*amount)))
+            }
+            BodySpec::Moments { moments, mass, center_of_mass } => {
+                let inertia = Inertia::from_principal_moments(*moments);
+                self.given_body(inertia, *mass, *center_of_mass, "body.moments")
+            }
+            BodySpec::Inertia { matrix, mass, center_of_mass } => {
+                self.given_body(Inertia::from_matrix(*matrix), *mass, *center_of_mass, "body.inertia")
+            }
+        };
+        body.map_err(|error| vec![error])
+    }
+
+    fn mesh_body(&self, file: &str, length_unit: f64, amount: Amount) -> Result<Body, Diagnostic> {
+        let path = self.path.parent().unwrap_or(Path::new("")).join(file);
+        let body = TriangleMesh::read(&path)
+            .and_then(|mesh| mesh.scaled(length_unit))
+            .and_then(|mesh| mesh.body(amount));
+        body.map_err(|error| match error {
+            MeshError { problem: MeshProblem::Body(error), .. } => {
+                self.body_error(&error, "body.mesh", Some(amount))
+            }
+            error => self.diagnose("body.mesh", error.to_string()),
+        })
+    }
+
+    fn given_body(
+        &self,
+        inertia: Result<Inertia, BodyError>,
+        mass: Option<f64>,
+        center_of_mass: Vector,
+        field: &str,
+    ) -> Result<Body, Diagnostic> {
+        if mass.is_none() && self.gravity.is_some() {
+            return Err(self.diagnose("body", "gravity acts on the mass, add the field `mass`"));
+        }
+        let body = inertia.and_then(|inertia| Body::new(mass.unwrap_or(1.0), inertia, center_of_mass));
+        body.map_err(|error| self.body_error(&error, field, None))
+    }
+
+    /// The error at the field that causes it, `field` if no other does.
+    fn body_error(&self, error: &BodyError, field: &str, amount: Option<Amount>) -> Diagnostic {
+        let cause = match (error, amount) {
+            (BodyError::Mass(_), Some(Amount::Mass(_))) => "body.mass",
+            (BodyError::Mass(_) | BodyError::NoVolume { .. }, _) => "body.density",
+            (BodyError::InnerRadius { .. }, _) => "body.inner_radius",
+            (BodyError::SpindleTorus { .. }, _) => "body.minor_radius",
+            _ => field,
+        };
+        self.diagnose(cause, error.to_string())
+    }
+}

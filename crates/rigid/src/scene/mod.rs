@@ -1,0 +1,222 @@
+//! Scene files: a body, how it starts and how long it runs, as a person writes it in TOML.
+//!
+//! ```toml
+//! title = "optional text"
+//!
+//! [body]                     # exactly one of: mesh, solid, moments, inertia
+//! solid = "box"              # box lengths; ellipsoid semi_axes; sphere radius; cylinder radius, height; …
+//! lengths = ["10 cm", "5 cm", "2 cm"]
+//! density = "7.85 g/cm^3"    # or mass
+//! # mesh = "part.stl"        # a path relative to this file; length_unit = "mm"; density or mass
+//! # moments = ["3 kg m^2", 2, 1]    # about the centre of mass; mass and center_of_mass optional
+//! # inertia = [[3, 0, 0], [0, 2, 0], [0, 0, 1]]
+//!
+//! [initial]
+//! attitude = { plane = "e1e2", angle = "30 deg" }  # or rotor = [4]; quaternion = [4], order = "wxyz";
+//!                                                  # rotation_vector = [3]; the identity if left out
+//! spin = { plane = "e2e3", rate = "5 rev/s" }      # or vector = [3]; bivector = [3]; frame = "space"
+//!
+//! [gravity]                  # optional: along −e3 of space, the body held at a fixed point
+//! acceleration = "9.81 m/s^2"
+//! pivot = ["0 m", 0, 0]      # in body coordinates; the origin if left out
+//!
+//! [run]
+//! duration = "10 s"
+//! samples = 1001             # or interval = "10 ms"
+//! method = "auto"
+//! step = "1 ms"              # these three optional
+//! rtol = 1e-10
+//! drift_bound = 1e-8
+//! ```
+//!
+//! A bare number is in SI units, a string carries its own. Everything wrong with a file is reported at
+//! once, each with its line and column; what turns out impossible later finds its place through
+//! [`Scene::diagnose`].
+
+mod body;
+mod build;
+#[cfg(test)]
+mod file_tests;
+mod initial;
+mod reader;
+mod run;
+#[cfg(test)]
+mod tests;
+
+use crate::diagnostic::Diagnostic;
+use crate::units::Quantity;
+pub use body::BodySpec;
+pub use initial::SpinFrame;
+use polhode_ga::{Bivector, Rotor, Vector};
+use reader::{Reader, Table, Value};
+pub use run::Run;
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::de::DeTable;
+
+/// A larger file is no scene.
+const LARGEST_FILE: u64 = 10_000_000;
+/// Nobody reads more errors at a time.
+const MOST_REPORTED: usize = 100;
+
+/// What a scene file says, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// What the scene shows.
+    pub title: Option<String>,
+    /// The body.
+    pub body: BodySpec,
+    /// The rotor that carries body axes to space axes at the beginning.
+    pub attitude: Rotor,
+    /// The angular velocity at the beginning, in rad/s, in the axes of `spin_frame`.
+    pub spin: Bivector,
+    /// The axes of `spin`.
+    pub spin_frame: SpinFrame,
+    /// Without it the body is free.
+    pub gravity: Option<Gravity>,
+    /// For how long, and how.
+    pub run: Run,
+    /// The file, from which paths in it are relative.
+    pub path: PathBuf,
+    /// The content of the file.
+    pub text: String,
+}
+
+/// Uniform gravity along −e3 of space on a body held at a fixed point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gravity {
+    /// In m/s².
+    pub acceleration: f64,
+    /// The fixed point in body coordinates, in metres.
+    pub pivot: Vector,
+}
+
+impl Scene {
+    /// Reads the file; on failure everything that is wrong with it, in the order of the file.
+    pub fn read(path: &Path) -> Result<Scene, Vec<Diagnostic>> {
+        let bytes = read_file(path).map_err(|problem| vec![Diagnostic::of_file(path, problem)])?;
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Scene::parse(text, path),
+            Err(error) => {
+                // Up to the error the lossy text is the text.
+                let (text, start) = (String::from_utf8_lossy(&bytes), error.valid_up_to());
+                let message = "not UTF-8 text from here on, save the file as UTF-8";
+                Err(vec![Diagnostic::at(path, &text, start..start, message)])
+            }
+        }
+    }
+
+    /// Reads the text of the file at `path`, which need not exist.
+    pub fn parse(text: &str, path: &Path) -> Result<Scene, Vec<Diagnostic>> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let diagnose = |span: Range<usize>, message: &str| Diagnostic::at(path, text, span, message);
+        if text.trim().is_empty() {
+            let message = "the file is empty, a scene needs the tables [body], [initial] and [run]";
+            return Err(vec![Diagnostic::of_file(path, message)]);
+        }
+        let root = DeTable::parse(text).map_err(|error| {
+            let span = error.span().unwrap_or(0..0);
+            vec![diagnose(span, error.message())]
+        })?;
+        // What is missing from the file as a whole is missing at its end.
+        let end = text.trim_end().len();
+        let root = Table { title: "the file", span: end..end, fields: root.get_ref() };
+        let mut reader = Reader::default();
+        let scene = read_scene(&mut reader, &root, path, text);
+        let mut problems = reader.problems;
+        match scene {
+            Some(scene) if problems.is_empty() => Ok(scene),
+            _ => {
+                problems.sort_by_key(|(span, _)| span.start);
+                let reported = problems.iter().take(MOST_REPORTED);
+                let mut all: Vec<_> = reported.map(|(span, text)| diagnose(span.clone(), text)).collect();
+                if let Some(rest @ 1..) = problems.len().checked_sub(MOST_REPORTED) {
+                    all.push(Diagnostic::of_file(path, format!("and {rest} more")));
+                }
+                Err(all)
+            }
+        }
+    }
+
+    /// An error about the field of this dotted name, `initial.spin.rate`, or about the innermost table
+    /// on the way to it that the file has.
+    pub fn diagnose(&self, field: &str, message: impl Into<String>) -> Diagnostic {
+        let mut span = 0..0;
+        if let Ok(root) = DeTable::parse(&self.text) {
+            let mut table = Some(root.get_ref());
+            for name in field.split('.') {
+                let Some(value) = table.and_then(|table| table.get(name)) else { break };
+                span = value.span();
+                table = value.get_ref().as_table();
+            }
+        }
+        Diagnostic::at(&self.path, &self.text, span, message)
+    }
+
+    /// The angular velocity at the beginning in body axes: `Ω_B = ~R Ω_S R`.
+    pub fn omega_body(&self) -> Bivector {
+        match self.spin_frame {
+            SpinFrame::Body => self.spin,
+            SpinFrame::Space => self.attitude.reverse().apply_bivector(self.spin),
+        }
+    }
+}
+
+fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
+    reader.only(root, &["title", "body", "initial", "gravity", "run"]);
+    let title = reader.optional(root, "title", |reader, value| reader.string(value).map(str::to_owned));
+    let body = section(reader, root, "body", "[body]").and_then(|table| body::read(reader, &table));
+    let initial =
+        section(reader, root, "initial", "[initial]").and_then(|table| initial::read(reader, &table));
+    let gravity = reader.optional(root, "gravity", gravity);
+    let run = section(reader, root, "run", "[run]").and_then(|table| run::read(reader, &table));
+    let (attitude, spin, spin_frame) = initial?;
+    Some(Scene {
+        title: title?,
+        body: body?,
+        attitude,
+        spin,
+        spin_frame,
+        gravity: gravity?,
+        run: run?,
+        path: path.to_owned(),
+        text: text.to_owned(),
+    })
+}
+
+/// A table that every scene has.
+fn section<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'static str) -> Option<Table<'t>> {
+    let Some(value) = root.get(name) else {
+        reader.report(root.span.clone(), format!("missing table {title}"));
+        return None;
+    };
+    reader.table(value, title)
+}
+
+fn gravity(reader: &mut Reader, value: &Value) -> Option<Gravity> {
+    let table = reader.table(value, "[gravity]")?;
+    reader.only(&table, &["acceleration", "pivot"]);
+    let acceleration =
+        reader.field(&table, "acceleration", |reader, value| reader.quantity(value, Quantity::Acceleration));
+    let pivot = reader.optional(&table, "pivot", |reader, value| reader.quantities(value, Quantity::Length));
+    Some(Gravity { acceleration: acceleration?, pivot: Vector(pivot?.unwrap_or_default()) })
+}
+
+/// The bytes of a file that is small enough, or what is wrong with it.
+fn read_file(path: &Path) -> Result<Vec<u8>, String> {
+    let cannot = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
+        _ => format!("cannot be read: {error}"),
+    };
+    if path.is_dir() {
+        return Err("is a directory, expected a scene file".to_owned());
+    }
+    let mut bytes = Vec::new();
+    File::open(path).and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)).map_err(cannot)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(format!("larger than {} MB, expected a scene file", LARGEST_FILE / 1_000_000));
+    }
+    Ok(bytes)
+}

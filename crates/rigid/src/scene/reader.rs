@@ -1,0 +1,305 @@
+//! Walks a TOML tree and collects everything that is wrong with it.
+
+use crate::diagnostic::{alternatives, list, nearest, quote};
+use crate::units::{self, Quantity};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Whole numbers beyond 2⁵³ are not all floating-point numbers.
+const LARGEST_INTEGER: i128 = 1 << 53;
+
+/// A value in the file.
+pub type Value<'t> = Spanned<DeValue<'t>>;
+
+/// A table in the file: `title` is what a message calls it.
+#[derive(Clone)]
+pub struct Table<'t> {
+    pub title: &'static str,
+    pub span: Range<usize>,
+    pub fields: &'t DeTable<'t>,
+}
+
+impl<'t> Table<'t> {
+    pub fn get(&self, name: &str) -> Option<&'t Value<'t>> {
+        self.fields.get(name)
+    }
+
+    /// Where the field's name stands.
+    fn name_span(&self, name: &str) -> Option<Range<usize>> {
+        self.fields.get_key_value(name).map(|(key, _)| key.span())
+    }
+}
+
+/// One of several ways to say something: the field that chooses it, and the fields that go with it.
+pub struct Form {
+    pub field: &'static str,
+    pub with: &'static [&'static [&'static str]],
+}
+
+impl Form {
+    fn followers(&self) -> impl Iterator<Item = &'static str> {
+        self.with.iter().flat_map(|group| group.iter().copied())
+    }
+}
+
+/// What is wrong so far, with the bytes of the file that show it.
+#[derive(Default)]
+pub struct Reader {
+    pub problems: Vec<(Range<usize>, String)>,
+}
+
+impl Reader {
+    pub fn report(&mut self, span: Range<usize>, message: impl Into<String>) {
+        self.problems.push((span, message.into()));
+    }
+
+    fn wrong_type(&mut self, value: &Value, expected: &str) {
+        let found = match value.get_ref() {
+            DeValue::String(_) => "a string",
+            DeValue::Integer(_) => "an integer",
+            DeValue::Float(_) => "a float",
+            DeValue::Boolean(_) => "a boolean",
+            DeValue::Datetime(_) => "a date or time",
+            DeValue::Array(_) => "an array",
+            DeValue::Table(_) => "a table",
+        };
+        self.report(value.span(), format!("expected {expected}, found {found}"));
+    }
+
+    pub fn table<'t>(&mut self, value: &'t Value<'t>, title: &'static str) -> Option<Table<'t>> {
+        match value.get_ref() {
+            DeValue::Table(fields) => Some(Table { title, span: value.span(), fields }),
+            _ => {
+                self.wrong_type(value, &format!("the table {title}"));
+                None
+            }
+        }
+    }
+
+    /// What `read` makes of the field; a missing one is reported at the table.
+    pub fn field<'t, T>(
+        &mut self,
+        table: &Table<'t>,
+        name: &str,
+        read: impl FnOnce(&mut Reader, &'t Value<'t>) -> Option<T>,
+    ) -> Option<T> {
+        let Some(value) = table.get(name) else {
+            self.report(table.span.clone(), format!("missing field `{name}` in {}", table.title));
+            return None;
+        };
+        read(self, value)
+    }
+
+    /// What `read` makes of the field: `Some(None)` without it, `None` when it is wrong.
+    pub fn optional<'t, T>(
+        &mut self,
+        table: &Table<'t>,
+        name: &str,
+        read: impl FnOnce(&mut Reader, &'t Value<'t>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match table.get(name) {
+            Some(value) => read(self, value).map(Some),
+            None => Some(None),
+        }
+    }
+
+    /// Reports every field of the table that is not among the known ones.
+    pub fn only(&mut self, table: &Table, known: &[&str]) {
+        for (key, value) in table.fields.iter() {
+            let name: &str = key.get_ref();
+            if known.contains(&name) {
+                continue;
+            }
+            let what = if value.get_ref().is_table() { "table" } else { "field" };
+            self.report(key.span(), unknown(what, name, known));
+        }
+    }
+
+    /// The one of the fields that is there. Reports a second one where it stands.
+    pub fn at_most_one(&mut self, table: &Table, names: &[&'static str]) -> Option<&'static str> {
+        let span = |name: &'static str| table.name_span(name).map(|span| (span.start, span.end, name));
+        let mut given: Vec<_> = names.iter().filter_map(|name| span(name)).collect();
+        given.sort_unstable();
+        let (&(_, _, first), others) = given.split_first()?;
+        for &(start, end, name) in others {
+            self.report(start..end, format!("`{name}` conflicts with `{first}`, give only one of them"));
+        }
+        Some(first)
+    }
+
+    /// The one of the fields that is there. Reports none at the table, and a second one where it stands.
+    pub fn exactly_one(&mut self, table: &Table, names: &[&'static str]) -> Option<&'static str> {
+        let given = self.at_most_one(table, names);
+        if given.is_none() {
+            let names = alternatives(names);
+            self.report(table.span.clone(), format!("missing field in {}, expected {names}", table.title));
+        }
+        given
+    }
+
+    /// The field that chooses a form. Reports the fields that do not go with it, `always` excepted.
+    pub fn form(&mut self, table: &Table, forms: &[Form], always: &[&'static str]) -> Option<&'static str> {
+        let choices: Vec<&'static str> = forms.iter().map(|form| form.field).collect();
+        let mut followers: Vec<&'static str> = forms.iter().flat_map(Form::followers).collect();
+        followers.sort_unstable();
+        followers.dedup();
+        self.only(table, &[&choices, &followers[..], always].concat());
+        let before = self.problems.len();
+        let chosen = self.exactly_one(table, &choices)?;
+        if self.problems.len() > before {
+            return Some(chosen);
+        }
+        let own: Vec<&str> =
+            forms.iter().filter(|form| form.field == chosen).flat_map(Form::followers).collect();
+        for follower in followers.iter().filter(|follower| !own.contains(follower)) {
+            self.misplaced(table, follower, chosen, &own);
+        }
+        Some(chosen)
+    }
+
+    /// Reports the field, if it is there, as one that does not go with `owner`.
+    pub fn misplaced(&mut self, table: &Table, field: &str, owner: &str, own: &[&str]) {
+        let Some(span) = table.name_span(field) else { return };
+        let remedy = match own {
+            [] => "remove it".to_owned(),
+            own => format!("fields that do: {}", list(own)),
+        };
+        self.report(span, format!("`{field}` does not go with `{owner}`; {remedy}"));
+    }
+
+    pub fn string<'t>(&mut self, value: &'t Value<'t>) -> Option<&'t str> {
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(value, "a string");
+        }
+        text
+    }
+
+    /// One of a few words.
+    pub fn word(&mut self, value: &Value, what: &str, words: &[&'static str]) -> Option<&'static str> {
+        let Some(text) = value.get_ref().as_str() else {
+            self.wrong_type(value, &alternatives(words));
+            return None;
+        };
+        let found = words.iter().copied().find(|word| *word == text);
+        if found.is_none() {
+            self.report(value.span(), unknown(what, text, words));
+        }
+        found
+    }
+
+    /// A whole number.
+    pub fn integer(&mut self, value: &Value) -> Option<i128> {
+        let DeValue::Integer(integer) = value.get_ref() else {
+            self.wrong_type(value, "a whole number");
+            return None;
+        };
+        match i128::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(integer) if integer.abs() <= LARGEST_INTEGER => Some(integer),
+            _ => {
+                self.report(value.span(), "the integer is beyond 2^53; write it with a decimal point");
+                None
+            }
+        }
+    }
+
+    /// A bare number.
+    pub fn number(&mut self, value: &Value) -> Option<f64> {
+        let DeValue::Float(float) = value.get_ref() else {
+            // At most 2^53 in magnitude, so exact.
+            return match value.get_ref() {
+                DeValue::Integer(_) => self.integer(value).map(|integer| integer as f64),
+                _ => {
+                    self.wrong_type(value, "a number");
+                    None
+                }
+            };
+        };
+        match float.as_str().parse() {
+            Ok(number) if f64::is_finite(number) => Some(number),
+            _ => {
+                self.report(value.span(), format!("{} is not a finite number", quote(float.as_str())));
+                None
+            }
+        }
+    }
+
+    /// A bare number in SI units or a string with a unit.
+    pub fn quantity(&mut self, value: &Value, expected: Quantity) -> Option<f64> {
+        match value.get_ref() {
+            DeValue::Integer(_) | DeValue::Float(_) => self.number(value),
+            DeValue::String(text) => match units::parse(text, expected) {
+                Ok(number) => Some(number),
+                Err(error) => {
+                    self.report(value.span(), error.to_string());
+                    None
+                }
+            },
+            _ => {
+                self.wrong_type(value, &format!("{expected} such as `\"{}\"`", expected.example()));
+                None
+            }
+        }
+    }
+
+    /// A quantity that is more than zero.
+    pub fn positive(&mut self, value: &Value, expected: Quantity) -> Option<f64> {
+        let number = self.quantity(value, expected)?;
+        self.check_positive(value, number)
+    }
+
+    /// The number if it is more than zero.
+    pub fn check_positive(&mut self, value: &Value, number: f64) -> Option<f64> {
+        if number <= 0.0 {
+            self.report(value.span(), format!("must be more than 0, found {number}"));
+            return None;
+        }
+        Some(number)
+    }
+
+    /// An array of N things, each read by `read`.
+    pub fn array<const N: usize, T: Copy + Default>(
+        &mut self,
+        value: &Value,
+        what: &str,
+        mut read: impl FnMut(&mut Reader, &Value) -> Option<T>,
+    ) -> Option<[T; N]> {
+        let Some(items) = value.get_ref().as_array() else {
+            self.wrong_type(value, &format!("an array of {N} {what}"));
+            return None;
+        };
+        if items.len() != N {
+            self.report(value.span(), format!("expected {N} {what}, found {}", items.len()));
+            return None;
+        }
+        let mut array = [T::default(); N];
+        let mut complete = true;
+        for (slot, item) in array.iter_mut().zip(items.iter()) {
+            match read(self, item) {
+                Some(thing) => *slot = thing,
+                None => complete = false,
+            }
+        }
+        complete.then_some(array)
+    }
+
+    /// An array of N bare numbers.
+    pub fn numbers<const N: usize>(&mut self, value: &Value) -> Option<[f64; N]> {
+        self.array(value, "numbers", |reader, item| reader.number(item))
+    }
+
+    /// An array of N quantities of one kind.
+    pub fn quantities<const N: usize>(&mut self, value: &Value, expected: Quantity) -> Option<[f64; N]> {
+        self.array(value, "numbers", |reader, item| reader.quantity(item, expected))
+    }
+}
+
+/// `` unknown field `x` `` and what was probably meant.
+fn unknown(what: &str, name: &str, known: &[&str]) -> String {
+    let expected = match nearest(name, known.iter().copied()) {
+        Some(near) => format!("`{near}`"),
+        None => alternatives(known),
+    };
+    format!("unknown {what} {}, expected {expected}", quote(name))
+}

@@ -1,0 +1,116 @@
+//! The table `[run]`: for how long, and how.
+
+use super::reader::{Reader, Table, Value};
+use crate::splitting::METHODS;
+use crate::units::Quantity;
+
+const DEFAULT_SAMPLES: usize = 1001;
+const MOST_SAMPLES: usize = 10_000_000;
+/// How far a duration may be from a whole number of intervals, relatively: decimals are written rounded.
+const INTERVAL_TOLERANCE: f64 = 1e-9;
+
+/// How long to run and what to keep of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// In seconds.
+    pub duration: f64,
+    /// How many states are kept, the first and the last included.
+    pub samples: usize,
+    /// The name of one of [`METHODS`], or `auto`, which leaves the choice to the program.
+    pub method: String,
+    /// The integrator's step in seconds, if it is fixed.
+    pub step: Option<f64>,
+    /// The relative error that the integrator may make.
+    pub rtol: Option<f64>,
+    /// The largest relative drift of a conserved quantity that counts as success.
+    pub drift_bound: Option<f64>,
+}
+
+impl Run {
+    /// The times of the samples, `i · duration / (samples − 1)`.
+    pub fn times(&self) -> Vec<f64> {
+        let last = self.samples.saturating_sub(1).max(1);
+        let time = |i: usize| if i == last { self.duration } else { i as f64 * self.duration / last as f64 };
+        (0..self.samples).map(time).collect()
+    }
+}
+
+fn method_names() -> Vec<&'static str> {
+    std::iter::once("auto").chain(METHODS.iter().map(|method| method.name)).collect()
+}
+
+pub fn read(reader: &mut Reader, table: &Table) -> Option<Run> {
+    reader.only(table, &["duration", "samples", "interval", "method", "step", "rtol", "drift_bound"]);
+    let duration = reader.field(table, "duration", duration);
+    let samples = match reader.at_most_one(table, &["samples", "interval"]) {
+        Some("samples") => reader.field(table, "samples", samples),
+        Some(_) => reader.field(table, "interval", |reader, value| interval(reader, value, duration)),
+        None => Some(DEFAULT_SAMPLES),
+    };
+    let method =
+        reader.optional(table, "method", |reader, value| reader.word(value, "method", &method_names()));
+    let step = reader.optional(table, "step", |reader, value| reader.positive(value, Quantity::Time));
+    let rtol = reader.optional(table, "rtol", rtol);
+    let drift_bound = reader.optional(table, "drift_bound", |reader, value| {
+        let bound = reader.number(value)?;
+        reader.check_positive(value, bound)
+    });
+    Some(Run {
+        duration: duration?,
+        samples: samples?,
+        method: method?.unwrap_or("auto").to_owned(),
+        step: step?,
+        rtol: rtol?,
+        drift_bound: drift_bound?,
+    })
+}
+
+fn duration(reader: &mut Reader, value: &Value) -> Option<f64> {
+    let duration = reader.positive(value, Quantity::Time)?;
+    if (duration * MOST_SAMPLES as f64).is_finite() {
+        return Some(duration);
+    }
+    reader.report(value.span(), format!("a duration of {duration:e} s is too long to divide into samples"));
+    None
+}
+
+fn rtol(reader: &mut Reader, value: &Value) -> Option<f64> {
+    let rtol = reader.number(value)?;
+    if 0.0 < rtol && rtol < 1.0 {
+        return Some(rtol);
+    }
+    reader.report(value.span(), format!("must be between 0 and 1, such as `1e-10`, found {rtol}"));
+    None
+}
+
+fn samples(reader: &mut Reader, value: &Value) -> Option<usize> {
+    let samples = reader.integer(value)?;
+    match usize::try_from(samples) {
+        Ok(samples) if (2..=MOST_SAMPLES).contains(&samples) => Some(samples),
+        _ => {
+            reader.report(value.span(), format!("must be from 2 to {MOST_SAMPLES}, found {samples}"));
+            None
+        }
+    }
+}
+
+/// The number of samples. Both ends of the run are samples, so the interval must divide the duration.
+fn interval(reader: &mut Reader, value: &Value, duration: Option<f64>) -> Option<usize> {
+    let interval = reader.positive(value, Quantity::Time)?;
+    let duration = duration?;
+    let intervals = (duration / interval).round();
+    if intervals > (MOST_SAMPLES - 1) as f64 {
+        let problem = format!("gives more than {MOST_SAMPLES} samples in {duration} s, make it longer");
+        reader.report(value.span(), problem);
+        return None;
+    }
+    if intervals < 1.0 || (duration / interval - intervals).abs() > INTERVAL_TOLERANCE * intervals {
+        let near = intervals.max(1.0) + 1.0;
+        let problem =
+            format!("does not divide the duration of {duration} s, write `samples = {near}` instead");
+        reader.report(value.span(), problem);
+        return None;
+    }
+    // From 1 to MOST_SAMPLES − 1 by the tests above.
+    Some(intervals as usize + 1)
+}

@@ -1,0 +1,113 @@
+//! Products of units as they are written: `kg m^2 / s`.
+
+use super::split_digits;
+use super::table::{Dimension, Unit, find_unit};
+use crate::diagnostic::quote;
+
+/// A product of powers of units: `10^ten · numerator / denominator` SI units.
+#[derive(Clone, Copy)]
+pub struct Factor {
+    pub dimension: Dimension,
+    pub ten: i32,
+    pub numerator: f64,
+    pub denominator: f64,
+}
+
+impl Default for Factor {
+    fn default() -> Factor {
+        Factor { dimension: Dimension::default(), ten: 0, numerator: 1.0, denominator: 1.0 }
+    }
+}
+
+/// What is wrong with a product of units.
+pub enum Problem {
+    UnknownUnit(String),
+    Syntax(String),
+}
+
+impl Factor {
+    /// Reads `kg m^2 / s`: operator and unit by turns, a space standing for the times sign.
+    pub fn parse(text: &str) -> Result<Factor, Problem> {
+        let mut product = Factor::default();
+        let mut rest = text;
+        let mut first = true;
+        while first || !rest.is_empty() {
+            let operator = rest.chars().next().filter(|c| matches!(c, '*' | '·' | '⋅' | '/'));
+            if let Some(operator) = operator {
+                rest = rest[operator.len_utf8()..].trim_start();
+            }
+            let (unit, after) = split_unit(rest)?;
+            let (power, after) = split_power(after)?;
+            product.multiply(unit, if operator == Some('/') { -power } else { power });
+            rest = after.trim_start();
+            first = false;
+        }
+        Ok(product)
+    }
+
+    /// Times `unit^power`.
+    fn multiply(&mut self, unit: Unit, power: i32) {
+        for (total, d) in self.dimension.0.iter_mut().zip(unit.dimension.0) {
+            *total += power * d;
+        }
+        self.ten += power * unit.ten;
+        let (above, below) = match power < 0 {
+            false => (unit.numerator, unit.denominator),
+            true => (unit.denominator, unit.numerator),
+        };
+        self.numerator *= above.powi(power.abs());
+        self.denominator *= below.powi(power.abs());
+    }
+}
+
+/// The unit at the beginning of the text.
+fn split_unit(text: &str) -> Result<(Unit, &str), Problem> {
+    let one = text.starts_with('1').then_some(1);
+    let letters = text.find(|c: char| !(c.is_alphabetic() || c == '°')).unwrap_or(text.len());
+    let (name, rest) = text.split_at(one.unwrap_or(letters));
+    match (name, text.chars().next()) {
+        ("", None) => Err(Problem::Syntax("a unit is missing at the end".to_owned())),
+        ("", Some(',')) => Err(Problem::Syntax("unexpected `,` (a decimal point is written `.`)".to_owned())),
+        ("", Some('(' | ')')) => {
+            Err(Problem::Syntax("parentheses are not read (write `/` before each divisor)".to_owned()))
+        }
+        ("", Some(c @ '0'..='9')) => {
+            Err(Problem::Syntax(format!("unexpected `{c}` (a power is written `^{c}`)")))
+        }
+        ("", Some(c)) => Err(Problem::Syntax(format!("unexpected {}", quote(&c.to_string())))),
+        _ => find_unit(name).map(|unit| (unit, rest)).ok_or_else(|| Problem::UnknownUnit(name.to_owned())),
+    }
+}
+
+/// The power at the beginning of the text, 1 if there is none.
+fn split_power(text: &str) -> Result<(i32, &str), Problem> {
+    if let Some(written) = text.strip_prefix("**").or_else(|| text.strip_prefix('^')) {
+        let (sign, digits) = match written.strip_prefix(['-', '\u{2212}']) {
+            Some(digits) => (-1, digits),
+            None => (1, written),
+        };
+        let (digits, rest) = split_digits(digits);
+        return Ok((sign * power_of(digits)?, rest));
+    }
+    let (sign, raised) = text.strip_prefix('⁻').map_or((1, text), |raised| (-1, raised));
+    let end = raised.find(|c| superscript(c).is_none()).unwrap_or(raised.len());
+    let (raised, rest) = raised.split_at(end);
+    if raised.is_empty() && sign == 1 {
+        return Ok((1, rest));
+    }
+    let digits: String = raised.chars().filter_map(superscript).collect();
+    Ok((sign * power_of(&digits)?, rest))
+}
+
+/// A power of one digit: no quantity needs more.
+fn power_of(digits: &str) -> Result<i32, Problem> {
+    match digits.parse() {
+        Ok(power @ 1..=9) => Ok(power),
+        _ => Err(Problem::Syntax("a power is a whole number from -9 to 9, not 0,".to_owned())),
+    }
+}
+
+fn superscript(c: char) -> Option<char> {
+    let index = "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|s| s == c)?;
+    char::from_digit(u32::try_from(index).ok()?, 10)
+}

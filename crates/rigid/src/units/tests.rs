@@ -1,0 +1,215 @@
+use super::*;
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Within two roundings, one for the product with a unit's numerator, one for the quotient.
+fn close(value: f64, expected: f64) -> bool {
+    (value - expected).abs() <= 2.0 * f64::EPSILON * expected.abs()
+}
+
+#[test]
+fn powers_of_ten_are_exact() {
+    use Quantity::*;
+    let table = [
+        ("7.85 g/cm^3", Density, 7850.0),
+        ("1 g/cm^3", Density, 1000.0),
+        ("2.7 t/m^3", Density, 2700.0),
+        ("5 ms", Time, 0.005),
+        ("5e0 s", Time, 5.0),
+        ("5e+003 s", Time, 5000.0),
+        ("5E-03 s", Time, 0.005),
+        ("7 us", Time, 7e-6),
+        ("7 \u{b5}s", Time, 7e-6),
+        ("7 \u{3bc}s", Time, 7e-6),
+        ("9 ns", Time, 9e-9),
+        ("0.3 mm", Length, 0.0003),
+        ("12 km", Length, 12_000.0),
+        ("450 nm", Length, 450e-9),
+        ("3 mg", Mass, 3e-6),
+        ("3 kg", Mass, 3.0),
+        ("3 Mg", Mass, 3000.0),
+        ("9.81 m/s^2", Acceleration, 9.81),
+        ("9.81 m s^-2", Acceleration, 9.81),
+        ("9.81 m·s⁻²", Acceleration, 9.81),
+        ("9.81 m s**-2", Acceleration, 9.81),
+        ("9.81 N/kg", Acceleration, 9.81),
+        ("3 kg m^2", MomentOfInertia, 3.0),
+        ("3 kg*m^2", MomentOfInertia, 3.0),
+        ("3 kg·m²", MomentOfInertia, 3.0),
+        ("3kg m²", MomentOfInertia, 3.0),
+        ("0.02 N m s^2", MomentOfInertia, 0.02),
+        ("0.02 J s²", MomentOfInertia, 0.02),
+        ("4 g cm^2", MomentOfInertia, 4e-7),
+        ("2 mN mm s^2", MomentOfInertia, 2e-6),
+        ("5 mrad/s", AngularRate, 0.005),
+        ("-2.5E-1 rad / s", AngularRate, -0.25),
+        ("\u{2212}3 rad/s", AngularRate, -3.0),
+        ("+.5 rad/s", AngularRate, 0.5),
+        ("5. rad/s", AngularRate, 5.0),
+        (" 2 rad 1/s ", AngularRate, 2.0),
+        ("2 /s rad", AngularRate, 2.0),
+        ("0", Length, 0.0),
+        ("-0.0", Length, 0.0),
+        ("0 mm", Length, 0.0),
+        ("0e99999999999999999999 m", Length, 0.0),
+    ];
+    for (text, quantity, expected) in table {
+        assert_eq!(parse(text, quantity), Ok(expected), "{text}");
+    }
+    assert_eq!(parse("1e310 nm", Quantity::Length), Ok(1e301), "the prefix brings the number into range");
+}
+
+#[test]
+fn other_units_are_exact_where_their_definition_is() {
+    use Quantity::*;
+    let table = [
+        ("1 lb", Mass, 0.453_592_37),
+        ("1 ft", Length, 0.3048),
+        ("1 inch", Length, 0.0254),
+        ("1 au", Length, 149_597_870_700.0),
+        ("1 t", Mass, 1000.0),
+        ("2 min", Time, 120.0),
+        ("2 h", Time, 7200.0),
+        ("1 d", Time, 86_400.0),
+        ("1 day", Time, 86_400.0),
+        ("1 yr", Time, 31_557_600.0),
+        ("1 rev/s", AngularRate, TAU),
+        ("1 turn/s", AngularRate, TAU),
+        ("60 rpm", AngularRate, TAU),
+        ("1 deg/day", AngularRate, PI / 180.0 / 86_400.0),
+        ("360 arcmin/h", AngularRate, 6.0 * PI / 180.0 / 3600.0),
+        ("3600 arcsec", Angle, PI / 180.0),
+        ("12°", Angle, PI / 15.0),
+        ("1 kPa s^2 m", Mass, 1000.0),
+    ];
+    for (text, quantity, expected) in table {
+        let value = parse(text, quantity).unwrap();
+        assert!(close(value, expected), "{text} {value} {expected}");
+    }
+    for exact in &table[..12] {
+        assert_eq!(parse(exact.0, exact.1), Ok(exact.2), "{}", exact.0);
+    }
+    assert_eq!(parse("180 deg", Angle), Ok(PI));
+    assert_eq!(parse("90 deg", Angle), Ok(PI / 2.0));
+    assert_eq!(parse("-45 deg", Angle), Ok(-PI / 4.0));
+    assert_eq!(parse("360 deg", Angle), Ok(TAU));
+}
+
+#[test]
+fn a_wrong_quantity_says_what_was_expected() {
+    let table = [
+        ("5 m", Quantity::AngularRate, "expected an angular rate such as `5 rev/s`, found a length (`5 m`)"),
+        (
+            "5 Hz",
+            Quantity::AngularRate,
+            "expected an angular rate such as `5 rev/s`, found a frequency (`5 Hz`); write rev/s or rad/s",
+        ),
+        (
+            "5 1/s",
+            Quantity::AngularRate,
+            "expected an angular rate such as `5 rev/s`, found a frequency (`5 1/s`); write rev/s or rad/s",
+        ),
+        ("5 deg/s", Quantity::Angle, "expected an angle such as `30 deg`, found an angular rate (`5 deg/s`)"),
+        ("0 kg", Quantity::Length, "expected a length such as `5 cm`, found a mass (`0 kg`)"),
+        ("3 rad^7", Quantity::Time, "expected a time such as `10 s`, found another quantity (`3 rad^7`)"),
+        ("5", Quantity::Time, "expected a time such as `10 s`, found `5` without a unit"),
+        ("fast", Quantity::Time, "expected a time such as `10 s`, found `fast`"),
+        ("", Quantity::Time, "expected a time such as `10 s`, found ``"),
+        ("inf s", Quantity::Time, "expected a time such as `10 s`, found `inf s`"),
+        ("-nan", Quantity::Time, "expected a time such as `10 s`, found `-nan`"),
+    ];
+    for (text, quantity, message) in table {
+        assert_eq!(parse(text, quantity).unwrap_err().to_string(), message);
+    }
+}
+
+#[test]
+fn an_unknown_unit_is_named_with_what_it_may_stand_for() {
+    let near = |text| match parse(text, Quantity::Time) {
+        Err(UnitError::UnknownUnit { near, .. }) => near,
+        other => panic!("{text}: {other:?}"),
+    };
+    assert_eq!(near("5 sec"), Some("s"));
+    assert_eq!(near("5 seconds"), Some("s"));
+    assert_eq!(near("5 days"), Some("day"));
+    assert_eq!(near("5 S"), Some("s"));
+    assert_eq!(near("5 KG"), Some("kg"));
+    assert_eq!(near("5 Nm"), Some("N m"));
+    assert_eq!(near("5 degs"), Some("deg"));
+    assert_eq!(near("5 ft/z"), None);
+    assert_eq!(
+        parse("5 rev/sec", Quantity::AngularRate).unwrap_err().to_string(),
+        "unknown unit `sec` in `5 rev/sec`, did you mean `s`?"
+    );
+    assert_eq!(
+        parse("5 ft/z", Quantity::Length).unwrap_err().to_string(),
+        "unknown unit `z` in `5 ft/z`, expected a length such as `5 cm`"
+    );
+}
+
+#[test]
+fn units_that_are_not_written_as_units_are() {
+    let table = [
+        ("3,5 m", "unexpected `,` (a decimal point is written `.`) in `3,5 m`"),
+        ("5 m/", "a unit is missing at the end in `5 m/`"),
+        ("5 m*/s", "unexpected `/` in `5 m*/s`"),
+        ("5 m2", "unexpected `2` (a power is written `^2`) in `5 m2`"),
+        ("5 m^", "a power is a whole number from -9 to 9, not 0, in `5 m^`"),
+        ("5 m^0", "a power is a whole number from -9 to 9, not 0, in `5 m^0`"),
+        ("5 m^99999999999", "a power is a whole number from -9 to 9, not 0, in `5 m^99999999999`"),
+        ("5 m⁻", "a power is a whole number from -9 to 9, not 0, in `5 m⁻`"),
+        ("5 J/(kg m)", "parentheses are not read (write `/` before each divisor) in `5 J/(kg m)`"),
+        ("5 m 6", "unexpected `6` (a power is written `^6`) in `5 m 6`"),
+    ];
+    for (text, message) in table {
+        assert_eq!(parse(text, Quantity::Length).unwrap_err().to_string(), message);
+    }
+}
+
+#[test]
+fn values_out_of_range_are_errors() {
+    for text in ["1e309 m", "1e400 m", "1e99999999999999999999 m", "-1e308 km", "1e300 au"] {
+        assert_eq!(parse(text, Quantity::Length), Err(UnitError::Overflow { text: text.to_owned() }));
+    }
+    for text in ["1e-324 m", "-1e-99999999999999999999 m", "1e-320 nm"] {
+        assert_eq!(parse(text, Quantity::Length), Err(UnitError::Underflow { text: text.to_owned() }));
+    }
+}
+
+#[test]
+fn a_unit_alone_has_a_value() {
+    assert_eq!(parse_unit("mm", Quantity::Length), Ok(0.001));
+    assert_eq!(parse_unit(" inch ", Quantity::Length), Ok(0.0254));
+    for text in ["", "kg", "5 mm", "mmm"] {
+        assert!(parse_unit(text, Quantity::Length).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn the_examples_and_si_units_of_messages_are_right() {
+    for quantity in Quantity::ALL {
+        assert!(parse(quantity.example(), quantity).is_ok(), "{quantity}");
+        assert_eq!(parse_unit(quantity.si_unit(), quantity), Ok(1.0), "{quantity}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_formatted_value_parses_back(value in proptest::num::f64::NORMAL, i in 0usize..8) {
+        let quantity = Quantity::ALL[i];
+        prop_assert_eq!(parse(&format!("{value} {}", quantity.si_unit()), quantity), Ok(value));
+        prop_assert_eq!(parse(&format!("{value:e} {}", quantity.si_unit()), quantity), Ok(value));
+    }
+
+    #[test]
+    fn any_text_has_an_answer(text in "\\PC*") {
+        let _ = parse(&text, Quantity::Density);
+    }
+
+    #[test]
+    fn any_text_like_a_quantity_has_an_answer(text in "[-+0-9.eE]{1,5}[ */·^²⁻0-9kgms1°]{0,12}") {
+        if let Ok(value) = parse(&text, Quantity::Length) {
+            prop_assert!(value.is_finite());
+        }
+    }
+}

@@ -154,6 +154,32 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Any numbers at all give a body or a message; what is accepted is possible.
+    #[test]
+    fn any_numbers_are_answered(
+        m in prop::array::uniform3(prop::array::uniform3(prop::num::f64::ANY)),
+        masses in prop::collection::vec(prop::num::f64::POSITIVE, 3),
+    ) {
+        let possible = |i: &Inertia| i.principal_moments().iter().all(|x| *x >= 0.0 && x.is_finite());
+        let [a, b, c] = m;
+        let symmetric = [[a[0], a[1], a[2]], [a[1], b[1], b[2]], [a[2], b[2], c[2]]];
+        let inertias = [
+            Inertia::from_matrix(m),
+            Inertia::from_matrix(symmetric),
+            Inertia::from_principal_moments(a),
+            Inertia::from_points(&masses, &m.map(Vector)),
+            Solid::Box { lengths: b.map(f64::abs) }.body(Amount::Density(c[0].abs())).map(|body| body.inertia),
+        ];
+        for inertia in inertias {
+            match inertia {
+                Ok(inertia) => prop_assert!(possible(&inertia), "{inertia:?}"),
+                Err(e) => prop_assert!(!e.to_string().is_empty()),
+            }
+        }
+    }
+}
+
 #[test]
 fn possible_moments_are_accepted_in_their_order() {
     for moments in [

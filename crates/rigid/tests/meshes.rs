@@ -1,7 +1,6 @@
 //! Integrals over meshes: exact for polyhedra, covariant, unharmed by distance; and real shapes.
 
 use polhode_ga::{Rotor, Vector};
-use polhode_rigid::mesh::MeshFormat;
 use polhode_rigid::{Amount, Body, Solid, TriangleMesh};
 use proptest::prelude::*;
 use std::path::Path;
@@ -37,11 +36,10 @@ fn box_is_exact() {
         let solid = Solid::Box { lengths: [1.0, 2.0, 3.0] }.body(amount).unwrap();
         let body = mesh.body(amount).unwrap();
         assert_same(&body, &solid, 4.0);
-        assert_eq!(body.inertia.principal_moments().map(|i| (i * 1e9).round()), {
-            let mut sorted = solid.inertia.principal_moments();
-            sorted.sort_by(f64::total_cmp);
-            sorted.map(|i| (i * 1e9).round())
-        });
+        // The box's moments descend, a mesh's ascend.
+        let [c, b, a] = solid.inertia.principal_moments();
+        let close = |(x, y): (f64, f64)| (x - y).abs() <= 4.0 * EPS * c;
+        assert!(body.inertia.principal_moments().into_iter().zip([a, b, c]).all(close));
     }
 }
 
@@ -73,6 +71,16 @@ fn far_away_boxes_keep_their_digits() {
     let body = cuboid(far, high).body(Amount::Density(1.0)).unwrap();
     let near = cuboid([0.0; 3], [1.0, 2.0, 3.0]).body(Amount::Density(1.0)).unwrap();
     assert_eq!((body.mass, body.inertia), (near.mass, near.inertia));
+}
+
+/// A vertex that no triangle has is nowhere.
+#[test]
+fn stray_vertices_do_not_count() {
+    let mesh = cuboid([0.0; 3], [1.0, 2.0, 3.0]);
+    let mut vertices = mesh.vertices().to_vec();
+    vertices.push(Vector([1e200, 0.0, -1e300]));
+    let stray = TriangleMesh::new(vertices, mesh.faces().to_vec()).unwrap();
+    assert_eq!(stray.body(Amount::Mass(1.0)), mesh.body(Amount::Mass(1.0)));
 }
 
 #[test]
@@ -195,15 +203,4 @@ fn real_shapes() {
         let [a, b, c] = mesh.body(Amount::Density(1.0)).unwrap().inertia.principal_moments();
         assert_eq!([b / a, c / a].map(|x| (x * 1e3).round() / 1e3), ratios, "{file}");
     }
-}
-
-/// The same box from every format, to the same body.
-#[test]
-fn formats_agree() {
-    let obj = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 1 2 0\nv 0 0 3\nv 1 0 3\nv 0 2 3\nv 1 2 3\n\
-               f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-    let mesh = TriangleMesh::parse(obj.as_bytes(), MeshFormat::Obj, "box.obj").unwrap();
-    let expected = cuboid([0.0; 3], [1.0, 2.0, 3.0]);
-    assert_eq!((mesh.vertices(), mesh.faces()), (expected.vertices(), expected.faces()));
-    assert_eq!(mesh.body(Amount::Mass(1.0)), expected.body(Amount::Mass(1.0)));
 }

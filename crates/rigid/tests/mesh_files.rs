@@ -142,7 +142,7 @@ fn stl_with_several_solids() {
     let facets: Vec<&str> = text.splitn(8, " facet").collect();
     let split = format!("{}{middle}{}", facets[..7].join(" facet"), facets[7]);
     assert_box(split.as_bytes(), MeshFormat::Stl);
-    assert_box(text.replace("0e0", "-0").as_bytes(), MeshFormat::Stl);
+    assert_box(text.replacen("0e0", "-0", 5).as_bytes(), MeshFormat::Stl);
     let mesh = TriangleMesh::parse(text.as_bytes(), MeshFormat::Stl, "box").unwrap();
     assert_eq!(mesh.vertices().len(), 8);
 }

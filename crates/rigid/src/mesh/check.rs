@@ -30,28 +30,24 @@ pub(super) fn numbers(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), Mes
     Ok(())
 }
 
-/// The least and the greatest coordinates.
-fn bounds(vertices: &[Vector]) -> (Vector, Vector) {
-    let mut bounds = (Vector([f64::INFINITY; 3]), Vector([f64::NEG_INFINITY; 3]));
-    for x in vertices {
-        bounds.0 = Vector(from_fn(|i| bounds.0.0[i].min(x.0[i])));
-        bounds.1 = Vector(from_fn(|i| bounds.1.0[i].max(x.0[i])));
-    }
-    bounds
+/// The least and the greatest coordinates of the triangles' corners; vertices without one do not count.
+fn bounds(mesh: &TriangleMesh) -> Option<(Vector, Vector)> {
+    let mut corners = mesh.faces.iter().flatten().map(|&i| mesh.vertices[i as usize]);
+    let first = corners.next()?;
+    Some(corners.fold((first, first), |(least, greatest), x| {
+        let least = Vector(from_fn(|i| least.0[i].min(x.0[i])));
+        (least, Vector(from_fn(|i| greatest.0[i].max(x.0[i]))))
+    }))
 }
 
 /// The middle of the bounding box.
-pub(super) fn middle(vertices: &[Vector]) -> Vector {
-    let (least, greatest) = bounds(vertices);
-    if vertices.is_empty() { Vector::default() } else { least * 0.5 + greatest * 0.5 }
+pub(super) fn middle(mesh: &TriangleMesh) -> Vector {
+    bounds(mesh).map_or(Vector::default(), |(least, greatest)| least * 0.5 + greatest * 0.5)
 }
 
 /// Some triangles, of a size that can be computed with.
 pub(super) fn size(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
-    if mesh.faces.is_empty() {
-        return Err(MeshProblem::NoTriangles);
-    }
-    let (least, greatest) = bounds(&mesh.vertices);
+    let (least, greatest) = bounds(mesh).ok_or(MeshProblem::NoTriangles)?;
     let extent = (greatest - least).norm();
     // A mesh all in one point is degenerate, which says more.
     if extent == 0.0 || EXTENTS.contains(&extent) { Ok(()) } else { Err(MeshProblem::Extent(extent)) }

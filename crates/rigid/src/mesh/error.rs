@@ -253,6 +253,13 @@ impl fmt::Display for MeshProblem {
                 f,
                 "the mesh is inside-out: its winding is consistent but the volume is {volume:?} m³; reverse the faces, counterclockwise seen from outside"
             ),
+            MeshProblem::Body(
+                BodyError::ImpossibleMoments { moments: [a, b, c], .. }
+                | BodyError::NegativeMoment { moments: [a, b, c], .. },
+            ) => write!(
+                f,
+                "the moments come out as {a:?}, {b:?}, {c:?} kg m², which no body has: a part is inside-out or parts overlap; reverse the faces of that part or unite the parts"
+            ),
             MeshProblem::Body(e) => write!(f, "{e}"),
         }
     }

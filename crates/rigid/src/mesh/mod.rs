@@ -130,7 +130,7 @@ impl TriangleMesh {
     /// The enclosed volume, negative where the faces are wound inwards. Only of a closed mesh, which this
     /// does not check, is it a volume.
     pub fn volume(&self) -> f64 {
-        integrals(self, check::middle(&self.vertices)).volume
+        integrals(self, check::middle(self)).volume
     }
 
     /// The uniform body inside the mesh, or why there is none.
@@ -142,7 +142,7 @@ impl TriangleMesh {
         check::size(self)?;
         check::triangles(self)?;
         check::edges(self)?;
-        let middle = check::middle(&self.vertices);
+        let middle = check::middle(self);
         let rough = integrals(self, middle);
         check::volume(&rough)?;
         // About the centre of mass itself the second moment is not a difference of large numbers.

@@ -53,12 +53,12 @@ impl File {
 
     fn vertex(&mut self, coordinates: &[&[u8]], line: usize) -> Result<(), MeshProblem> {
         let place = Place::Line(line);
-        let &[x, y, z, ..] = coordinates else {
-            let what = format!("a vertex with {} of 3 coordinates", coordinates.len());
-            return Err(corrupt(place, what));
+        let numbers = coordinates.iter().map(|word| number(word, place));
+        let numbers = numbers.collect::<Result<Vec<f64>, MeshProblem>>()?;
+        let &[x, y, z, ..] = numbers.as_slice() else {
+            return Err(corrupt(place, format!("a vertex with {} of 3 coordinates", numbers.len())));
         };
-        let position = [number(x, place)?, number(y, place)?, number(z, place)?];
-        self.vertices.push(finite(position, self.vertices.len(), place)?);
+        self.vertices.push(finite([x, y, z], self.vertices.len(), place)?);
         Ok(())
     }
 

@@ -1,0 +1,311 @@
+//! The inertia map against its definition `I(B) = ∫ρ x∧(x·B)`, which moments a body can have, and the
+//! composition of bodies.
+
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::{Amount, Body, BodyError, Inertia, Solid};
+use proptest::prelude::*;
+use std::array::from_fn;
+
+const EPS: f64 = f64::EPSILON;
+
+fn largest(m: [[f64; 3]; 3]) -> f64 {
+    m.iter().flatten().fold(0.0, |l: f64, x| l.max(x.abs()))
+}
+
+/// Equal up to `ulps` roundings of the largest entry.
+fn assert_close(a: [[f64; 3]; 3], b: [[f64; 3]; 3], ulps: f64) {
+    let tolerance = ulps * EPS * largest(b);
+    let close = (0..3).all(|i| (0..3).all(|j| (a[i][j] - b[i][j]).abs() <= tolerance));
+    assert!(close, "{a:?}\n{b:?}");
+}
+
+fn axis(k: usize) -> Vector {
+    Vector(from_fn(|i| if i == k { 1.0 } else { 0.0 }))
+}
+
+fn vector() -> impl Strategy<Value = Vector> {
+    prop::array::uniform3(-3.0..3.0_f64).prop_map(Vector)
+}
+
+fn rotor() -> impl Strategy<Value = Rotor> {
+    vector().prop_map(|v| Rotor::from_rotation_vector(v).unwrap())
+}
+
+/// Moments of six point masses in a general position, hence of a possible body.
+fn points() -> impl Strategy<Value = (Vec<f64>, Vec<Vector>)> {
+    (prop::collection::vec(0.1..2.0_f64, 6), prop::collection::vec(vector(), 6))
+}
+
+proptest! {
+    #[test]
+    fn points_follow_the_definition((masses, positions) in points(), b in vector()) {
+        let body = Body::from_points(&masses, &positions).unwrap();
+        let b = b.undual();
+        let mut expected = Bivector::default();
+        for (&m, &x) in masses.iter().zip(&positions) {
+            let x = x - body.center_of_mass;
+            expected += x.wedge(x.dot_bivector(b)) * m;
+        }
+        let error = (body.inertia.apply(b) - expected).norm();
+        prop_assert!(error <= 32.0 * EPS * largest(body.inertia.matrix()) * b.norm());
+        prop_assert_eq!(Inertia::from_points(&masses, &positions).unwrap(), body.inertia);
+    }
+
+    #[test]
+    fn principal_frame_diagonalises((masses, positions) in points()) {
+        let inertia = Inertia::from_points(&masses, &positions).unwrap();
+        let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
+        let norm: f64 = frame.components().iter().map(|x| x * x).sum();
+        prop_assert!((norm - 1.0).abs() <= 4.0 * EPS);
+        prop_assert!(moments[0] <= moments[1] && moments[1] <= moments[2]);
+        for k in 0..3 {
+            let plane = frame.apply_bivector(axis(k).undual());
+            let error = (inertia.apply(plane) - plane * moments[k]).norm();
+            prop_assert!(error <= 64.0 * EPS * moments[2]);
+        }
+    }
+
+    /// Of the four frames that differ by half turns, the one with the largest scalar part.
+    #[test]
+    fn principal_frame_is_the_nearest((masses, positions) in points()) {
+        let frame = Inertia::from_points(&masses, &positions).unwrap().principal_frame();
+        let [s, x, y, z] = frame.components();
+        prop_assert!(s >= x.abs().max(y.abs()).max(z.abs()) * (1.0 - 16.0 * EPS));
+    }
+
+    #[test]
+    fn inverse_undoes_apply((masses, positions) in points(), b in vector()) {
+        let inertia = Inertia::from_points(&masses, &positions).unwrap();
+        let b = b.undual();
+        let [least, _, greatest] = inertia.principal_moments();
+        let error = (inertia.inverse(inertia.apply(b)).unwrap() - b).norm();
+        prop_assert!(error <= 64.0 * EPS * b.norm() * greatest / least);
+    }
+
+    /// `I'(B) = R I(~R B R) ~R`, with the moments kept and the frame turned.
+    #[test]
+    fn rotated_inertia_turns_with_the_body((masses, positions) in points(), r in rotor(), b in vector()) {
+        let inertia = Inertia::from_points(&masses, &positions).unwrap();
+        let turned = inertia.rotated(r);
+        let b = b.undual();
+        let expected = r.apply_bivector(inertia.apply(r.reverse().apply_bivector(b)));
+        let scale = largest(inertia.matrix()) * b.norm();
+        prop_assert!((turned.apply(b) - expected).norm() <= 64.0 * EPS * scale);
+        prop_assert_eq!(turned.principal_moments(), inertia.principal_moments());
+        let plane = turned.principal_frame().apply_bivector(axis(0).undual());
+        let error = (turned.apply(plane) - plane * turned.principal_moments()[0]).norm();
+        prop_assert!(error <= 64.0 * EPS * largest(inertia.matrix()));
+    }
+
+    /// Two parts of a cloud, each moved as the whole is, make the moved whole.
+    #[test]
+    fn parts_make_the_whole((masses, positions) in points(), r in rotor(), x in vector()) {
+        let body = |range: std::ops::Range<usize>| {
+            Body::from_points(&masses[range.clone()], &positions[range]).unwrap().moved(r, x)
+        };
+        let (joined, whole) = (body(0..2).combine(&body(2..6)), body(0..6));
+        prop_assert!((joined.mass - whole.mass).abs() <= 4.0 * EPS * whole.mass);
+        prop_assert!((joined.center_of_mass - whole.center_of_mass).norm() <= 64.0 * EPS);
+        // Distances of up to 10 between the parts are rounded, against moments of a few.
+        let difference: [[f64; 3]; 3] =
+            from_fn(|i| from_fn(|j| joined.inertia.matrix()[i][j] - whole.inertia.matrix()[i][j]));
+        let size = whole.mass * 27.0;
+        prop_assert!(largest(difference) <= 64.0 * EPS * size);
+    }
+
+    /// About a point P, `Σ m (x − P)∧((x − P)·B)`.
+    #[test]
+    fn parallel_axes((masses, positions) in points(), p in vector(), b in vector()) {
+        let body = Body::from_points(&masses, &positions).unwrap();
+        let b = b.undual();
+        let mut expected = Bivector::default();
+        for (&m, &x) in masses.iter().zip(&positions) {
+            expected += (x - p).wedge((x - p).dot_bivector(b)) * m;
+        }
+        let about = body.inertia_about(p);
+        prop_assert!((about.apply(b) - expected).norm() <= 64.0 * EPS * largest(about.matrix()) * b.norm());
+    }
+
+    /// A rigid set of points in a plane is a valid body however it is turned, with i1 + i2 = i3.
+    #[test]
+    fn flat_bodies_are_valid(r in rotor(), angles in prop::collection::vec(0.0..6.3_f64, 3..9)) {
+        let positions: Vec<Vector> =
+            angles.iter().zip(1..).map(|(a, k)| r.apply(Vector([a.cos(), a.sin(), 0.0]) * f64::from(k))).collect();
+        let inertia = Inertia::from_points(&vec![0.7; positions.len()], &positions).unwrap();
+        let [a, b, c] = inertia.principal_moments();
+        prop_assert!((a + b - c).abs() <= 64.0 * EPS * c);
+        prop_assert!(Inertia::from_principal_moments([a, b, c]).is_ok());
+    }
+
+    /// A rod has no moment about itself in any direction, to the last bit.
+    #[test]
+    fn rods_are_singular_in_any_direction(r in rotor(), length in 0.1..10.0_f64) {
+        let rod = Solid::Rod { length }.body(Amount::Mass(1.0)).unwrap();
+        let matrix = rod.inertia.rotated(r).matrix();
+        let inertia = Inertia::from_matrix(matrix).unwrap();
+        prop_assert_eq!(inertia.principal_moments()[0], 0.0);
+        let direction = r.apply(axis(2));
+        match inertia.inverse(Bivector([1.0, 0.0, 0.0])) {
+            Err(BodyError::Singular { number: 1, axis }) => {
+                prop_assert!(axis.wedge(direction).norm() <= 32.0 * EPS);
+            }
+            other => prop_assert!(false, "{other:?}"),
+        }
+    }
+}
+
+proptest! {
+    /// Any numbers at all give a body or a message; what is accepted is possible.
+    #[test]
+    fn any_numbers_are_answered(
+        m in prop::array::uniform3(prop::array::uniform3(prop::num::f64::ANY)),
+        masses in prop::collection::vec(prop::num::f64::POSITIVE, 3),
+    ) {
+        let possible = |i: &Inertia| i.principal_moments().iter().all(|x| *x >= 0.0 && x.is_finite());
+        let [a, b, c] = m;
+        let symmetric = [[a[0], a[1], a[2]], [a[1], b[1], b[2]], [a[2], b[2], c[2]]];
+        let inertias = [
+            Inertia::from_matrix(m),
+            Inertia::from_matrix(symmetric),
+            Inertia::from_principal_moments(a),
+            Inertia::from_points(&masses, &m.map(Vector)),
+            Solid::Box { lengths: b.map(f64::abs) }.body(Amount::Density(c[0].abs())).map(|body| body.inertia),
+        ];
+        for inertia in inertias {
+            match inertia {
+                Ok(inertia) => prop_assert!(possible(&inertia), "{inertia:?}"),
+                Err(e) => prop_assert!(!e.to_string().is_empty()),
+            }
+        }
+    }
+}
+
+#[test]
+fn possible_moments_are_accepted_in_their_order() {
+    for moments in [
+        [1.0, 2.0, 3.0],
+        [1.0, 1000.0, 1000.5],
+        [2.0, 1.0, 2.0],
+        [1.0, 1.0, 0.25],
+        [0.0, 1.0, 1.0],
+        [0.0, 0.0, 0.0],
+        // A flat plate, i1 + i2 = i3 but for rounding: 0.1 + 0.2 is not 0.3.
+        [0.1, 0.2, 0.1 + 0.2],
+        [0.3, 0.1, 0.2],
+        [0.1 * 0.1 / 12.0, 0.7 * 0.7 / 12.0, (0.1 * 0.1 + 0.7 * 0.7) / 12.0],
+    ] {
+        let inertia = Inertia::from_principal_moments(moments).unwrap();
+        assert_eq!(inertia.principal_moments(), moments);
+        assert_eq!(inertia.principal_frame(), Rotor::IDENTITY);
+        let [a, b, c] = moments;
+        assert_eq!(inertia.matrix(), [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]);
+    }
+}
+
+#[test]
+fn a_diagonal_matrix_keeps_its_axes() {
+    let diagonal = |[a, b, c]: [f64; 3]| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
+    let ascending = Inertia::from_matrix(diagonal([1.0, 2.0, 3.0])).unwrap();
+    assert_eq!(ascending, Inertia::from_principal_moments([1.0, 2.0, 3.0]).unwrap());
+    let inertia = Inertia::from_matrix(diagonal([3.0, 1.0, 2.5])).unwrap();
+    assert_eq!(inertia.principal_moments(), [1.0, 2.5, 3.0]);
+    // e1 → e2 → e3 → e1: a third of a turn about (1, 1, 1), all components one half.
+    assert_eq!(inertia.principal_frame().components(), [0.5, -0.5, -0.5, -0.5]);
+    assert_eq!(inertia.apply(Bivector([1.0, 1.0, 1.0])), Bivector([3.0, 1.0, 2.5]));
+}
+
+/// Two half boxes beside each other are the box, and so are two bodies the other way round.
+#[test]
+fn two_half_boxes_are_a_box() {
+    let half = Solid::Box { lengths: [1.0, 3.0, 0.5] }.body(Amount::Density(2.0)).unwrap();
+    let [left, right] = [-0.5, 0.5].map(|x| half.moved(Rotor::IDENTITY, Vector([x, 0.0, 0.0])));
+    let whole = Solid::Box { lengths: [2.0, 3.0, 0.5] }.body(Amount::Density(2.0)).unwrap();
+    for joined in [left.combine(&right), right.combine(&left)] {
+        assert_eq!((joined.mass, joined.center_of_mass), (whole.mass, whole.center_of_mass));
+        assert_close(joined.inertia.matrix(), whole.inertia.matrix(), 4.0);
+    }
+}
+
+/// Points far from the origin lose no digits: their distances are exact.
+#[test]
+fn far_away_points_keep_their_digits() {
+    let near = [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0], [4.0, -1.0, 0.5], [2.0, 2.0, -6.0]].map(Vector);
+    let shift = Vector([2.0_f64.powi(40), -(2.0_f64.powi(41)), 2.0_f64.powi(39)]);
+    let masses = [1.0, 2.0, 3.0, 4.0];
+    let inertia = |points: [Vector; 4]| Inertia::from_points(&masses, &points).unwrap();
+    assert_eq!(inertia(near.map(|x| x + shift)), inertia(near));
+}
+
+#[test]
+fn impossible_inertias_say_which_numbers() {
+    let moments = |m| Inertia::from_principal_moments(m).unwrap_err().to_string();
+    assert_eq!(
+        moments([1.0, 1.0, 3.0]),
+        "no body has the principal moments 1.0, 1.0, 3.0: i3 = 3.0 exceeds i1 + i2 = 2.0; \
+         check the units and the point they refer to (the centre of mass)"
+    );
+    assert!(moments([5.0, 1.0, 3.0]).contains("i1 = 5.0 exceeds i2 + i3 = 4.0"));
+    assert!(moments([1.0, 5.0, 3.0]).contains("i2 = 5.0 exceeds i1 + i3 = 4.0"));
+    assert!(moments([0.0, 1.0, 1.0 + 1e-12]).contains("i3 = 1.000000000001 exceeds"));
+    assert_eq!(
+        moments([1.0, -1.0, 1.0]),
+        "no body has the principal moments 1.0, -1.0, 1.0: i2 is negative; moments are integrals of squares, check the signs"
+    );
+    assert_eq!(moments([1.0, 1.0, f64::NAN]), "the moment i3 is NaN; give a finite number");
+    assert_eq!(moments([f64::INFINITY, 1.0, 1.0]), "the moment i1 is inf; give a finite number");
+
+    let matrix = |m| Inertia::from_matrix(m).unwrap_err().to_string();
+    assert_eq!(
+        matrix([[2.0, 0.1, 0.0], [0.1, 2.0, 0.3], [0.0, 0.2, 2.0]]),
+        "the inertia matrix is not symmetric: row 2, column 3 is 0.3 but row 3, column 2 is 0.2; make them equal"
+    );
+    assert_eq!(
+        matrix([[2.0, 0.1, 0.0], [0.1, f64::NAN, 0.3], [0.0, 0.2, 2.0]]),
+        "the inertia matrix's entry in row 2, column 2 is NaN; give a finite number"
+    );
+    // Eigenvalues −1, 1, 1.
+    assert!(matrix([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).contains("i1 is negative"));
+    assert!(matrix([[1.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]).contains("exceeds i1 + i2 = 2.0"));
+
+    let rod = Inertia::from_principal_moments([1.0, 0.0, 1.0]).unwrap();
+    assert_eq!(
+        rod.inverse(Bivector([1.0, 0.0, 0.0])).unwrap_err().to_string(),
+        "the inertia has no inverse: the moment i2 about the axis (0.0, 1.0, 0.0) is zero, as for a thin rod; give the body a thickness"
+    );
+}
+
+/// A matrix that is symmetric but for the rounding of its making is taken.
+#[test]
+fn rounding_is_no_asymmetry() {
+    let m = [[2.0, 0.1, 0.0], [0.1 + EPS, 2.0, 0.3], [0.0, 0.3 - EPS, 2.0]];
+    let matrix = Inertia::from_matrix(m).unwrap().matrix();
+    assert_eq!(matrix[0][1], matrix[1][0]);
+    assert_eq!(matrix[1][2], matrix[2][1]);
+}
+
+#[test]
+fn impossible_bodies_say_why() {
+    let inertia = Inertia::from_principal_moments([1.0; 3]).unwrap();
+    let body = |mass, x| Body::new(mass, inertia, Vector([0.0, x, 0.0])).unwrap_err().to_string();
+    assert_eq!(body(0.0, 0.0), "a mass of 0.0 kg is impossible; give a positive, finite mass");
+    assert_eq!(body(-1.0, 0.0), "a mass of -1.0 kg is impossible; give a positive, finite mass");
+    assert_eq!(body(f64::NAN, 0.0), "a mass of NaN kg is impossible; give a positive, finite mass");
+    assert_eq!(body(1.0, f64::INFINITY), "the centre of mass's component e2 is inf; give a finite number");
+
+    let points = |m: &[f64], x: &[Vector]| Body::from_points(m, x).unwrap_err().to_string();
+    let origin = Vector::default();
+    assert_eq!(points(&[], &[]), "a body needs at least one point mass; none is given");
+    assert_eq!(
+        points(&[1.0], &[origin, origin]),
+        "1 masses for 2 positions; give one mass for every position"
+    );
+    assert_eq!(
+        points(&[1.0, -2.0], &[origin, origin]),
+        "masses[1] = -2.0 kg is impossible; give finite masses >= 0"
+    );
+    assert_eq!(
+        points(&[1.0, 2.0], &[origin, Vector([0.0, f64::NAN, 1.0])]),
+        "positions[1] = (0.0, NaN, 1.0) is not finite; remove the point"
+    );
+    assert_eq!(points(&[0.0], &[origin]), "a mass of 0.0 kg is impossible; give a positive, finite mass");
+}

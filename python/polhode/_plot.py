@@ -125,20 +125,25 @@ class _View:
         return self.project(semi_axes * (np.cos(s) * first + np.sin(s) * second))
 
 
-def _space(axes: Axes) -> None:
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-
-
-def _draw_axes(axes: Axes, view: _View, semi_axes: Array, names: tuple[str, str, str]) -> None:
-    """Draw the half of each axis that sticks out of the ellipsoid."""
-    reach = 1.28 * float(np.max(semi_axes))
+def _finish(axes: Axes, view: _View, semi_axes: Array, names: tuple[str, str, str]) -> None:
+    """Draw the half of each axis that sticks out of the ellipsoid, and make room for it."""
+    reach = 1.3 * float(np.max(semi_axes))
+    room = [view.silhouette(semi_axes)]
     for k, (name, colour) in enumerate(zip(names, _AXES, strict=True)):
         unit = np.eye(3)[k]
-        start, end = view.project(np.stack([unit * semi_axes[k], unit * max(reach, 1.2 * semi_axes[k])]))
+        start, end = view.project(np.stack([unit * semi_axes[k], unit * reach]))
+        label = end + 0.07 * reach * (end - start) / max(float(np.linalg.norm(end - start)), 1e-12)
         arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", xy=end, xytext=start, arrowprops=arrow, zorder=4)
-        axes.annotate(name, end, color=colour, xytext=end + 0.05 * reach * np.sign(end), ha="center", va="center")
+        axes.text(*label, name, color=colour, ha="center", va="center", zorder=5)
+        room.append(label[np.newaxis])
+    points = np.concatenate(room)
+    margin = 0.06 * reach
+    low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+    axes.set_axis_off()
 
 
 def polhode_figure(trajectory: Trajectory) -> Figure:
@@ -162,13 +167,12 @@ def polhode_figure(trajectory: Trajectory) -> Figure:
     start = view.project(omega[:1])[0]
     hidden = (omega[0] * moments) @ view.toward < 0
     axes.plot(*start, "o", color=_ORANGE, ms=6, mec="white", mew=0.8, zorder=5, alpha=0.4 if hidden else 1.0)
-    named = tuple(f"axis {k + 1}: {i:.4g} kg m²" for k, i in enumerate(moments))
-    _draw_axes(axes, view, semi_axes, named)  # type: ignore[arg-type]
-    _space(axes)
+    _finish(axes, view, semi_axes, ("axis 1", "axis 2", "axis 3"))
     axes.set_title(trajectory.attributes.get("title", "Polhode"))
     figure.supxlabel(
-        "Angular velocity in principal axes, on the ellipsoid of its energy (orange; dot: start).\n"
-        "Grey: other motions of the same energy. Black: the separatrix.",
+        f"Angular velocity in principal axes (moments {', '.join(f'{i:.4g}' for i in moments)} kg m²),\n"
+        "on the ellipsoid of its energy: orange, from the dot. Grey: other motions of the same energy.\n"
+        "Black: the separatrix between turning about the longest and the shortest axis.",
         fontsize=9,
     )
     return figure
@@ -234,8 +238,7 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     path = trajectory.rotor(vector(axis / np.linalg.norm(axis))).components
     view.curve(axes, path, path, color=_ORANGE, lw=1.6)
     axes.plot(*view.project(path[:1])[0], "o", color=_ORANGE, ms=6, mec="white", mew=0.8, zorder=5)
-    _draw_axes(axes, view, sphere, ("e1", "e2", "e3 (up)"))
-    _space(axes)
+    _finish(axes, view, sphere, ("e1", "e2", "e3"))
     axes.set_title(trajectory.attributes.get("title", "Path of the axis"))
     figure.supxlabel(f"Path of {name} on the unit sphere of space axes (dot: start).", fontsize=9)
     return figure

@@ -4,7 +4,7 @@ use crate::arrays::{Array, Rows, bad, line, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::free::{SymmetricTop, describe};
-use polhode_rigid::simulate::{DEFAULT_RTOL, Options, Problem, Progress, SimulateError};
+use polhode_rigid::simulate::{Options, Problem, Progress, SimulateError};
 use polhode_rigid::splitting::{METHODS, Method};
 use polhode_rigid::torque::Torque;
 use pyo3::prelude::*;
@@ -18,12 +18,6 @@ const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {
     METHODS.iter().map(|m| m.name).collect()
-}
-
-/// The relative tolerance when none is asked for.
-#[pyfunction]
-pub(crate) fn default_rtol() -> f64 {
-    DEFAULT_RTOL
 }
 
 fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
@@ -122,7 +116,7 @@ pub(crate) fn simulate<'py>(
     times: Rows<'py>,
     method: &str,
     step: Option<f64>,
-    rtol: f64,
+    rtol: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Bound<'py, PyDict>)> {
     let method = Method::from_name(method).ok_or_else(|| bad(format!("unknown method {method}")))?;

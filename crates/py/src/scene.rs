@@ -33,6 +33,7 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: &str) -> PyResult<Bound<'py
     result.set_item("title", &scene.title)?;
     result.set_item("text", &scene.text)?;
     result.set_item("body", Py::new(py, Body(body))?)?;
+    result.set_item("tells_mass", scene.tells_mass())?;
     result.set_item("rotor", line(py, scene.attitude.components().to_vec()))?;
     result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
     result.set_item("heavy", heavy.map(|c| line(py, c.to_vec())))?;

@@ -56,6 +56,11 @@ impl Scene {
         body.map_err(|error| vec![error])
     }
 
+    /// Whether the file tells the mass, or what it follows from.
+    pub fn tells_mass(&self) -> bool {
+        !matches!(self.body, BodySpec::Moments { mass: None, .. } | BodySpec::Inertia { mass: None, .. })
+    }
+
     fn mesh_body(&self, file: &str, length_unit: f64, amount: Amount) -> Result<Body, Diagnostic> {
         let path = self.path.parent().unwrap_or(Path::new("")).join(file);
         let body = TriangleMesh::read(&path)

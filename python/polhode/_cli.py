@@ -1,0 +1,185 @@
+"""The command ``polhode``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polhode._native import SceneError, __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polhode._motion import Trajectory
+    from polhode._scene import Scene
+
+OK, FAILED, USAGE, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; the exit code is its value."""
+    options = _parser().parse_args(arguments)
+    try:
+        return int(options.command(options))
+    except KeyboardInterrupt:
+        return _complain("interrupted; no file was changed", INTERRUPTED)
+    except SceneError as error:
+        return _complain(str(error), BAD_INPUT)
+    except BrokenPipeError:
+        # The reader of our output has gone; there is nobody to tell.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except (OSError, ValueError, ImportError, MemoryError) as error:
+        return _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+
+
+def _complain(message: str, code: int) -> int:
+    print(message, file=sys.stderr)
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="polhode",
+        description="Rigid-body motion in the language of geometric algebra.",
+        epilog=(
+            "Exit codes: 0 ok, 1 the run failed, 2 wrong usage, 3 bad input file, "
+            "4 a conserved quantity drifted past its bound, 130 interrupted."
+        ),
+    )
+    parser.add_argument("--version", action="version", version=f"polhode {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    run = commands.add_parser("run", help="run a scene: summary, netCDF file, figures")
+    run.add_argument("scene", metavar="SCENE.toml", help="the scene file")
+    run.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE.nc",
+        help="write the motion to this netCDF file, and figures beside it (FILE-motion.png, FILE-polhode.png)",
+    )
+    run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
+    run.set_defaults(command=_run)
+
+    check = commands.add_parser("check", help="check a scene and what it names, without running it")
+    check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
+    check.add_argument("--json", action="store_true", help="print the findings as JSON")
+    check.set_defaults(command=_check)
+    return parser
+
+
+def _run(options: argparse.Namespace) -> int:
+    from polhode._scene import Scene
+    from polhode._summary import as_text, summary
+
+    output = _checked_output(options.output)
+    scene = Scene.read(options.scene)
+    with _progress(scene.path.name) as report:
+        trajectory = scene.run(report)
+    result = summary(scene, trajectory)
+    written = _write(output, scene, trajectory)
+    result["files"] = [str(path) for path in written]
+    if options.json:
+        print(json.dumps(result, indent=2, ensure_ascii=False))
+    else:
+        print(as_text(result))
+        if written:
+            print("Written")
+            print("\n".join(f"  {path}" for path in written))
+        else:
+            print("Nothing was written; add -o FILE.nc for the data and the figures.")
+    return OK if result["run"]["drift_within_bound"] else DRIFTED
+
+
+def _check(options: argparse.Namespace) -> int:
+    from polhode._scene import Scene
+
+    findings = []
+    for path in options.scenes:
+        try:
+            scene = Scene.read(path)
+        except SceneError as error:
+            findings.append({"scene": path, "ok": False, "errors": str(error)})
+            if not options.json:
+                _complain(str(error), BAD_INPUT)
+        else:
+            findings.append({"scene": path, "ok": True, "body": repr(scene.body)})
+            if not options.json:
+                print(f"{path}: ok, {scene.body!r}, {len(scene.times)} output times")
+    if options.json:
+        print(json.dumps(findings, indent=2, ensure_ascii=False))
+    return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
+
+
+def _checked_output(name: str | None) -> Path | None:
+    """Refuse what cannot be written before the work, not after it."""
+    if name is None:
+        return None
+    path = Path(name)
+    if path.suffix != ".nc":
+        raise OSError(f"cannot write {path}: the output is a netCDF file, name it {path.stem or 'run'}.nc")
+    if not path.parent.is_dir():
+        raise OSError(f"cannot write {path}: there is no directory {path.parent}; make it first")
+    if path.exists() and not path.is_file():
+        raise OSError(f"cannot write {path}: it exists and is not a regular file")
+    if not os.access(path.parent, os.W_OK):
+        raise OSError(f"cannot write {path}: no permission to write in {path.parent}")
+    return path
+
+
+def _write(output: Path | None, scene: Scene, trajectory: Trajectory) -> list[Path]:
+    """Write the data and the figures, each whole or not at all."""
+    if output is None:
+        return []
+    import io
+
+    from polhode._files import write_atomically
+    from polhode._plot import axis_figure, motion_figure, polhode_figure
+
+    trajectory.save(output)
+    if scene.torque is None:
+        second = {"polhode": polhode_figure(trajectory)}
+    else:
+        second = {"axis": axis_figure(trajectory, scene.torque.laws[0][1], "the body's axis from the pivot")}
+    written = [output]
+    for name, figure in {"motion": motion_figure(trajectory), **second}.items():
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format="png", dpi=160)
+        path = output.with_name(f"{output.stem}-{name}.png")
+        write_atomically(path, buffer.getvalue())
+        written.append(path)
+    return written
+
+
+@contextmanager
+def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
+    """Show a bar on standard error, if that is a terminal and the run takes long enough to see it."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if not sys.stderr.isatty():
+        yield None
+        return
+    try:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    except ImportError:
+        yield None
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), "{task.percentage:>3.0f} %", TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(name, total=1.0)
+
+        def report(number: int, fraction: float) -> None:
+            bar.update(task, description=f"{name}, pass {number}", completed=fraction)
+
+        yield report
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,97 @@
+"""Scenes: a body, how it starts and how long it runs, from a TOML file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from polhode import _native
+from polhode import torque as laws
+from polhode._arrays import Array, frozen
+from polhode._bodies import Body
+from polhode._motion import State, Trajectory, simulate
+from polhode._rotor import Rotor
+from polhode.torque import Torque
+
+DRIFT_BOUND = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What a scene file says, in SI units, ready to run. Made by `Scene.read`.
+
+    Attributes
+    ----------
+    path, text, title
+        The file, its content, and its title or None.
+    body
+        The body; under gravity in axes whose origin is the fixed point.
+    tells_mass
+        False where the file gives an inertia alone; the body then has 1 kg, which a free motion ignores.
+    state
+        The state at time 0.
+    torque
+        Gravity about the fixed point, or None.
+    times
+        Output times in s.
+    method, step, rtol
+        As for `polhode.simulate`; step and rtol may be None.
+    drift_bound
+        Largest relative drift of a conserved quantity that counts as success.
+    """
+
+    path: Path
+    text: str
+    title: str | None
+    body: Body
+    tells_mass: bool
+    state: State
+    torque: Torque | None
+    times: Array
+    method: str
+    step: float | None
+    rtol: float | None
+    drift_bound: float
+
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> Scene:
+        """Read a scene file, and the mesh that it names.
+
+        Raises
+        ------
+        SceneError
+            A ValueError whose text gives file, line and column of everything that is wrong, with the line.
+        """
+        fields = _native.read_scene(os.fspath(path))
+        heavy = fields["heavy"]
+        return Scene(
+            path=Path(path),
+            text=fields["text"],
+            title=fields["title"],
+            body=Body._of(fields["body"]),
+            tells_mass=fields["tells_mass"],
+            state=State(Rotor._from_rows(fields["rotor"]), fields["omega_body"]),
+            torque=None if heavy is None else laws.heavy(heavy),
+            times=frozen(fields["times"]),
+            method=fields["method"],
+            step=fields["step"],
+            rtol=fields["rtol"],
+            drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
+        )
+
+    def run(self, progress: Callable[[int, float], object] | None = None) -> Trajectory:
+        """Return the motion at the output times; errors and `progress` as for `polhode.simulate`."""
+        trajectory = simulate(
+            self.body,
+            self.state,
+            self.times,
+            self.torque,
+            method=self.method,
+            step=self.step,
+            rtol=self.rtol,
+            progress=progress,
+        )
+        trajectory.attributes.update({"title": self.title or self.path.stem, "scene": self.text})
+        return trajectory

@@ -127,18 +127,18 @@ class _View:
 
 def _finish(axes: Axes, view: _View, semi_axes: Array, names: tuple[str, str, str]) -> None:
     """Draw the half of each axis that sticks out of the ellipsoid, and make room for it."""
-    reach = 1.3 * float(np.max(semi_axes))
+    reach = 0.35 * float(np.max(semi_axes))
     room = [view.silhouette(semi_axes)]
     for k, (name, colour) in enumerate(zip(names, _AXES, strict=True)):
         unit = np.eye(3)[k]
-        start, end = view.project(np.stack([unit * semi_axes[k], unit * reach]))
-        label = end + 0.07 * reach * (end - start) / max(float(np.linalg.norm(end - start)), 1e-12)
+        start, end = view.project(np.stack([unit * semi_axes[k], unit * (semi_axes[k] + reach)]))
+        label = end + 0.25 * reach * (end - start) / max(float(np.linalg.norm(end - start)), 1e-12)
         arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", xy=end, xytext=start, arrowprops=arrow, zorder=4)
         axes.text(*label, name, color=colour, ha="center", va="center", zorder=5)
         room.append(label[np.newaxis])
     points = np.concatenate(room)
-    margin = 0.06 * reach
+    margin = 0.25 * reach
     low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])

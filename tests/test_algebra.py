@@ -622,6 +622,14 @@ def test_what_is_picked_computes_like_any_other(index, grades):
     assert np.array_equal(ph.to_pauli(A), ph.to_pauli(fresh))
     R = ph.Rotor.random(A.shape, 1)
     assert np.all(R(A) == R(fresh))
+    last, fresh_last = A[(-1,) * len(A.shape)], fresh[(-1,) * len(A.shape)]
+    assert last * last == fresh_last * fresh_last
+    assert last.dual() == fresh_last.dual()
+    a, b = A.grade(1), fresh.grade(1)
+    B = ph.bivector(np.ones(3))
+    assert np.all(ph.Rotor.from_vectors(a + e1 * 40, e2) == ph.Rotor.from_vectors(b + e1 * 40, e2))
+    angle = A.grade(0).components[..., 0]
+    assert np.all(ph.Rotor.from_plane_angle(B, angle) == ph.Rotor.from_plane_angle(B, angle.copy()))
 
 
 @pytest.mark.parametrize("order", ["C", "F"])

@@ -475,7 +475,7 @@ def test_cross_product():
     assert ph.cross(e1, e2) == e3
     assert ph.cross(e1, e2).grades == (1,)
     for bad in (e1 * e2, 2.0, I, np.ones(3)):
-        with pytest.raises(TypeError, match="needs two vectors"):
+        with pytest.raises(TypeError, match="factor must be a vector"):
             ph.cross(e1, bad)
 
 

@@ -22,7 +22,7 @@ from polhode._multivector import scalar as scalar
 from polhode._multivector import to_pauli as to_pauli
 from polhode._multivector import trivector as trivector
 from polhode._multivector import vector as vector
-from polhode._native import __version__ as __version__
 from polhode._native import SceneError as SceneError
+from polhode._native import __version__ as __version__
 from polhode._rotor import Rotor as Rotor
 from polhode._scene import Scene as Scene

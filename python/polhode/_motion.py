@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_floats, as_vectors, frozen
+from polhode._arrays import Array, as_floats, frozen
 from polhode._bodies import Body, Inertia
-from polhode._multivector import _BIVECTOR, Multivector, bivector, vector
+from polhode._multivector import _BIVECTOR, Multivector, as_bivectors, as_vectors, bivector, vector
 from polhode._rotor import Rotor
 from polhode.torque import Torque
 
@@ -70,7 +70,7 @@ class SymmetricTop:
         times = as_floats(t, "time")
         start = self._start
         rotors, omegas = _native.symmetric_top(
-            self._inertia._core, start.rotor._contiguous(), start.omega_body.components, np.ravel(times)
+            self._inertia._core, start.rotor._data, start.omega_body.components, np.ravel(times)
         )
         return State(
             Rotor._from_rows(rotors.reshape(*times.shape, 4)),
@@ -231,7 +231,7 @@ def simulate(
     position, velocity = _center_of_mass(start, when, force, mass)
     rotors, omegas, momenta, energies, certificate = _native.simulate(
         inertia._core,
-        start.rotor._contiguous(),
+        start.rotor._data,
         np.ascontiguousarray(start.omega_body.components),
         list(torque.laws) if torque else [],
         np.ascontiguousarray(when),
@@ -287,14 +287,7 @@ def _center_of_mass(
 
 
 def _angular_velocity(value: Any) -> Multivector:
-    if not isinstance(value, Multivector):
-        return bivector(value)
-    if value._mask != _BIVECTOR:
-        raise TypeError(
-            f"an angular velocity is a bivector, got grades {value.grades}; the plane of an axial vector w is "
-            "w.undual()"
-        )
-    return value
+    return bivector(as_bivectors(value, "the angular velocity"))
 
 
 def _single(state: State) -> State:

@@ -14,8 +14,10 @@ from polhode._arrays import Array, Shape, as_components, as_floats, frozen, rows
 if TYPE_CHECKING:
     from polhode._rotor import Rotor
 
-_SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR, _ALL, _EVEN = 0b0001, 0b0010, 0b0100, 0b1000, 0b1111, 0b0101
+_SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
+_EVEN, _ALL = 0b0101, 0b1111
 _GRADE_OF = np.array([0, 1, 1, 1, 2, 2, 2, 3])
+_KINDS = ("scalar", "vector", "bivector", "trivector")
 _INDICES = [_native.component_indices(mask) for mask in range(16)]
 
 
@@ -51,9 +53,12 @@ class Multivector:
 
     @classmethod
     def _of(cls, data: Array, mask: int) -> Multivector:
-        """Wrap an array (..., K) that nobody else writes to; K components of the grades in `mask`."""
+        """Wrap an array (..., K) that nobody else writes to; K components of the grades in `mask`.
+
+        The kernels read rows, so the array is brought into C order if it is not.
+        """
         self = object.__new__(cls)
-        object.__setattr__(self, "_data", frozen(data))
+        object.__setattr__(self, "_data", frozen(np.ascontiguousarray(data)))
         object.__setattr__(self, "_mask", mask)
         return self
 
@@ -90,6 +95,9 @@ class Multivector:
         if operator.index(k) not in range(4):
             raise ValueError(f"3-d space has grades 0 to 3, got {k}")
         return Multivector._of(self._with_grades(1 << k), 1 << k)
+
+    def __bool__(self) -> bool:
+        raise TypeError("a multivector is neither true nor false; compare it with == or is_close")
 
     def __len__(self) -> int:
         if not self.shape:
@@ -128,7 +136,12 @@ class Multivector:
             return np.array(self._data)
         full = np.zeros((*self.shape, 8))
         full[..., _INDICES[self._mask]] = self._data
-        return full[..., _INDICES[mask]]
+        return np.ascontiguousarray(full[..., _INDICES[mask]])
+
+    def _held(self) -> int:
+        """Return the grades, as bits, in which some component is not zero."""
+        nonzero = (self._data != 0).reshape(-1, self._data.shape[-1]).any(axis=0)
+        return int(np.bitwise_or.reduce(1 << _GRADE_OF[_INDICES[self._mask]][nonzero], initial=0))
 
     def _linear(self, other: Any, combine: Any) -> Any:
         """Add or subtract, over the grades of both."""
@@ -164,7 +177,8 @@ class Multivector:
         if divisor._mask != _SCALAR:
             return self * divisor.inverse()
         if not divisor._data.all():
-            raise ZeroDivisionError("division of a multivector by zero")
+            index = tuple(int(i) for i in np.argwhere(divisor._data[..., 0] == 0)[0])
+            raise ZeroDivisionError("division of a multivector by zero" + (f" at index {index}" if index else ""))
         return Multivector._of(self._data / divisor._data, self._mask)
 
     def __rtruediv__(self, other: Any) -> Multivector:
@@ -289,8 +303,9 @@ class Multivector:
     # --- sizes
 
     def norm_squared(self) -> Any:
-        """``⟨A ~A⟩``, the sum of the squared components: a float, or an array of the batch shape."""
-        return np.square(self._data).sum(axis=-1)[()]
+        """``⟨A ~A⟩``, the sum of the squared components (infinite beyond 1e308): of the batch shape."""
+        with np.errstate(over="ignore"):
+            return np.square(self._data).sum(axis=-1)[()]
 
     def norm(self) -> Any:
         """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape."""
@@ -308,20 +323,23 @@ class Multivector:
 
     def _function(self, name: str) -> Multivector:
         full, mask = _native.function(name, self._with_grades(_ALL), self._mask)
-        return Multivector._of(np.ascontiguousarray(full[..., _INDICES[mask]]), mask)
+        return Multivector._of(full[..., _INDICES[mask]], mask)
 
     def inverse(self) -> Multivector:
         """``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``)."""
         return self._function("inverse")
 
     def exp(self) -> Multivector | Rotor:
-        """``exp A``; of a bivector it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B."""
+        """``exp A``; of a bivector it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
+
+        A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
+        """
         result = self._function("exp")
-        if self._mask != _BIVECTOR:
+        if result._mask != _EVEN or self._held() & ~_BIVECTOR:
             return result
         from polhode._rotor import Rotor
 
-        return Rotor._of(np.array(result._data), _EVEN)
+        return Rotor._of(result._data, _EVEN)
 
     def log(self) -> Multivector:
         """Return a logarithm: ``exp(log A) = A``.
@@ -339,6 +357,8 @@ class Multivector:
 
     def project(self, blade: Multivector) -> Multivector:
         """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹`` (a∥ of handout eq. 1.7)."""
+        if not isinstance(blade, Multivector) or blade._held().bit_count() > 1:
+            raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
         projected = self.left_contraction(blade) * blade.inverse()
         return Multivector._of(projected._with_grades(self._mask), self._mask)
 
@@ -365,10 +385,16 @@ class Multivector:
         right = _coerced(other)
         if right is None:
             raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
-        with np.errstate(invalid="ignore"):  # inf − inf: equality below decides
-            distance = (self - right).norm()
-            bound = np.maximum(rtol * np.maximum(self.norm(), right.norm()), atol)
-            close = np.isfinite(distance) & (distance <= bound)
+        mask = self._mask | right._mask
+        a, b = np.broadcast_arrays(self._with_grades(mask), right._with_grades(mask))
+        # Measured in units of the largest component, so that nothing overflows.
+        unit = np.maximum(np.abs(a), np.abs(b)).max(axis=-1, keepdims=True)
+        unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
+        with np.errstate(invalid="ignore"):  # inf − inf and NaN are not close
+            a, b = a / unit, b / unit
+            distance = np.linalg.norm(a - b, axis=-1)
+            size = np.maximum(np.linalg.norm(a, axis=-1), np.linalg.norm(b, axis=-1))
+            close = np.isfinite(size) & (distance <= np.maximum(rtol * size, atol / unit[..., 0]))
         return np.logical_or(close, self == right)[()]
 
 
@@ -381,9 +407,32 @@ def _coerced(value: Any) -> Multivector | None:
     """Return a multivector; a number or numeric array becomes scalars; None for anything else."""
     if isinstance(value, Multivector):
         return value
-    if isinstance(value, np.ndarray | np.number | int | float) and not isinstance(value, bool):
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float) or (
+        isinstance(value, np.ndarray | np.number) and value.dtype.kind in "iuf"
+    ):
         return scalar(value)
     return None
+
+
+def pure(value: Any, grade: int, what: str) -> Array:
+    """Return the components of a value of one grade; the others must be absent or exactly zero."""
+    if not isinstance(value, Multivector):
+        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {type(value).__name__}; see ph.{_KINDS[grade]}")
+    if value._held() & ~(1 << grade):
+        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which holds other grades")
+    return value._data if value._mask == 1 << grade else value._with_grades(1 << grade)
+
+
+def as_vectors(values: Any, what: str) -> Array:
+    """Return components (..., 3) from an array or a vector."""
+    return pure(values, 1, what) if isinstance(values, Multivector) else as_components(values, 3, what)
+
+
+def as_bivectors(values: Any, what: str) -> Array:
+    """Return components (..., 3) over (e2e3, e3e1, e1e2) from an array or a bivector."""
+    return pure(values, 2, what) if isinstance(values, Multivector) else as_components(values, 3, what)
 
 
 def _require(ok: Any, what: str, value: Any) -> None:
@@ -422,10 +471,8 @@ def multivector(c8: Any) -> Multivector:
 
 def cross(a: Multivector, b: Multivector) -> Multivector:
     """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
-    for value in (a, b):
-        if not isinstance(value, Multivector) or value._mask != _VECTOR:
-            raise TypeError(f"the cross product needs two vectors, got {value!r}")
-    return a.wedge(b).dual()
+    left, right = vector(pure(a, 1, "the left factor")), vector(pure(b, 1, "the right factor"))
+    return left.wedge(right).dual()
 
 
 def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:

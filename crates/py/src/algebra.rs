@@ -1,6 +1,6 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Array, Out, Rows, bad, map_rows};
+use crate::arrays::{Array, Out, Rows, bad, map_rows, numbers};
 use numpy::{PyArray1, PyArrayMethods};
 use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
@@ -25,7 +25,7 @@ pub(crate) fn product<'py>(
         return Err(bad("3-d space has grades 0 to 3"));
     }
     let plan = Plan::g3(product, Grades(a_grades), Grades(b_grades));
-    let (a, b) = (a.as_slice()?, b.as_slice()?);
+    let (a, b) = (numbers(&a)?, numbers(&b)?);
     let (na, nb, nout) = plan.sizes;
     for (length, size) in [(a.len(), na), (b.len(), nb)] {
         if length != size && length != rows * size {

@@ -1,6 +1,6 @@
 //! Motion: the closed form of the symmetric top, and simulation.
 
-use crate::arrays::{Array, Rows, bad, line, one, table};
+use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::free::{SymmetricTop, describe};
@@ -40,7 +40,7 @@ pub(crate) fn symmetric_top<'py>(
     omega: Rows<'py>,
     times: Rows<'py>,
 ) -> PyResult<(Array<'py>, Array<'py>)> {
-    let times = times.as_slice()?;
+    let times = numbers(&times)?;
     if let Some(index) = times.iter().position(|t| !t.is_finite()) {
         return Err(bad(format!("time {} at index {index} is not finite", times[index])));
     }
@@ -122,7 +122,7 @@ pub(crate) fn simulate<'py>(
     let method = Method::from_name(method).ok_or_else(|| bad(format!("unknown method {method}")))?;
     let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
-    let times = times.as_slice()?;
+    let times = numbers(&times)?;
     let mut watcher = Watcher { progress: progress.as_ref(), last: Instant::now(), error: None };
     let outcome = py.detach(|| {
         let result = problem.simulate(times, Options { method, step, rtol }, &mut |at| watcher.go_on(at));

@@ -9,8 +9,9 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Array, as_components, as_floats
-from polhode._multivector import _BIVECTOR, Multivector, as_vectors, pure, vector
+from polhode._multivector import _BIVECTOR, Multivector
 from polhode._rotor import Rotor
+from polhode._values import as_vectors, pure, vector
 
 
 class Inertia:
@@ -155,7 +156,9 @@ class Body:
         return Body._solid("cylinder", [radius, height], mass, density)
 
     @staticmethod
-    def cone(radius: float, height: float, *, mass: float | None = None, density: float | None = None) -> Body:
+    def cone(
+        radius: float, height: float, *, mass: float | None = None, density: float | None = None
+    ) -> Body:
         """Return a cone about e3, its base on the plane e1e2 and its apex at `height`."""
         return Body._solid("cone", [radius, height], mass, density)
 
@@ -236,7 +239,10 @@ class Body:
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{i:.8g}" for i in self.inertia.principal_moments)
-        return f"Body(mass {self.mass:.8g} kg, centre of mass {self.center_of_mass!r} m, moments {moments} kg m²)"
+        return (
+            f"Body(mass {self.mass:.8g} kg, centre of mass {self.center_of_mass!r} m, "
+            f"moments {moments} kg m²)"
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Body, (self.mass, self.inertia, self.center_of_mass)

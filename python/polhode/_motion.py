@@ -12,8 +12,9 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, as_floats, frozen
 from polhode._bodies import Body, Inertia
-from polhode._multivector import _BIVECTOR, Multivector, as_bivectors, as_vectors, bivector, vector
+from polhode._multivector import _BIVECTOR, Multivector
 from polhode._rotor import Rotor
+from polhode._values import as_bivectors, as_vectors, bivector, vector
 from polhode.torque import Torque
 
 if TYPE_CHECKING:
@@ -45,7 +46,9 @@ class State:
 
     def __post_init__(self) -> None:
         if not isinstance(self.rotor, Rotor):
-            raise TypeError(f"rotor must be a Rotor, got {type(self.rotor).__name__}; see Rotor.from_components")
+            raise TypeError(
+                f"rotor must be a Rotor, got {type(self.rotor).__name__}; see Rotor.from_components"
+            )
         object.__setattr__(self, "omega_body", _angular_velocity(self.omega_body))
         for name in ("position", "velocity"):
             value = getattr(self, name)
@@ -227,7 +230,9 @@ def simulate(
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     if torque is not None and not isinstance(torque, Torque):
-        raise TypeError(f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}")
+        raise TypeError(
+            f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}"
+        )
     position, velocity = _center_of_mass(start, when, force, mass)
     rotors, omegas, momenta, energies, certificate = _native.simulate(
         inertia._core,

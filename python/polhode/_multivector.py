@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _format, _native
-from polhode._arrays import Array, Shape, as_components, as_floats, frozen, rows
+from polhode._arrays import Array, Shape, as_floats, frozen, rows
 
 if TYPE_CHECKING:
     from polhode._rotor import Rotor
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 _SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
 _EVEN, _ALL = 0b0101, 0b1111
 _GRADE_OF = np.array([0, 1, 1, 1, 2, 2, 2, 3])
-_KINDS = ("scalar", "vector", "bivector", "trivector")
 _INDICES = [_native.component_indices(mask) for mask in range(16)]
 
 
@@ -120,8 +120,8 @@ class Multivector:
     def __float__(self) -> float:
         if self._mask != _SCALAR or self.shape:
             raise TypeError(
-                f"only a single scalar becomes a float; this has grades {self.grades} and shape {self.shape}; "
-                "take .grade(0) or .components"
+                f"only a single scalar becomes a float; this has grades {self.grades} and shape "
+                f"{self.shape}; take .grade(0) or .components"
             )
         return float(self._data[0])
 
@@ -178,7 +178,9 @@ class Multivector:
             return self * divisor.inverse()
         if not divisor._data.all():
             index = tuple(int(i) for i in np.argwhere(divisor._data[..., 0] == 0)[0])
-            raise ZeroDivisionError("division of a multivector by zero" + (f" at index {index}" if index else ""))
+            raise ZeroDivisionError(
+                "division of a multivector by zero" + (f" at index {index}" if index else "")
+            )
         return Multivector._of(self._data / divisor._data, self._mask)
 
     def __rtruediv__(self, other: Any) -> Multivector:
@@ -190,10 +192,10 @@ class Multivector:
     def _product(self, name: str, other: Any) -> Multivector:
         right = _coerced(other)
         if right is None:
-            return NotImplemented
+            return NotImplemented  # type: ignore[no-any-return]
         batch = np.broadcast_shapes(self.shape, right.shape)
         left_rows, right_rows = rows(self._data, batch), rows(right._data, batch)
-        count = int(np.prod(batch))
+        count = math.prod(batch)
         data, mask = _native.product(name, left_rows, self._mask, right_rows, right._mask, count)
         return Multivector._of(data.reshape(*batch, data.shape[-1]), mask)
 
@@ -294,11 +296,11 @@ class Multivector:
 
     def dual(self) -> Multivector:
         """``A I⁻¹``: the dual of a bivector is its axial vector, ``dual(e1∧e2) = e3``."""
-        return self * _MINUS_I
+        return self * -_I
 
     def undual(self) -> Multivector:
         """``A I``, the inverse of `dual`."""
-        return self * I
+        return self * _I
 
     # --- sizes
 
@@ -315,7 +317,9 @@ class Multivector:
         """``A/|A|``; zero and non-finite values are an error."""
         # Scaling by the largest component first keeps subnormal values accurate.
         largest = np.abs(self._data).max(axis=-1, keepdims=True)
-        _require(np.isfinite(largest[..., 0]) & (largest[..., 0] > 0), "has no direction (norm {})", self.norm())
+        _require(
+            np.isfinite(largest[..., 0]) & (largest[..., 0] > 0), "has no direction (norm {})", self.norm()
+        )
         scaled = self._data / largest
         return self._of(scaled / np.linalg.norm(scaled, axis=-1, keepdims=True), self._mask)
 
@@ -416,25 +420,6 @@ def _coerced(value: Any) -> Multivector | None:
     return None
 
 
-def pure(value: Any, grade: int, what: str) -> Array:
-    """Return the components of a value of one grade; the others must be absent or exactly zero."""
-    if not isinstance(value, Multivector):
-        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {type(value).__name__}; see ph.{_KINDS[grade]}")
-    if value._held() & ~(1 << grade):
-        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which holds other grades")
-    return value._data if value._mask == 1 << grade else value._with_grades(1 << grade)
-
-
-def as_vectors(values: Any, what: str) -> Array:
-    """Return components (..., 3) from an array or a vector."""
-    return pure(values, 1, what) if isinstance(values, Multivector) else as_components(values, 3, what)
-
-
-def as_bivectors(values: Any, what: str) -> Array:
-    """Return components (..., 3) over (e2e3, e3e1, e1e2) from an array or a bivector."""
-    return pure(values, 2, what) if isinstance(values, Multivector) else as_components(values, 3, what)
-
-
 def _require(ok: Any, what: str, value: Any) -> None:
     """Raise a ValueError that names the first batch index where `ok` is false, and the value there."""
     if np.all(ok):
@@ -449,52 +434,4 @@ def scalar(a: Any) -> Multivector:
     return Multivector._of(np.array(as_floats(a, "scalar"))[..., np.newaxis], _SCALAR)
 
 
-def vector(xyz: Any) -> Multivector:
-    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3)."""
-    return Multivector._of(as_components(xyz, 3, "vector"), _VECTOR)
-
-
-def bivector(c3: Any) -> Multivector:
-    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector."""
-    return Multivector._of(as_components(c3, 3, "bivector"), _BIVECTOR)
-
-
-def trivector(b: Any) -> Multivector:
-    """Trivectors ``b I`` from numbers; an array of shape S is a batch of shape S."""
-    return Multivector._of(np.array(as_floats(b, "trivector"))[..., np.newaxis], _TRIVECTOR)
-
-
-def multivector(c8: Any) -> Multivector:
-    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``."""
-    return Multivector._of(as_components(c8, 8, "multivector"), _ALL)
-
-
-def cross(a: Multivector, b: Multivector) -> Multivector:
-    """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
-    left, right = vector(pure(a, 1, "the left factor")), vector(pure(b, 1, "the right factor"))
-    return left.wedge(right).dual()
-
-
-def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
-    """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
-    value = _coerced(M)
-    if value is None:
-        raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
-    numbers = _native.to_pauli(value._with_grades(_ALL))
-    return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
-
-
-def from_pauli(matrices: Any) -> Multivector:
-    """Return the multivectors of 2×2 complex matrices, shape (..., 2, 2); the inverse of `to_pauli`."""
-    p = np.asarray(matrices)
-    if p.dtype.kind not in "iufc" or p.shape[-2:] != (2, 2):
-        raise ValueError(f"from_pauli needs numeric matrices of shape (..., 2, 2), got {p.dtype} {p.shape}")
-    numbers = np.ascontiguousarray(p, dtype=np.complex128).view(np.float64).reshape(*p.shape[:-2], 8)
-    return Multivector._of(_native.from_pauli(numbers), _ALL)
-
-
-e1 = vector([1.0, 0.0, 0.0])
-e2 = vector([0.0, 1.0, 0.0])
-e3 = vector([0.0, 0.0, 1.0])
-I = trivector(1.0)  # noqa: E741  # the handout's name
-_MINUS_I = -I
+_I = Multivector._of(np.ones(1), _TRIVECTOR)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, joined
+from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, joined, rows
 from polhode._multivector import (
-    _ALL,
     _BIVECTOR,
     _EVEN,
-    _INDICES,
     Multivector,
     _coerced,
-    pure,
 )
+from polhode._values import pure
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -53,7 +52,7 @@ class Rotor(Multivector):
 
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)`` for the plane and sense of the bivector B, whose size is ignored; theta in radians."""
+        """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
         angle = as_floats(theta, "angle")[..., np.newaxis]
         return Rotor._from_rows(_native.rotor_from_plane_angle(joined(pure(B, 2, "the plane"), angle)))
 
@@ -126,8 +125,8 @@ class Rotor(Multivector):
 
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
-        rows = _native.rotor_plane_angle(self._data)
-        return Multivector._of(rows[..., :3].copy(), _BIVECTOR), rows[..., 3][()]
+        pairs = _native.rotor_plane_angle(self._data)
+        return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
 
     # --- action and algebra
 
@@ -138,9 +137,11 @@ class Rotor(Multivector):
             raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
         if isinstance(value, Rotor):
             return self * value * ~self
-        pairs = joined(self._data, value._with_grades(_ALL))
-        turned = _native.rotor_apply(pairs)
-        return Multivector._of(turned[..., _INDICES[value._mask]], value._mask)
+        batch = np.broadcast_shapes(self.shape, value.shape)
+        turned = _native.rotor_apply(
+            rows(self._data, batch), rows(value._data, batch), value._mask, math.prod(batch)
+        )
+        return Multivector._of(turned.reshape(*batch, turned.shape[-1]), value._mask)
 
     def __call__(self, X: Any) -> Multivector:
         return self.apply(X)
@@ -151,12 +152,23 @@ class Rotor(Multivector):
         return Rotor.from_components(product._data) if isinstance(other, Rotor) else product
 
     def log(self) -> Multivector:
-        """Return the bivector with ``exp(log R) = R`` and ``|log R| <= π``, so ``−Bθ/2``; ``log(−1) = π e1∧e2``."""
+        """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
         return super().log().grade(2)
+
+    def reverse(self) -> Rotor:
+        """``~R``, the turn back."""
+        return super().reverse()  # type: ignore[return-value]
+
+    def __invert__(self) -> Rotor:
+        return self.reverse()
+
+    def __neg__(self) -> Rotor:
+        """Return the other rotor of the same rotation."""
+        return super().__neg__()  # type: ignore[return-value]
 
     def inverse(self) -> Rotor:
         """``~R``."""
-        return ~self  # type: ignore[return-value]
+        return self.reverse()
 
     def sqrt(self) -> Rotor:
         """Return the half-way rotor, whose square is R."""

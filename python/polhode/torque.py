@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from polhode._arrays import Array
-from polhode._multivector import as_bivectors, as_vectors
+from polhode._values import as_bivectors, as_vectors
 
 
 @dataclass(frozen=True)

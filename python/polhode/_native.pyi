@@ -12,6 +12,7 @@ __all__ = [
     "__version__",
     "component_indices",
     "describe_free",
+    "free_motion",
     "from_pauli",
     "function",
     "methods",
@@ -88,6 +89,7 @@ class Body:
 
 def methods() -> list[str]: ...
 def symmetric_top(inertia: Inertia, rotor_row: Array, omega: Array, times: Array) -> tuple[Array, Array]: ...
+def free_motion(inertia: Inertia, rotor_row: Array, omega: Array, times: Array) -> tuple[Array, Array]: ...
 def describe_free(inertia: Inertia, omega: Array) -> dict[str, Any]: ...
 def simulate(
     inertia: Inertia,

@@ -5,7 +5,8 @@
 //! takes the plane of rotation to the plane of angular momentum.
 //!
 //! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
-//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] and [`elliptic`] (the free top),
+//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] (the free top, exact), [`elliptic`],
+//! [`symmetric_top`],
 //! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs); [`units`] and
 //! [`scene`] (what a person writes in a scene file), [`diagnostic`] (errors that show their place in a file).
 //!
@@ -13,6 +14,7 @@
 
 pub mod body;
 pub mod diagnostic;
+mod double_double;
 mod eigen;
 pub mod elliptic;
 pub mod free;
@@ -23,6 +25,7 @@ pub mod simulate;
 pub mod solids;
 pub mod splitting;
 mod sum;
+pub mod symmetric_top;
 pub mod torque;
 pub mod units;
 

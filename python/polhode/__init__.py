@@ -4,6 +4,7 @@ from polhode import torque as torque
 from polhode._bodies import Body as Body
 from polhode._bodies import Inertia as Inertia
 from polhode._motion import Certificate as Certificate
+from polhode._motion import FreeMotion as FreeMotion
 from polhode._motion import State as State
 from polhode._motion import SymmetricTop as SymmetricTop
 from polhode._motion import Trajectory as Trajectory

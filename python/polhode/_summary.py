@@ -143,7 +143,10 @@ def as_text(summary: dict[str, Any], columns: int = 18) -> str:
     row("|R| − 1", f"{run['rotor_norm_drift']:.1e}")
     section("Run")
     row("duration", f"{_time(run['duration'])}, {run['samples']} output times")
-    row("method", f"{run['method']}, {run['steps']} steps of at most {_number(run['step'])} s")
+    if run["method"] == "exact":
+        row("method", "exact solution in elliptic functions")
+    else:
+        row("method", f"{run['method']}, {run['steps']} steps of at most {_number(run['step'])} s")
     if run["error_estimate"] is not None:
         row("error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate")
     if not run["drift_within_bound"]:

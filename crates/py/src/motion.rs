@@ -144,7 +144,10 @@ pub(crate) fn simulate<'py>(
     rtol: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Bound<'py, PyDict>)> {
-    let method = Method::from_name(method).ok_or_else(|| bad(format!("unknown method {method}")))?;
+    let method = match method {
+        "auto" => None,
+        name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
+    };
     let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
     let times = numbers(&times)?;

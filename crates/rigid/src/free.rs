@@ -370,7 +370,8 @@ impl Tumbling {
     /// The angular velocity for given sn, cn, dn.
     fn omega(&self, [sn, cn, dn]: [f64; 3]) -> Bivector {
         let mut omega = Bivector::default();
-        for (axis, (amplitude, f)) in self.axes.into_iter().zip(self.amplitudes.into_iter().zip([cn, sn, dn])) {
+        for (axis, (amplitude, f)) in self.axes.into_iter().zip(self.amplitudes.into_iter().zip([cn, sn, dn]))
+        {
             omega.0[axis] = amplitude * f;
         }
         omega

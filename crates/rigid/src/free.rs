@@ -18,7 +18,8 @@
 //! ω = (A_a cn u, τ A_b sn u, σ A_c dn u),   A_a² = P/(a(c−a)),  A_b² = P/(b(c−b)),  A_c² = Q/(c(c−a)),
 //! ```
 //!
-//! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the axes' order (a, b, c).
+//! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the axes' order (a, b, c). (On the
+//! separatrix cn is positive for ever; there A_a and τ take the sign of ω_a.)
 //!
 //! **The rotor.** Let `d = σ e_c` and `P(t)` the rotor that turns the direction of the body's angular momentum
 //! `m` into d the short way; `m·d > 0`, so it is smooth. `R(t) = R(0) ~P(0) exp(−½ I d α) P(t)` carries m to the
@@ -223,7 +224,7 @@ struct Tumbling {
     axes: [usize; 3],
     /// sign(c − a).
     s: f64,
-    /// Amplitudes with their signs: A_a, τ A_b, σ A_c.
+    /// Amplitudes with their signs: A_a, τ A_b, σ A_c; A_a is negative on half of the separatrix.
     amplitudes: [f64; 3],
     /// Moments of a, b and c.
     moments: [f64; 3],
@@ -290,15 +291,17 @@ impl Tumbling {
         // The order (a, b, c) is even if it is a cyclic one.
         let parity = if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
         let sigma = 1f64.copysign(w[c]);
-        let tau = sigma * s * parity;
-        let [amplitude_a, amplitude_b, amplitude_c] =
-            [p / (ia * ac), p / (ib * bc), q / (ic * ac)].map(|x| x.sqrt().value());
+        // Beyond twice the precision D is rounding.
+        let on_separatrix = kc2.hi <= 1e-30;
+        // cn keeps its sign on the separatrix: ω_a < 0 is the half turn about c of a motion with ω_a > 0.
+        let half_turn = if on_separatrix { 1f64.copysign(w[a]) } else { 1.0 };
+        let tau = sigma * s * parity * half_turn;
+        let sizes = [p / (ia * ac), p / (ib * bc), q / (ic * ac)].map(|x| x.sqrt().value());
+        let amplitudes = [half_turn * sizes[0], tau * sizes[1], sigma * sizes[2]];
         let mut axis = Vector::default();
         axis.0[c] = sigma;
 
         let (n, one_minus_n) = (-(ic * ab / (ia * bc)), ib * ac / (ia * bc));
-        // Beyond twice the precision D is rounding.
-        let on_separatrix = kc2.hi <= 1e-30;
         let excess = n.hi > -1.0;
         let periods = (!on_separatrix).then(|| {
             let kc = kc2.sqrt();
@@ -321,7 +324,7 @@ impl Tumbling {
         let mut top = Tumbling {
             axes: [a, b, c],
             s,
-            amplitudes: [amplitude_a, tau * amplitude_b, sigma * amplitude_c],
+            amplitudes,
             moments: [i[a], i[b], i[c]],
             d: axis,
             lambda: lambda.value(),
@@ -337,7 +340,7 @@ impl Tumbling {
             local0: 0.0,
             aligned0: Rotor::IDENTITY,
         };
-        top.u0 = top.argument(w[a] / amplitude_a, tau * w[b] / amplitude_b);
+        top.u0 = top.argument(w[a] / amplitudes[0], w[b] / amplitudes[1]);
         let start = top.reduced(0.0).0;
         top.local0 = top.local_angle(start);
         top.aligned0 = top.aligned(jacobi(start, top.kc2));
@@ -391,7 +394,7 @@ impl Tumbling {
     fn local_angle(&self, u: f64) -> f64 {
         let [sn, cn, dn] = jacobi(u, self.kc2);
         let [a, b, _] = self.moments;
-        let chi = f64::atan2(b * self.amplitudes[1].abs() * sn, a * self.amplitudes[0] * cn);
+        let chi = f64::atan2(b * self.amplitudes[1].abs() * sn, a * self.amplitudes[0].abs() * cn);
         let pi = match &self.periods {
             // ∫du/(1 + ν² tanh² u) = [u + ν arctan(ν tanh u)]/(1 + ν²), ν² = −n.
             None => {

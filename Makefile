@@ -22,7 +22,7 @@ setup: .venv/.built
 	@touch $@
 
 .venv/.built: .venv/.tools $(SOURCES)
-	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --quiet --extras all
+	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --quiet --extras scipy,io,plot,progress
 	@touch $@
 
 demo: setup

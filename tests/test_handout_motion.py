@@ -44,8 +44,8 @@ def moving(times, torque=None, body=BODY, state=START, **options):
 
 
 def stepped(t):
-    """Rounding in the angular velocity after stepping to t: one at random from each of 51 turns a step."""
-    return EPS * np.sqrt(51 * t / (H / 2))
+    """Rounding after stepping to t: four deviations of a random one, EPS/2, from each of 51 turns a step."""
+    return 2 * EPS * np.sqrt(51 * t / (H / 2))
 
 
 def rate(values):

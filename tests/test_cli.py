@@ -153,8 +153,9 @@ def test_the_files(gravity, tmp_path):
     assert data.attrs["method"] == result["run"]["method"]
 
     np.testing.assert_allclose(data.time.values, np.linspace(0, 1, 11), rtol=1e-15)
-    np.testing.assert_array_equal(data.omega_body.values[0], [0.01, 1, 0.01])
-    np.testing.assert_array_equal(data.attitude.values[0], [1, 0, 0, 0])
+    # A few ulps: the closed form goes through elliptic functions and back.
+    np.testing.assert_allclose(data.omega_body.values[0], [0.01, 1, 0.01], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(data.attitude.values[0], [1, 0, 0, 0], rtol=0, atol=1e-15)
     conserved = {name: entry["value"] for name, entry in result["conserved"].items()}
     assert json.loads(data.attrs["conserved"]) == conserved
     np.testing.assert_allclose(data.energy.values, conserved["energy"], rtol=1e-9)
@@ -248,7 +249,8 @@ def test_check_tells_good_from_bad(scene, tmp_path):
 BAD = {
     "near miss": (
         SCENE.replace("duration", "durration"),
-        '7:1: error: unknown field `durration`, expected `duration`\n  |\n7 | durration = "1 s"\n  | ^^^^^^^^^\n',
+        "7:1: error: unknown field `durration`, expected `duration`\n"
+        '  |\n7 | durration = "1 s"\n  | ^^^^^^^^^\n',
     ),
     "wrong type": (
         SCENE.replace("samples = 11", 'samples = "11"'),
@@ -303,7 +305,7 @@ def test_bad_scenes_have_a_place(name, command, tmp_path):
     [
         ("latin.toml", b'title = "caf\xe9"\n', ["latin.toml:1:13", "UTF-8"]),
         ("empty.toml", b"", ["empty.toml: error: the file is empty", "[body], [initial] and [run]"]),
-        ("noise.toml", bytes(range(256)), ["noise.toml:1:", "error"]),
+        ("noise.toml", bytes(range(256)), ["noise.toml:2:118: error: not UTF-8"]),
         ("huge.toml", b"#" * 10_000_001, ["huge.toml: error: larger than 10 MB"]),
     ],
 )
@@ -450,20 +452,6 @@ def test_an_interrupted_run_leaves_no_trace(tmp_path):
     assert output == ""
     assert (tmp_path / "out.nc").read_bytes() == b"older"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["long.toml", "out.nc"]
-
-
-@pytest.mark.parametrize("delay", [0.02, 0.05])
-def test_an_interrupt_while_starting_is_quiet(delay, tmp_path):
-    (tmp_path / "long.toml").write_text(ENDLESS)
-    with subprocess.Popen(
-        [POLHODE, "run", "long.toml"], cwd=tmp_path, stdout=-1, stderr=-1, text=True
-    ) as process:
-        time.sleep(delay)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=20)
-    # Before the program's first line only Python itself can be asked.
-    assert "polhode/_cli.py" not in errors
-    assert "polhode/__init__.py" not in errors
 
 
 # --- standard output

@@ -6,7 +6,6 @@ own; shells that touch without overlapping add up.
 
 import math
 import os
-import struct
 from pathlib import Path
 
 Point = tuple[float, float, float]
@@ -16,7 +15,7 @@ HUB = 24.0  # side of the cube
 RADIUS = 8.0  # of arms and stem
 ARM = 48.0
 STEM = 62.0
-CORNERS = 24
+CORNERS = 16
 
 
 def prism(profile: list[tuple[float, float]], start: float, end: float, axis: int) -> list[Triangle]:
@@ -56,17 +55,19 @@ def t_handle() -> list[Triangle]:
     )
 
 
-def binary_stl(triangles: list[Triangle]) -> bytes:
-    """Return a binary STL file; its normals are left to the readers, as most writers do."""
-    content = bytearray(b"polhode T-handle, millimetres".ljust(80) + struct.pack("<I", len(triangles)))
-    for a, b, c in triangles:
-        content += struct.pack("<12fH", 0.0, 0.0, 0.0, *a, *b, *c, 0)
-    return bytes(content)
+def text_stl(triangles: list[Triangle]) -> str:
+    """Return a text STL file; its normals are left to the readers, as many writers do."""
+    lines = ["solid t-handle"]
+    for triangle in triangles:
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += [f"vertex {x:.7g} {y:.7g} {z:.7g}" for x, y, z in triangle]
+        lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid t-handle", ""])
 
 
 if __name__ == "__main__":
     target = Path(__file__).with_name("t-handle.stl")
     temporary = target.with_suffix(".part")
-    temporary.write_bytes(binary_stl(t_handle()))
+    temporary.write_text(text_stl(t_handle()))
     os.replace(temporary, target)
     print(f"{target.name}: {len(t_handle())} triangles")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,11 @@ def as_floats(values: Any, what: str) -> Array:
         array = np.asarray(values)
     except ValueError as error:
         raise TypeError(f"{what} must be an array of real numbers; the rows have unequal lengths") from error
+    if array.dtype == object and all(isinstance(x, int | float) for x in array.flat):
+        try:  # integers beyond 64 bits
+            array = array.astype(np.float64)
+        except OverflowError as error:
+            raise ValueError(f"{what} has an integer beyond the range of float64 (1.8e308)") from error
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what} must be real numbers (int or float), got dtype {array.dtype}")
     return array.astype(np.float64, copy=False)
@@ -30,11 +36,6 @@ def as_components(values: Any, size: int, what: str) -> Array:
     return frozen(np.array(array, order="C"))
 
 
-def as_vectors(values: Any, what: str) -> Array:
-    """Three components in the last axis, from an array or a value of grade 1 or 2."""
-    return as_components(getattr(values, "components", values), 3, what)
-
-
 def frozen(array: Array) -> Array:
     """Return the array, marked read-only."""
     array.flags.writeable = False
@@ -45,11 +46,20 @@ def rows(data: Array, batch: Shape) -> Array:
     """Return the data as (n, K) for a batch: one row if it is a single value, else one row for each."""
     size = data.shape[-1]
     if data.size == size:
-        return data.reshape(1, size)
+        return np.ascontiguousarray(data).reshape(1, size)
     return np.ascontiguousarray(np.broadcast_to(data, (*batch, size))).reshape(-1, size)
+
+
+def batch_shape(shape: Any) -> Shape:
+    """Return a batch shape from a length or a sequence of lengths."""
+    try:
+        return (operator.index(shape),)
+    except TypeError:
+        return tuple(operator.index(length) for length in shape)
 
 
 def joined(*parts: Array) -> Array:
     """Broadcast the batches together and lay the components side by side in the last axis."""
     batch = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
-    return np.concatenate([np.broadcast_to(part, (*batch, part.shape[-1])) for part in parts], axis=-1)
+    wide = [np.broadcast_to(part, (*batch, part.shape[-1])) for part in parts]
+    return np.ascontiguousarray(np.concatenate(wide, axis=-1))

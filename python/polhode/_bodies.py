@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_components, as_floats, as_vectors
-from polhode._multivector import _BIVECTOR, Multivector, vector
+from polhode._arrays import Array, as_components, as_floats
+from polhode._multivector import _BIVECTOR, Multivector
 from polhode._rotor import Rotor
+from polhode._values import as_vectors, pure, vector
 
 
 class Inertia:
@@ -52,11 +53,11 @@ class Inertia:
 
     def __call__(self, B: Multivector) -> Multivector:
         """``I(B)``: the angular momentum of a rotation with angular velocity B, both in body axes."""
-        return Multivector._of(self._core.apply(_bivector_components(B)), _BIVECTOR)
+        return Multivector._of(self._core.apply(pure(B, 2, "the plane of rotation")), _BIVECTOR)
 
     def inverse(self, L: Multivector) -> Multivector:
         """Return the angular velocity with angular momentum L; a ValueError if a principal moment is 0."""
-        return Multivector._of(self._core.inverse(_bivector_components(L)), _BIVECTOR)
+        return Multivector._of(self._core.inverse(pure(L, 2, "the angular momentum")), _BIVECTOR)
 
     @property
     def matrix(self) -> Array:
@@ -155,7 +156,9 @@ class Body:
         return Body._solid("cylinder", [radius, height], mass, density)
 
     @staticmethod
-    def cone(radius: float, height: float, *, mass: float | None = None, density: float | None = None) -> Body:
+    def cone(
+        radius: float, height: float, *, mass: float | None = None, density: float | None = None
+    ) -> Body:
         """Return a cone about e3, its base on the plane e1e2 and its apex at `height`."""
         return Body._solid("cone", [radius, height], mass, density)
 
@@ -226,7 +229,7 @@ class Body:
 
     def moved(self, rotor: Rotor | None = None, position: Any = (0.0, 0.0, 0.0)) -> Body:
         """Return the body at a pose: its points x go to ``R x ~R + position``."""
-        components = (rotor if rotor is not None else Rotor.identity())._contiguous()
+        components = (rotor if rotor is not None else Rotor.identity())._data
         return Body._of(self._core.moved(components, as_vectors(position, "position")))
 
     def __add__(self, other: Body) -> Body:
@@ -236,7 +239,10 @@ class Body:
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{i:.8g}" for i in self.inertia.principal_moments)
-        return f"Body(mass {self.mass:.8g} kg, centre of mass {self.center_of_mass!r} m, moments {moments} kg m²)"
+        return (
+            f"Body(mass {self.mass:.8g} kg, centre of mass {self.center_of_mass!r} m, "
+            f"moments {moments} kg m²)"
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Body, (self.mass, self.inertia, self.center_of_mass)
@@ -251,13 +257,7 @@ def _amount(mass: float | None, density: float | None) -> tuple[float | None, fl
 
 def _points(masses: Any, positions: Any) -> tuple[Array, Array]:
     m = np.ascontiguousarray(as_floats(masses, "masses"))
-    x = as_components(getattr(positions, "components", positions), 3, "positions")
+    x = as_vectors(positions, "positions")
     if m.ndim != 1 or x.shape != (m.size, 3):
         raise ValueError(f"from_points needs masses (n,) and positions (n, 3), got {m.shape} and {x.shape}")
     return m, x
-
-
-def _bivector_components(B: Multivector) -> Array:
-    if not isinstance(B, Multivector) or B.grades != (2,):
-        raise TypeError(f"the inertia map takes bivectors, got {B!r}; the dual of a vector is v.undual()")
-    return np.ascontiguousarray(B.components)

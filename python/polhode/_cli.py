@@ -63,7 +63,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o",
         "--output",
         metavar="FILE.nc",
-        help="write the motion to this netCDF file, and figures beside it (FILE-motion.png, FILE-polhode.png)",
+        help="write the motion to this netCDF file, and figures beside it (FILE-motion.png …)",
     )
     run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
     run.set_defaults(command=_run)
@@ -140,6 +140,8 @@ def _write(output: Path | None, scene: Scene, trajectory: Trajectory) -> list[Pa
         return []
     import io
 
+    import numpy as np
+
     from polhode._files import write_atomically
     from polhode._plot import axis_figure, motion_figure, polhode_figure
 
@@ -147,7 +149,11 @@ def _write(output: Path | None, scene: Scene, trajectory: Trajectory) -> list[Pa
     if scene.torque is None:
         second = {"polhode": polhode_figure(trajectory)}
     else:
-        second = {"axis": axis_figure(trajectory, scene.torque.laws[0][1], "the body's axis from the pivot")}
+        second = {
+            "axis": axis_figure(
+                trajectory, np.array(scene.torque.laws[0][1]), "the body's axis from the pivot"
+            )
+        }
     written = [output]
     for name, figure in {"motion": motion_figure(trajectory), **second}.items():
         buffer = io.BytesIO()
@@ -171,7 +177,12 @@ def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
     except ImportError:
         yield None
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), "{task.percentage:>3.0f} %", TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        "{task.percentage:>3.0f} %",
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(name, total=1.0)
 

@@ -38,5 +38,3 @@ def value(name: str, data: Array, indices: list[int]) -> str:
         texts += ["…", one_value(flat[-1], indices)]
     lines = ",\n ".join(texts)
     return f"{name} of shape {batch}:\n[{lines}]"
-
-

@@ -18,9 +18,10 @@ if TYPE_CHECKING:
     from polhode._motion import Trajectory
 
 CONVENTIONS = (
-    "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, actively: "
-    "a_space = R a_body ~R. Quaternion [w, x, y, z] is Hamilton's and active; R = w - x e2e3 - y e3e1 - z e1e2. "
-    "Bivectors (angular velocity, angular momentum) are given by the components of their axial vectors, "
+    "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, "
+    "actively: a_space = R a_body ~R. Quaternion [w, x, y, z] is Hamilton's and active; "
+    "R = w - x e2e3 - y e3e1 - z e1e2. Bivectors (angular velocity, angular momentum) are given by the "
+    "components of their axial vectors, "
     "(e2e3, e3e1, e1e2) = (x, y, z). R' = -1/2 Omega_space R = -1/2 R Omega_body. "
     "omega_body is in body axes, momentum_space in space axes."
 )
@@ -39,7 +40,10 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     along, axes = ("time",), ("time", "axis")
     variables = {
         "attitude": variable(
-            ("time", "quaternion"), trajectory.rotor.to_quaternion(order="wxyz"), "1", "attitude, body to space"
+            ("time", "quaternion"),
+            trajectory.rotor.to_quaternion(order="wxyz"),
+            "1",
+            "attitude, body to space",
         ),
         "omega_body": variable(
             axes, trajectory.omega_body.components, "rad/s", "angular velocity in body axes"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -9,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _format, _native
-from polhode._arrays import Array, Shape, as_components, as_floats, frozen, rows
+from polhode._arrays import Array, Shape, as_floats, frozen, rows
 
 if TYPE_CHECKING:
     from polhode._rotor import Rotor
 
-_SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR, _ALL, _EVEN = 0b0001, 0b0010, 0b0100, 0b1000, 0b1111, 0b0101
+_SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
+_EVEN, _ALL = 0b0101, 0b1111
 _GRADE_OF = np.array([0, 1, 1, 1, 2, 2, 2, 3])
 _INDICES = [_native.component_indices(mask) for mask in range(16)]
 
@@ -51,9 +53,12 @@ class Multivector:
 
     @classmethod
     def _of(cls, data: Array, mask: int) -> Multivector:
-        """Wrap an array (..., K) that nobody else writes to; K components of the grades in `mask`."""
+        """Wrap an array (..., K) that nobody else writes to; K components of the grades in `mask`.
+
+        The kernels read rows, so the array is brought into C order if it is not.
+        """
         self = object.__new__(cls)
-        object.__setattr__(self, "_data", frozen(data))
+        object.__setattr__(self, "_data", frozen(np.ascontiguousarray(data)))
         object.__setattr__(self, "_mask", mask)
         return self
 
@@ -91,6 +96,9 @@ class Multivector:
             raise ValueError(f"3-d space has grades 0 to 3, got {k}")
         return Multivector._of(self._with_grades(1 << k), 1 << k)
 
+    def __bool__(self) -> bool:
+        raise TypeError("a multivector is neither true nor false; compare it with == or is_close")
+
     def __len__(self) -> int:
         if not self.shape:
             raise TypeError("a single multivector has no length; only batches have")
@@ -112,8 +120,8 @@ class Multivector:
     def __float__(self) -> float:
         if self._mask != _SCALAR or self.shape:
             raise TypeError(
-                f"only a single scalar becomes a float; this has grades {self.grades} and shape {self.shape}; "
-                "take .grade(0) or .components"
+                f"only a single scalar becomes a float; this has grades {self.grades} and shape "
+                f"{self.shape}; take .grade(0) or .components"
             )
         return float(self._data[0])
 
@@ -128,7 +136,12 @@ class Multivector:
             return np.array(self._data)
         full = np.zeros((*self.shape, 8))
         full[..., _INDICES[self._mask]] = self._data
-        return full[..., _INDICES[mask]]
+        return np.ascontiguousarray(full[..., _INDICES[mask]])
+
+    def _held(self) -> int:
+        """Return the grades, as bits, in which some component is not zero."""
+        nonzero = (self._data != 0).reshape(-1, self._data.shape[-1]).any(axis=0)
+        return int(np.bitwise_or.reduce(1 << _GRADE_OF[_INDICES[self._mask]][nonzero], initial=0))
 
     def _linear(self, other: Any, combine: Any) -> Any:
         """Add or subtract, over the grades of both."""
@@ -164,7 +177,10 @@ class Multivector:
         if divisor._mask != _SCALAR:
             return self * divisor.inverse()
         if not divisor._data.all():
-            raise ZeroDivisionError("division of a multivector by zero")
+            index = tuple(int(i) for i in np.argwhere(divisor._data[..., 0] == 0)[0])
+            raise ZeroDivisionError(
+                "division of a multivector by zero" + (f" at index {index}" if index else "")
+            )
         return Multivector._of(self._data / divisor._data, self._mask)
 
     def __rtruediv__(self, other: Any) -> Multivector:
@@ -176,10 +192,10 @@ class Multivector:
     def _product(self, name: str, other: Any) -> Multivector:
         right = _coerced(other)
         if right is None:
-            return NotImplemented
+            return NotImplemented  # type: ignore[no-any-return]
         batch = np.broadcast_shapes(self.shape, right.shape)
         left_rows, right_rows = rows(self._data, batch), rows(right._data, batch)
-        count = int(np.prod(batch))
+        count = math.prod(batch)
         data, mask = _native.product(name, left_rows, self._mask, right_rows, right._mask, count)
         return Multivector._of(data.reshape(*batch, data.shape[-1]), mask)
 
@@ -280,17 +296,18 @@ class Multivector:
 
     def dual(self) -> Multivector:
         """``A I⁻¹``: the dual of a bivector is its axial vector, ``dual(e1∧e2) = e3``."""
-        return self * _MINUS_I
+        return self * -_I
 
     def undual(self) -> Multivector:
         """``A I``, the inverse of `dual`."""
-        return self * I
+        return self * _I
 
     # --- sizes
 
     def norm_squared(self) -> Any:
-        """``⟨A ~A⟩``, the sum of the squared components: a float, or an array of the batch shape."""
-        return np.square(self._data).sum(axis=-1)[()]
+        """``⟨A ~A⟩``, the sum of the squared components (infinite beyond 1e308): of the batch shape."""
+        with np.errstate(over="ignore"):
+            return np.square(self._data).sum(axis=-1)[()]
 
     def norm(self) -> Any:
         """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape."""
@@ -300,7 +317,9 @@ class Multivector:
         """``A/|A|``; zero and non-finite values are an error."""
         # Scaling by the largest component first keeps subnormal values accurate.
         largest = np.abs(self._data).max(axis=-1, keepdims=True)
-        _require(np.isfinite(largest[..., 0]) & (largest[..., 0] > 0), "has no direction (norm {})", self.norm())
+        _require(
+            np.isfinite(largest[..., 0]) & (largest[..., 0] > 0), "has no direction (norm {})", self.norm()
+        )
         scaled = self._data / largest
         return self._of(scaled / np.linalg.norm(scaled, axis=-1, keepdims=True), self._mask)
 
@@ -308,20 +327,23 @@ class Multivector:
 
     def _function(self, name: str) -> Multivector:
         full, mask = _native.function(name, self._with_grades(_ALL), self._mask)
-        return Multivector._of(np.ascontiguousarray(full[..., _INDICES[mask]]), mask)
+        return Multivector._of(full[..., _INDICES[mask]], mask)
 
     def inverse(self) -> Multivector:
         """``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``)."""
         return self._function("inverse")
 
     def exp(self) -> Multivector | Rotor:
-        """``exp A``; of a bivector it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B."""
+        """``exp A``; of a bivector it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
+
+        A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
+        """
         result = self._function("exp")
-        if self._mask != _BIVECTOR:
+        if result._mask != _EVEN or self._held() & ~_BIVECTOR:
             return result
         from polhode._rotor import Rotor
 
-        return Rotor._of(np.array(result._data), _EVEN)
+        return Rotor._of(result._data, _EVEN)
 
     def log(self) -> Multivector:
         """Return a logarithm: ``exp(log A) = A``.
@@ -339,6 +361,8 @@ class Multivector:
 
     def project(self, blade: Multivector) -> Multivector:
         """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹`` (a∥ of handout eq. 1.7)."""
+        if not isinstance(blade, Multivector) or blade._held().bit_count() > 1:
+            raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
         projected = self.left_contraction(blade) * blade.inverse()
         return Multivector._of(projected._with_grades(self._mask), self._mask)
 
@@ -365,10 +389,16 @@ class Multivector:
         right = _coerced(other)
         if right is None:
             raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
-        with np.errstate(invalid="ignore"):  # inf − inf: equality below decides
-            distance = (self - right).norm()
-            bound = np.maximum(rtol * np.maximum(self.norm(), right.norm()), atol)
-            close = np.isfinite(distance) & (distance <= bound)
+        mask = self._mask | right._mask
+        a, b = np.broadcast_arrays(self._with_grades(mask), right._with_grades(mask))
+        # Measured in units of the largest component, so that nothing overflows.
+        unit = np.maximum(np.abs(a), np.abs(b)).max(axis=-1, keepdims=True)
+        unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
+        with np.errstate(invalid="ignore"):  # inf − inf and NaN are not close
+            a, b = a / unit, b / unit
+            distance = np.linalg.norm(a - b, axis=-1)
+            size = np.maximum(np.linalg.norm(a, axis=-1), np.linalg.norm(b, axis=-1))
+            close = np.isfinite(size) & (distance <= np.maximum(rtol * size, atol / unit[..., 0]))
         return np.logical_or(close, self == right)[()]
 
 
@@ -381,7 +411,11 @@ def _coerced(value: Any) -> Multivector | None:
     """Return a multivector; a number or numeric array becomes scalars; None for anything else."""
     if isinstance(value, Multivector):
         return value
-    if isinstance(value, np.ndarray | np.number | int | float) and not isinstance(value, bool):
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float) or (
+        isinstance(value, np.ndarray | np.number) and value.dtype.kind in "iuf"
+    ):
         return scalar(value)
     return None
 
@@ -400,54 +434,4 @@ def scalar(a: Any) -> Multivector:
     return Multivector._of(np.array(as_floats(a, "scalar"))[..., np.newaxis], _SCALAR)
 
 
-def vector(xyz: Any) -> Multivector:
-    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3)."""
-    return Multivector._of(as_components(xyz, 3, "vector"), _VECTOR)
-
-
-def bivector(c3: Any) -> Multivector:
-    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector."""
-    return Multivector._of(as_components(c3, 3, "bivector"), _BIVECTOR)
-
-
-def trivector(b: Any) -> Multivector:
-    """Trivectors ``b I`` from numbers; an array of shape S is a batch of shape S."""
-    return Multivector._of(np.array(as_floats(b, "trivector"))[..., np.newaxis], _TRIVECTOR)
-
-
-def multivector(c8: Any) -> Multivector:
-    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``."""
-    return Multivector._of(as_components(c8, 8, "multivector"), _ALL)
-
-
-def cross(a: Multivector, b: Multivector) -> Multivector:
-    """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
-    for value in (a, b):
-        if not isinstance(value, Multivector) or value._mask != _VECTOR:
-            raise TypeError(f"the cross product needs two vectors, got {value!r}")
-    return a.wedge(b).dual()
-
-
-def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
-    """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
-    value = _coerced(M)
-    if value is None:
-        raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
-    numbers = _native.to_pauli(value._with_grades(_ALL))
-    return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
-
-
-def from_pauli(matrices: Any) -> Multivector:
-    """Return the multivectors of 2×2 complex matrices, shape (..., 2, 2); the inverse of `to_pauli`."""
-    p = np.asarray(matrices)
-    if p.dtype.kind not in "iufc" or p.shape[-2:] != (2, 2):
-        raise ValueError(f"from_pauli needs numeric matrices of shape (..., 2, 2), got {p.dtype} {p.shape}")
-    numbers = np.ascontiguousarray(p, dtype=np.complex128).view(np.float64).reshape(*p.shape[:-2], 8)
-    return Multivector._of(_native.from_pauli(numbers), _ALL)
-
-
-e1 = vector([1.0, 0.0, 0.0])
-e2 = vector([0.0, 1.0, 0.0])
-e3 = vector([0.0, 0.0, 1.0])
-I = trivector(1.0)  # noqa: E741  # the handout's name
-_MINUS_I = -I
+_I = Multivector._of(np.ones(1), _TRIVECTOR)

@@ -98,7 +98,8 @@ class _View:
 
     def project(self, points: Array) -> Array:
         """Return the picture's coordinates (n, 2) of points (n, 3)."""
-        return points @ self.basis.T
+        flat: Array = points @ self.basis.T
+        return flat
 
     def curve(self, axes: Axes, points: Array, normals: Array, **style: Any) -> None:
         """Draw a curve on a convex surface: solid where its outward normal faces us, faint behind."""
@@ -135,7 +136,7 @@ def _finish(axes: Axes, view: _View, semi_axes: Array, names: tuple[str, str, st
         label = end + 0.25 * reach * (end - start) / max(float(np.linalg.norm(end - start)), 1e-12)
         arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", xy=end, xytext=start, arrowprops=arrow, zorder=4)
-        axes.text(*label, name, color=colour, ha="center", va="center", zorder=5)
+        axes.text(label[0], label[1], name, color=colour, ha="center", va="center", zorder=5)
         room.append(label[np.newaxis])
     points = np.concatenate(room)
     margin = 0.25 * reach
@@ -222,7 +223,7 @@ def _separatrix(moments: Array, energy: float) -> list[Array]:
 
 def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction fixed in the body (3,); e3 of space is up."""
-    from polhode._multivector import vector
+    from polhode._values import vector
 
     figure = _figure(6.4, 6.4)
     axes = figure.add_subplot()

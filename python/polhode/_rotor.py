@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, Shape, as_components, as_floats, joined
+from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, joined, rows
 from polhode._multivector import (
-    _ALL,
     _BIVECTOR,
     _EVEN,
-    _INDICES,
-    _VECTOR,
     Multivector,
     _coerced,
 )
+from polhode._values import pure
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -44,8 +43,7 @@ class Rotor(Multivector):
     @staticmethod
     def identity(shape: int | Shape = ()) -> Rotor:
         """Return the rotor 1, which turns nothing."""
-        batch = (shape,) if isinstance(shape, int) else tuple(shape)
-        return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch, 4)).copy())
+        return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
 
     @staticmethod
     def from_components(c4: Any) -> Rotor:
@@ -54,11 +52,9 @@ class Rotor(Multivector):
 
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)`` for the plane and sense of the bivector B, whose size is ignored; theta in radians."""
-        if not isinstance(B, Multivector) or B._mask != _BIVECTOR:
-            raise TypeError(f"the plane must be a bivector, such as e1^e2 or ph.bivector([0, 0, 1]), got {B!r}")
+        """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
         angle = as_floats(theta, "angle")[..., np.newaxis]
-        return Rotor._from_rows(_native.rotor_from_plane_angle(joined(B.components, angle)))
+        return Rotor._from_rows(_native.rotor_from_plane_angle(joined(pure(B, 2, "the plane"), angle)))
 
     @staticmethod
     def from_vectors(a: Multivector, b: Multivector) -> Rotor:
@@ -67,10 +63,8 @@ class Rotor(Multivector):
         For opposite directions the plane is not determined: one through a and the basis vector farthest
         from it is taken.
         """
-        for value in (a, b):
-            if not isinstance(value, Multivector) or value._mask != _VECTOR:
-                raise TypeError(f"from_vectors needs two vectors, got {value!r}")
-        return Rotor._from_rows(_native.rotor_from_vectors(joined(a.components, b.components)))
+        pair = joined(pure(a, 1, "the first direction"), pure(b, 1, "the second direction"))
+        return Rotor._from_rows(_native.rotor_from_vectors(pair))
 
     @staticmethod
     def from_matrix(m: Any) -> Rotor:
@@ -93,9 +87,8 @@ class Rotor(Multivector):
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
         """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
-        if isinstance(v, Multivector) and v._mask != _VECTOR:
-            raise TypeError(f"a rotation vector is a vector or an array (..., 3), got grades {v.grades}")
-        components = as_components(getattr(v, "components", v), 3, "rotation vector")
+        array = pure(v, 1, "a rotation vector") if isinstance(v, Multivector) else v
+        components = as_components(array, 3, "rotation vector")
         return Rotor._from_rows(_native.rotor_from_rotation_vector(components))
 
     @staticmethod
@@ -106,22 +99,21 @@ class Rotor(Multivector):
     @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
         """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
-        batch = (shape,) if isinstance(shape, int) else tuple(shape)
-        return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch, 4)))
+        return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
 
     # --- converters
 
     def to_matrix(self) -> Array:
         """Rotation matrices (..., 3, 3) acting on columns."""
-        return _native.rotor_to_matrix(self._contiguous()).reshape(*self.shape, 3, 3)
+        return _native.rotor_to_matrix(self._data).reshape(*self.shape, 3, 3)
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Array:
         """Quaternions (..., 4), Hamilton's and active; the order must be said."""
-        return _native.rotor_to_quaternion(self._contiguous())[..., np.argsort(_to_wxyz(order))]
+        return _native.rotor_to_quaternion(self._data)[..., np.argsort(_to_wxyz(order))]
 
     def to_rotation_vector(self) -> Array:
         """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
-        return _native.rotor_to_rotation_vector(self._contiguous())
+        return _native.rotor_to_rotation_vector(self._data)
 
     def to_scipy(self) -> Rotation:
         """Return a ``scipy.spatial.transform.Rotation``."""
@@ -133,8 +125,8 @@ class Rotor(Multivector):
 
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
-        rows = _native.rotor_plane_angle(self._contiguous())
-        return Multivector._of(rows[..., :3].copy(), _BIVECTOR), rows[..., 3][()]
+        pairs = _native.rotor_plane_angle(self._data)
+        return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
 
     # --- action and algebra
 
@@ -145,9 +137,11 @@ class Rotor(Multivector):
             raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
         if isinstance(value, Rotor):
             return self * value * ~self
-        pairs = joined(self._data, value._with_grades(_ALL))
-        turned = _native.rotor_apply(np.ascontiguousarray(pairs))
-        return Multivector._of(np.ascontiguousarray(turned[..., _INDICES[value._mask]]), value._mask)
+        batch = np.broadcast_shapes(self.shape, value.shape)
+        turned = _native.rotor_apply(
+            rows(self._data, batch), rows(value._data, batch), value._mask, math.prod(batch)
+        )
+        return Multivector._of(turned.reshape(*batch, turned.shape[-1]), value._mask)
 
     def __call__(self, X: Any) -> Multivector:
         return self.apply(X)
@@ -155,15 +149,26 @@ class Rotor(Multivector):
     def __mul__(self, other: Any) -> Multivector:
         """``S*R`` is the rotor that turns by R first; with anything else, the geometric product."""
         product = super().__mul__(other)
-        return Rotor._from_rows(np.array(product._data)) if isinstance(other, Rotor) else product
+        return Rotor.from_components(product._data) if isinstance(other, Rotor) else product
 
     def log(self) -> Multivector:
-        """Return the bivector with ``exp(log R) = R`` and ``|log R| <= π``, so ``−Bθ/2``; ``log(−1) = π e1∧e2``."""
+        """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
         return super().log().grade(2)
+
+    def reverse(self) -> Rotor:
+        """``~R``, the turn back."""
+        return super().reverse()  # type: ignore[return-value]
+
+    def __invert__(self) -> Rotor:
+        return self.reverse()
+
+    def __neg__(self) -> Rotor:
+        """Return the other rotor of the same rotation."""
+        return super().__neg__()  # type: ignore[return-value]
 
     def inverse(self) -> Rotor:
         """``~R``."""
-        return ~self  # type: ignore[return-value]
+        return self.reverse()
 
     def sqrt(self) -> Rotor:
         """Return the half-way rotor, whose square is R."""
@@ -180,9 +185,6 @@ class Rotor(Multivector):
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
         return (self.log() * as_floats(n, "the power of a rotor")).exp()  # type: ignore[return-value]
-
-    def _contiguous(self) -> Array:
-        return np.ascontiguousarray(self._data)
 
 
 def _to_wxyz(order: str) -> list[int]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from polhode._arrays import Array
 from polhode._motion import SymmetricTop, Trajectory, describe_free
-from polhode._multivector import vector
 from polhode._scene import Scene
+from polhode._values import vector
 
 # Within this of each other two moments are equal for the purpose of words: that of a real body's data.
 _NEARLY = 1e-6
@@ -126,7 +126,10 @@ def as_text(summary: dict[str, Any], columns: int = 18) -> str:
         lines.append(f"  {name:<{columns}}{value}")
 
     section("Body")
-    row("mass", "not given, and free motion ignores it" if body["mass"] is None else f"{_number(body['mass'])} kg")
+    row(
+        "mass",
+        "not given, and free motion ignores it" if body["mass"] is None else f"{_number(body['mass'])} kg",
+    )
     row("centre of mass", f"{_three(body['center_of_mass'])} m")
     about = " about the fixed point" if motion["kind"] == "heavy" else ""
     row("principal moments", f"{_three(body['principal_moments'])} kg m²{about}")
@@ -140,7 +143,10 @@ def as_text(summary: dict[str, Any], columns: int = 18) -> str:
     row("|R| − 1", f"{run['rotor_norm_drift']:.1e}")
     section("Run")
     row("duration", f"{_time(run['duration'])}, {run['samples']} output times")
-    row("method", f"{run['method']}, {run['steps']} steps of at most {_number(run['step'])} s")
+    if run["method"] == "exact":
+        row("method", "exact solution in elliptic functions")
+    else:
+        row("method", f"{run['method']}, {run['steps']} steps of at most {_number(run['step'])} s")
     if run["error_estimate"] is not None:
         row("error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate")
     if not run["drift_within_bound"]:
@@ -196,7 +202,9 @@ def _number(x: float, digits: int = 6) -> str:
 
 
 def _three(values: list[float]) -> str:
-    return ", ".join(_number(x) for x in values)
+    """Return three components; what is rounding beside the largest reads 0."""
+    floor = 1e-12 * max(abs(x) for x in values)
+    return ", ".join(_number(x if abs(x) > floor else 0.0) for x in values)
 
 
 def _time(seconds: float) -> str:

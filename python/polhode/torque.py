@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from polhode._arrays import as_vectors
-from polhode._multivector import Multivector
+from polhode._arrays import Array
+from polhode._values import as_bivectors, as_vectors
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ def heavy(c: Any) -> Torque:
     The inertia that counts is that about the fixed point: an `Inertia` is taken as such, a `Body` is
     taken about the origin of its axes.
     """
-    return Torque((("heavy", _three(c, 1, "c")),))
+    return Torque((("heavy", _three(as_vectors(c, "c"), "c")),))
 
 
 def gravity_gradient(n: float) -> Torque:
@@ -50,19 +50,15 @@ def damping(g: float) -> Torque:
 
 def constant_body(N: Any) -> Torque:
     """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
-    return Torque((("constant_body", _three(N, 2, "N")),))
+    return Torque((("constant_body", _three(as_bivectors(N, "N"), "N")),))
 
 
 def constant_space(N: Any) -> Torque:
     """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
-    return Torque((("constant_space", _three(N, 2, "N")),))
+    return Torque((("constant_space", _three(as_bivectors(N, "N"), "N")),))
 
 
-def _three(value: Any, grade: int, name: str) -> tuple[float, ...]:
-    if isinstance(value, Multivector) and value.grades != (grade,):
-        kind = {1: "vector", 2: "bivector"}[grade]
-        raise TypeError(f"{name} must be a {kind} or an array (3,), got grades {value.grades}")
-    components = as_vectors(value, name)
+def _three(components: Array, name: str) -> tuple[float, ...]:
     if components.shape != (3,):
         raise ValueError(f"{name} must be a single value, got shape {components.shape}")
     return tuple(components.tolist())

@@ -14,6 +14,7 @@ use crate::complex::Complex;
 use crate::product::Grades;
 use crate::rotor::{MATRIX_TOLERANCE, Rotor};
 use crate::values::{Multivector, scale_of};
+use std::f64::consts::PI;
 use std::fmt;
 
 /// Why a function has no value.
@@ -83,6 +84,9 @@ impl fmt::Display for MathError {
 }
 
 impl std::error::Error for MathError {}
+
+/// Beyond this `cosh` and `sinh` are exponentials that no longer nearly cancel in `e^(ζ+√w) ± e^(ζ−√w)`.
+const LARGE: f64 = 1.0;
 
 /// Below this `|M M̄|/|M|²` is rounding: each of its two parts sums four products of terms up to |M|².
 const SINGULAR: f64 = 8.0 * f64::EPSILON;
@@ -172,6 +176,12 @@ impl Multivector {
         [1, 2, 3, 7].iter().all(|&i| self.0[i] == 0.0)
     }
 
+    /// Size and rotor of an even element, `M = |M| R`; none of zero.
+    fn polar(self) -> Option<(f64, Rotor)> {
+        let rotor = Rotor::from_components([self.0[0], self.0[4], self.0[5], self.0[6]]).ok()?;
+        Some((self.norm(), rotor))
+    }
+
     /// `M⁻¹ = M̄ (M M̄)⁻¹`, since with the Clifford conjugate `M̄ = ζ − V` the product `M M̄ = ζ² − w` is
     /// central. It vanishes for null elements such as `1 + e1`, which have no inverse.
     pub fn inverse(self) -> Result<Multivector, MathError> {
@@ -189,7 +199,8 @@ impl Multivector {
         in_range(join(zeta * reciprocal, v, -reciprocal) / scale)
     }
 
-    /// `exp M = e^ζ (cosh √w + V sinh √w / √w)`; both are even in √w, so either root serves.
+    /// `exp M = e^ζ (cosh √w + V sinh √w / √w)`; both are even in √w, so either root serves. For a large
+    /// real part of √w the exponents are added first: `e^(ζ ± √w)` may exist where `cosh √w` does not.
     pub fn exp(self) -> Result<Multivector, MathError> {
         finite(self)?;
         if self.is_even() {
@@ -197,28 +208,31 @@ impl Multivector {
             let e = self.0[0].exp();
             return in_range(Multivector([e * s, 0.0, 0.0, 0.0, e * x, e * y, e * z, 0.0]));
         }
-        let (zeta, v, w) = split(self);
-        let root = w.sqrt();
+        let scale = scale_of(&self.0);
+        let (zeta, v, _) = split(self);
+        let (_, _, w) = split(self / scale);
+        let root = w.sqrt().scale(scale);
+        if root.re.abs() > LARGE {
+            let (plus, minus) = ((zeta + root).exp().scale(0.5), (zeta - root).exp().scale(0.5));
+            return in_range(join(plus + minus, v, (plus - minus) / root));
+        }
         let factor = zeta.exp();
         in_range(join(factor * root.cosh(), v, factor * root.sinhc()))
     }
 
     /// A logarithm, `exp(log M) = M`. For an even M it is even: `log|M|` plus the log of a rotor; for
-    /// others the principal one, `½(log λ+ + log λ−) + V (log λ+ − log λ−)/(2√w)`, where the quotient
-    /// is `artanh(√w/ζ)/√w` for small `√w/ζ`.
+    /// others the principal one, `½(log λ+ + log λ−) + V (log λ+ − log λ−)/(2√w)`. Where `√w/ζ` is small
+    /// the difference cancels, unless the two logarithms lie on either side of the cut; it is then
+    /// `2 artanh(√w/ζ)`.
     pub fn log(self) -> Result<Multivector, MathError> {
         finite(self)?;
-        if self.is_even() {
-            let length = self.norm();
-            if length == 0.0 {
-                return Err(MathError::NoLogarithm);
-            }
-            let even = [self.0[0], self.0[4], self.0[5], self.0[6]];
-            let rotor = Rotor::from_components(even)?;
-            return Ok(Multivector::scalar(length.ln()) + rotor.log().into());
-        }
         let scale = scale_of(&self.0);
-        let (zeta, v, w) = split(self / scale);
+        let m = self / scale;
+        if self.is_even() {
+            let (length, rotor) = m.polar().ok_or(MathError::NoLogarithm)?;
+            return Ok(Multivector::scalar(scale.ln() + length.ln()) + rotor.log().into());
+        }
+        let (zeta, v, w) = split(m);
         let root = w.sqrt();
         let (plus, minus) = (zeta + root, zeta - root);
         let smallest = plus.norm().min(minus.norm());
@@ -226,17 +240,13 @@ impl Multivector {
             return Err(MathError::NoLogarithm);
         }
         let (log_plus, log_minus) = (plus.ln(), minus.ln());
-        let quotient = if root.norm() < 0.5 * zeta.norm() {
+        let difference = log_plus - log_minus;
+        let quotient = if root.norm() < 0.5 * zeta.norm() && difference.im.abs() < PI {
             (root / zeta).artanhc() / zeta
         } else {
-            (log_plus - log_minus).scale(0.5) / root
+            difference.scale(0.5) / root
         };
-        // The branch of the mean must be that of the quotient: ln λ+ + ln λ− = 2 ln ζ + ln(1 − w/ζ²).
-        let mean = if root.norm() < 0.5 * zeta.norm() {
-            zeta.ln() + (Complex::ONE - w / (zeta * zeta)).ln().scale(0.5)
-        } else {
-            (log_plus + log_minus).scale(0.5)
-        };
+        let mean = (log_plus + log_minus).scale(0.5);
         Ok(Multivector::scalar(scale.ln()) + join(mean, v, quotient))
     }
 
@@ -244,16 +254,14 @@ impl Multivector {
     /// the principal one, `½(√λ+ + √λ−) + V/(√λ+ + √λ−)`.
     pub fn sqrt(self) -> Result<Multivector, MathError> {
         finite(self)?;
-        let length = self.norm();
-        if length == 0.0 {
-            return Ok(self);
-        }
-        if self.is_even() {
-            let half = Rotor::from_components([self.0[0], self.0[4], self.0[5], self.0[6]])?.log() * 0.5;
-            return Ok(Multivector::from(Rotor::exp(half)) * length.sqrt());
-        }
         let scale = scale_of(&self.0);
-        let (zeta, v, w) = split(self / scale);
+        let m = self / scale;
+        if self.is_even() {
+            let Some((length, rotor)) = m.polar() else { return Ok(self) };
+            let half = Multivector::from(Rotor::exp(rotor.log() * 0.5));
+            return Ok(half * (length.sqrt() * scale.sqrt()));
+        }
+        let (zeta, v, w) = split(m);
         let root = w.sqrt();
         let sum = (zeta + root).sqrt() + (zeta - root).sqrt();
         if sum.norm() * sum.norm() <= SINGULAR * (zeta.norm() + v.norm()) {

@@ -44,6 +44,11 @@ impl Rotor {
         Ok(Rotor { scalar: s, bivector: Bivector([x, y, z]) })
     }
 
+    /// From components that are already a rotor's: of norm 1 to rounding, which is not checked.
+    pub fn from_unit_components([s, x, y, z]: [f64; 4]) -> Rotor {
+        Rotor { scalar: s, bivector: Bivector([x, y, z]) }
+    }
+
     /// The components `(1, e2e3, e3e1, e1e2)`.
     pub fn components(self) -> [f64; 4] {
         let [x, y, z] = self.bivector.0;

@@ -1,12 +1,21 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Array, Out, Rows, bad, map_rows};
+use crate::arrays::{Array, Out, Rows, bad, map_rows, numbers};
 use numpy::{PyArray1, PyArrayMethods};
+use polhode_ga::batch::turn;
 use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::table::G3;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
 use pyo3::prelude::*;
+
+/// One row, or a row for each.
+fn check_rows(length: usize, size: usize, rows: usize) -> PyResult<()> {
+    if length == size || length == rows * size {
+        return Ok(());
+    }
+    Err(bad(format!("an operand has {length} numbers, expected {size} or {}", rows * size)))
+}
 
 /// A product of rows `(n, K)`; a factor of one row meets every row of the other. Returns `(rows, M)` and
 /// the grades of the product as bits.
@@ -25,12 +34,10 @@ pub(crate) fn product<'py>(
         return Err(bad("3-d space has grades 0 to 3"));
     }
     let plan = Plan::g3(product, Grades(a_grades), Grades(b_grades));
-    let (a, b) = (a.as_slice()?, b.as_slice()?);
+    let (a, b) = (numbers(&a)?, numbers(&b)?);
     let (na, nb, nout) = plan.sizes;
     for (length, size) in [(a.len(), na), (b.len(), nb)] {
-        if length != size && length != rows * size {
-            return Err(bad(format!("a factor has {length} numbers, expected {size} or {}", rows * size)));
-        }
+        check_rows(length, size, rows)?;
     }
     let out = py.detach(|| {
         let mut out = vec![0.0; rows * nout];
@@ -108,22 +115,17 @@ pub(crate) fn rotor_from_quaternion<'py>(py: Python<'py>, q: Rows<'py>) -> Out<'
     map_rows(py, &q, |q| Rotor::from_quaternion_wxyz(q).map(Rotor::components))
 }
 
-/// A row of components known to be a rotor's.
-fn rotor(c: [f64; 4]) -> Result<Rotor, MathError> {
-    Rotor::from_components(c)
-}
-
 /// Quaternions (w, x, y, z) of rotors.
 #[pyfunction]
 pub(crate) fn rotor_to_quaternion<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
-    map_rows(py, &r, |c| rotor(c).map(Rotor::to_quaternion_wxyz))
+    map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).to_quaternion_wxyz()))
 }
 
 /// Matrices of rotors, nine numbers a row.
 #[pyfunction]
 pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| {
-        let m = rotor(c)?.to_matrix();
+        let m = Rotor::from_unit_components(c).to_matrix();
         Ok::<[f64; 9], MathError>(std::array::from_fn(|i| m[i / 3][i % 3]))
     })
 }
@@ -131,27 +133,40 @@ pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
 /// Rotation vectors of rotors.
 #[pyfunction]
 pub(crate) fn rotor_to_rotation_vector<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
-    map_rows(py, &r, |c| rotor(c).map(|r| r.to_rotation_vector().0))
+    map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).to_rotation_vector().0))
 }
 
 /// Unit planes (3) and angles of rotors.
 #[pyfunction]
 pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| {
-        let (plane, angle) = rotor(c)?.plane_angle();
+        let (plane, angle) = Rotor::from_unit_components(c).plane_angle();
         let [x, y, z] = plane.0;
         Ok::<_, MathError>([x, y, z, angle])
     })
 }
 
-/// `R X ~R` for rows of a rotor (4) and a multivector (8).
+/// `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets every row
+/// of the other.
 #[pyfunction]
-pub(crate) fn rotor_apply<'py>(py: Python<'py>, rx: Rows<'py>) -> Out<'py> {
-    map_rows(py, &rx, |rx: [f64; 12]| {
-        let c = std::array::from_fn(|i| rx[i]);
-        let m = std::array::from_fn(|i| rx[4 + i]);
-        rotor(c).map(|r| r.apply_multivector(Multivector(m)).0)
-    })
+pub(crate) fn rotor_apply<'py>(
+    py: Python<'py>,
+    rotors: Rows<'py>,
+    values: Rows<'py>,
+    grades: u16,
+    rows: usize,
+) -> Out<'py> {
+    let (rotors, values) = (numbers(&rotors)?, numbers(&values)?);
+    let size = Grades(grades).indices(&G3).len();
+    for (length, size) in [(rotors.len(), 4), (values.len(), size)] {
+        check_rows(length, size, rows)?;
+    }
+    let out = py.detach(|| {
+        let mut out = vec![0.0; rows * size];
+        turn(rotors, values, Grades(grades), &mut out);
+        out
+    });
+    PyArray1::from_vec(py, out).reshape(vec![rows, size])
 }
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.

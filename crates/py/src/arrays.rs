@@ -18,9 +18,18 @@ pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {
     PyValueError::new_err(message.to_string())
 }
 
+/// The numbers of an array in C order. An array in any other order is refused: `as_slice` alone would
+/// also take one in Fortran order, and its rows for columns.
+pub(crate) fn numbers<'a>(array: &'a Rows<'_>) -> PyResult<&'a [f64]> {
+    if !array.is_c_contiguous() {
+        return Err(bad("the array is not C-contiguous"));
+    }
+    Ok(array.as_slice()?)
+}
+
 /// A single row of N numbers.
 pub(crate) fn one<const N: usize>(row: &Rows<'_>) -> PyResult<[f64; N]> {
-    let data = row.as_slice()?;
+    let data = numbers(row)?;
     data.try_into().map_err(|_| bad(format!("expected {N} numbers, got shape {:?}", row.shape())))
 }
 
@@ -65,7 +74,7 @@ pub(crate) fn map_rows<'py, const IN: usize, const OUT: usize, E: std::fmt::Disp
         Some((&last, batch)) if last == IN => batch,
         _ => return Err(bad(format!("expected {IN} components in the last axis, got shape {shape:?}"))),
     };
-    let data = input.as_slice()?;
+    let data = numbers(input)?;
     let result: Result<Vec<f64>, (usize, E)> = py.detach(|| {
         let mut out = Vec::with_capacity(data.len() / IN * OUT);
         for (row, values) in data.as_chunks::<IN>().0.iter().enumerate() {

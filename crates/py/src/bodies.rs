@@ -1,6 +1,6 @@
 //! Inertia and bodies.
 
-use crate::arrays::{Array, Out, Rows, bad, line, map_rows, one, table};
+use crate::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, table};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::{Amount, Solid, TriangleMesh, body, inertia};
 use pyo3::prelude::*;
@@ -12,8 +12,8 @@ use std::path::Path;
 pub(crate) struct Inertia(pub(crate) inertia::Inertia);
 
 fn points(masses: &Rows<'_>, positions: &Rows<'_>) -> PyResult<(Vec<f64>, Vec<Vector>)> {
-    let positions = positions.as_slice()?.as_chunks::<3>().0.iter().map(|x| Vector(*x)).collect();
-    Ok((masses.as_slice()?.to_vec(), positions))
+    let positions = numbers(positions)?.as_chunks::<3>().0.iter().map(|x| Vector(*x)).collect();
+    Ok((numbers(masses)?.to_vec(), positions))
 }
 
 /// A rotor from its row of components.

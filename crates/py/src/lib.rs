@@ -22,7 +22,7 @@ mod _native {
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
-    use crate::motion::{describe_free, methods, simulate, symmetric_top};
+    use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};

@@ -1,11 +1,12 @@
 //! Motion: the closed form of the symmetric top, and simulation.
 
-use crate::arrays::{Array, Rows, bad, line, one, table};
+use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
-use polhode_ga::{Bivector, Vector};
-use polhode_rigid::free::{SymmetricTop, describe};
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::free::{FreeMotion, describe};
 use polhode_rigid::simulate::{Options, Problem, Progress, SimulateError};
 use polhode_rigid::splitting::{METHODS, Method};
+use polhode_rigid::symmetric_top::SymmetricTop;
 use polhode_rigid::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,7 +32,27 @@ fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
     }
 }
 
-/// Rotors (n, 4) and angular velocities (n, 3) of the free symmetric top at times (n,).
+/// Rotors (n, 4) and angular velocities (n, 3) at times (n,).
+type States<'py> = PyResult<(Array<'py>, Array<'py>)>;
+
+fn states<'py>(py: Python<'py>, times: &[f64], at: impl Fn(f64) -> (Rotor, Bivector) + Sync) -> States<'py> {
+    if let Some(index) = times.iter().position(|t| !t.is_finite()) {
+        return Err(bad(format!("time {} at index {index} is not finite", times[index])));
+    }
+    let states: Vec<_> = py.detach(|| times.iter().map(|&t| at(t)).collect());
+    let rotors = table(py, states.iter().map(|s| s.0.components()))?;
+    Ok((rotors, table(py, states.iter().map(|s| s.1.0))?))
+}
+
+fn angular_velocity(omega: &Rows<'_>) -> PyResult<Bivector> {
+    let omega: [f64; 3] = one(omega)?;
+    if !omega.iter().all(|x| x.is_finite()) {
+        return Err(bad(format!("the angular velocity {omega:?} is not finite")));
+    }
+    Ok(Bivector(omega))
+}
+
+/// The free symmetric top.
 #[pyfunction]
 pub(crate) fn symmetric_top<'py>(
     py: Python<'py>,
@@ -39,24 +60,28 @@ pub(crate) fn symmetric_top<'py>(
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
     times: Rows<'py>,
-) -> PyResult<(Array<'py>, Array<'py>)> {
-    let times = times.as_slice()?;
-    if let Some(index) = times.iter().position(|t| !t.is_finite()) {
-        return Err(bad(format!("time {} at index {index} is not finite", times[index])));
-    }
-    let omega: [f64; 3] = one(&omega)?;
-    if !omega.iter().all(|x| x.is_finite()) {
-        return Err(bad(format!("the angular velocity {omega:?} is not finite")));
-    }
-    let top = SymmetricTop::new(&inertia.0, rotor(&rotor_row)?, Bivector(omega)).ok_or_else(|| {
-        let [a, b, c] = inertia.0.principal_moments();
-        bad(format!(
-            "the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use ph.simulate"
-        ))
-    })?;
-    let states: Vec<_> = times.iter().map(|&t| top.at(t)).collect();
-    let rotors = table(py, states.iter().map(|s| s.0.components()))?;
-    Ok((rotors, table(py, states.iter().map(|s| s.1.0))?))
+) -> States<'py> {
+    let top =
+        SymmetricTop::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(&omega)?).ok_or_else(|| {
+            let [a, b, c] = inertia.0.principal_moments();
+            bad(format!(
+                "the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use FreeMotion"
+            ))
+        })?;
+    states(py, numbers(&times)?, |t| top.at(t))
+}
+
+/// The free top.
+#[pyfunction]
+pub(crate) fn free_motion<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    rotor_row: Rows<'py>,
+    omega: Rows<'py>,
+    times: Rows<'py>,
+) -> States<'py> {
+    let motion = FreeMotion::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(&omega)?);
+    states(py, numbers(&times)?, |t| motion.at(t))
 }
 
 /// What the invariants of a free motion tell, as a dict.
@@ -66,7 +91,7 @@ pub(crate) fn describe_free<'py>(
     inertia: &Inertia,
     omega: Rows<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let d = describe(&inertia.0, Bivector(one(&omega)?));
+    let d = describe(&inertia.0, angular_velocity(&omega)?);
     let result = PyDict::new(py);
     result.set_item("regime", d.regime.to_string())?;
     result.set_item("axis", d.axis + 1)?;
@@ -119,10 +144,13 @@ pub(crate) fn simulate<'py>(
     rtol: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Bound<'py, PyDict>)> {
-    let method = Method::from_name(method).ok_or_else(|| bad(format!("unknown method {method}")))?;
+    let method = match method {
+        "auto" => None,
+        name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
+    };
     let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
-    let times = times.as_slice()?;
+    let times = numbers(&times)?;
     let mut watcher = Watcher { progress: progress.as_ref(), last: Instant::now(), error: None };
     let outcome = py.detach(|| {
         let result = problem.simulate(times, Options { method, step, rtol }, &mut |at| watcher.go_on(at));

@@ -5,14 +5,17 @@
 //! takes the plane of rotation to the plane of angular momentum.
 //!
 //! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
-//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] and [`elliptic`] (the free top),
-//! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs); [`units`] and
+//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] (the free top, exact), [`elliptic`],
+//! [`symmetric_top`],
+//! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs), [`certificate`] (what they conserved); [`units`] and
 //! [`scene`] (what a person writes in a scene file), [`diagnostic`] (errors that show their place in a file).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
 pub mod body;
+pub mod certificate;
 pub mod diagnostic;
+mod double_double;
 mod eigen;
 pub mod elliptic;
 pub mod free;
@@ -23,6 +26,7 @@ pub mod simulate;
 pub mod solids;
 pub mod splitting;
 mod sum;
+pub mod symmetric_top;
 pub mod torque;
 pub mod units;
 

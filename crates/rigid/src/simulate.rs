@@ -1,5 +1,7 @@
 //! Motion at given times, to a tolerance, with a certificate of what was conserved.
 
+use crate::certificate::{Certificate, Watch};
+use crate::free::FreeMotion;
 use crate::inertia::Inertia;
 use crate::splitting::{Method, Stepper};
 use crate::torque::{Conserved, Phase, Torque, energy};
@@ -95,31 +97,14 @@ pub struct Problem {
 /// How to solve it.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// The composition.
-    pub method: Method,
+    /// The composition; `None` is the exact solution for a free body without a fixed step, and else the
+    /// composition of the highest order.
+    pub method: Option<Method>,
     /// A fixed step in s; `None` lets the tolerance choose it.
     pub step: Option<f64>,
     /// The relative error to reach where it chooses the step; `None` aims at 1e-10 and takes what rounding
     /// leaves of it.
     pub rtol: Option<f64>,
-}
-
-/// How far a run went astray in what it should have conserved.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Certificate {
-    /// The method's name.
-    pub method: &'static str,
-    /// Longest step taken, in s.
-    pub step: f64,
-    /// Steps taken, in all passes.
-    pub steps: u64,
-    /// Largest difference from the run with twice the step, over 2^(order/2): a cautious error estimate.
-    pub error_estimate: Option<f64>,
-    /// Each conserved quantity: its initial value, and its largest change over the run relative to the
-    /// terms that make it up.
-    pub drifts: Vec<(Conserved, f64, f64)>,
-    /// Largest `abs(|R| − 1)` at the output times.
-    pub norm_drift: f64,
 }
 
 /// A motion at its output times.
@@ -149,7 +134,7 @@ pub struct Progress {
 /// One pass over all output times with steps of at most `step`.
 struct Pass {
     states: Vec<Phase>,
-    drifts: Vec<f64>,
+    drifts: Vec<(Conserved, f64, f64)>,
     longest: f64,
     steps: u64,
 }
@@ -157,11 +142,7 @@ struct Pass {
 /// The steps of one pass, and who wants to know of them.
 struct Walker<'a> {
     stepper: &'a Stepper,
-    problem: &'a Problem,
-    conserved: &'a [Conserved],
-    start_values: Vec<f64>,
-    scales: Vec<f64>,
-    drifts: Vec<f64>,
+    watch: Watch<'a>,
     longest: f64,
     steps: u64,
     total_time: f64,
@@ -182,17 +163,13 @@ impl Walker<'_> {
         for i in 0..count as u64 {
             self.stepper.step(state, h);
             state.time = if i + 1 == count as u64 { time } else { from + span * ((i + 1) as f64 / count) };
-            self.watch(state)?;
+            self.after_step(state)?;
         }
         Ok(())
     }
 
-    fn watch(&mut self, state: &Phase) -> Result<(), SimulateError> {
-        for (k, quantity) in self.conserved.iter().enumerate() {
-            let value = quantity.value(self.problem.moments, &self.problem.torques, state);
-            let change = (value - self.start_values[k]).abs() / self.scales[k];
-            self.drifts[k] = self.drifts[k].max(change);
-        }
+    fn after_step(&mut self, state: &Phase) -> Result<(), SimulateError> {
+        self.watch.look(state);
         if !state.momentum.norm_squared().is_finite() || !state.rotor.components()[0].is_finite() {
             return Err(SimulateError::Diverged { time: state.time });
         }
@@ -223,7 +200,7 @@ impl Problem {
 
     /// The motion at `times` (s, not decreasing, of either sign); the state given is that at time 0.
     ///
-    /// With no fixed step, runs with steps h, h/2, h/4 … until two of them agree within the tolerance in
+    /// A free body moves exactly if nothing else is asked for. With no fixed step, runs with steps h, h/2, h/4 … until two of them agree within the tolerance in
     /// the rotor (of size 1) and in the angular velocity relative to its largest size.
     pub fn simulate(
         &self,
@@ -232,8 +209,12 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         self.check(times, options)?;
-        let stepper = Stepper::new(self.moments, self.torques.clone(), options.method, &self.start());
-        let (mut pass, estimate, steps) = match options.step {
+        if options.method.is_none() && options.step.is_none() && self.torques.is_empty() {
+            return Ok(self.motion(self.exact(times), "exact", None, 0));
+        }
+        let method = options.method.unwrap_or(Method::best());
+        let stepper = Stepper::new(self.moments, self.torques.clone(), method, &self.start());
+        let (pass, estimate, steps) = match options.step {
             Some(step) => {
                 let pass = self.pass(&stepper, times, step, 1, progress)?;
                 let steps = pass.steps;
@@ -241,29 +222,45 @@ impl Problem {
             }
             None => self.converge(&stepper, times, options.rtol, progress)?,
         };
-        let conserved = Conserved::under(&self.torques);
-        let start = self.start();
-        let drifts = conserved
-            .iter()
-            .zip(pass.drifts.drain(..))
-            .map(|(quantity, drift)| (*quantity, quantity.value(self.moments, &self.torques, &start), drift));
-        let off_unit = |s: &Phase| s.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
-        let certificate = Certificate {
-            method: options.method.name,
-            step: pass.longest,
-            steps,
-            error_estimate: estimate,
-            drifts: drifts.collect(),
-            norm_drift: pass.states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
+        Ok(self.motion(pass, method.name, estimate, steps))
+    }
+
+    /// The exact states of a free body, as a pass without steps.
+    fn exact(&self, times: &[f64]) -> Pass {
+        let motion = FreeMotion::in_principal_axes(self.moments, self.rotor, self.omega);
+        let phase = |&time: &f64| {
+            let (rotor, omega) = motion.at(time);
+            Phase { rotor, momentum: Bivector([0, 1, 2].map(|k| self.moments[k] * omega.0[k])), time }
         };
-        let (states, frame) = (&pass.states, self.frame);
-        Ok(Motion {
+        let states: Vec<Phase> = times.iter().map(phase).collect();
+        let mut watch = self.watch();
+        states.iter().for_each(|state| watch.look(state));
+        Pass { states, drifts: watch.finish(), longest: 0.0, steps: 0 }
+    }
+
+    fn watch(&self) -> Watch<'_> {
+        Watch::new(self.moments, &self.torques, self.start())
+    }
+
+    /// A pass in body axes, with its certificate.
+    fn motion(&self, pass: Pass, method: &'static str, error_estimate: Option<f64>, steps: u64) -> Motion {
+        let (states, frame) = (pass.states, self.frame);
+        let omega = |s: &Phase| Bivector([0, 1, 2].map(|k| s.momentum.0[k] / self.moments[k]));
+        let off_unit = |s: &Phase| s.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
+        Motion {
             rotors: states.iter().map(|s| s.rotor * frame.reverse()).collect(),
-            omegas: states.iter().map(|s| frame.apply_bivector(stepper.omega(s.momentum))).collect(),
+            omegas: states.iter().map(|s| frame.apply_bivector(omega(s))).collect(),
             momenta_space: states.iter().map(|s| s.rotor.apply_bivector(s.momentum)).collect(),
             energies: states.iter().map(|s| energy(self.moments, &self.torques, s)).collect(),
-            certificate,
-        })
+            certificate: Certificate {
+                method,
+                step: pass.longest,
+                steps,
+                error_estimate,
+                drifts: pass.drifts,
+                norm_drift: states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
+            },
+        }
     }
 
     fn check(&self, times: &[f64], options: Options) -> Result<(), SimulateError> {
@@ -311,22 +308,9 @@ impl Problem {
         if steps > MAX_STEPS {
             return Err(SimulateError::TooManySteps { steps, step });
         }
-        let conserved = Conserved::under(&self.torques);
-        let start = self.start();
-        let start_values =
-            conserved.iter().map(|q| q.value(self.moments, &self.torques, &start)).collect::<Vec<_>>();
-        // A quantity that starts at zero with nothing to compare to counts absolutely.
-        let scales = conserved.iter().map(|q| match q.scale(self.moments, &self.torques, &start) {
-            0.0 => 1.0,
-            scale => scale,
-        });
         let mut walker = Walker {
             stepper,
-            problem: self,
-            conserved: &conserved,
-            start_values,
-            scales: scales.collect(),
-            drifts: vec![0.0; conserved.len()],
+            watch: self.watch(),
             longest: 0.0,
             steps: 0,
             total_time: total_time.max(f64::MIN_POSITIVE),
@@ -335,18 +319,18 @@ impl Problem {
         };
         let split = times.partition_point(|&t| t < 0.0);
         let mut states = Vec::with_capacity(times.len());
-        let mut state = start;
+        let mut state = self.start();
         for &time in times[..split].iter().rev() {
             walker.walk(&mut state, time, step)?;
             states.push(state);
         }
         states.reverse();
-        state = start;
+        state = self.start();
         for &time in &times[split..] {
             walker.walk(&mut state, time, step)?;
             states.push(state);
         }
-        Ok(Pass { states, drifts: walker.drifts, longest: walker.longest, steps: walker.steps })
+        Ok(Pass { states, drifts: walker.watch.finish(), longest: walker.longest, steps: walker.steps })
     }
 
     /// Halves the step until two runs agree.

@@ -1,0 +1,55 @@
+# make demo, make test, make bench, make docs, make lint: each sets up what it needs.
+# Prerequisites: Python >= 3.11, Rust stable, make.
+
+PYTHON ?= python3
+BIN := .venv/bin
+SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock pyproject.toml
+
+export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.PHONY: setup demo test lint bench docs clean
+
+setup: .venv/.built
+
+.venv/.tools: constraints.txt pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Polhode needs Python >= 3.11; say which with make PYTHON=python3.12" >&2; exit 1; }
+	@command -v cargo >/dev/null || { echo "Polhode needs Rust: see https://rustup.rs" >&2; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install -q --upgrade pip
+	$(BIN)/python -m pip install -q --group dev
+	@touch $@
+
+.venv/.built: .venv/.tools $(SOURCES)
+	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --quiet --extras scipy,io,plot,progress
+	@touch $@
+
+demo: setup
+	@mkdir -p build/demo
+	$(BIN)/polhode run examples/t-handle.toml -o build/demo/t-handle.nc
+	@echo
+	@echo "The pictures are build/demo/t-handle-motion.png and build/demo/t-handle-polhode.png."
+
+test: setup
+	cargo test --quiet --locked --workspace --exclude polhode-py
+	$(BIN)/python -m pytest
+
+lint: setup
+	cargo fmt --all --check
+	cargo clippy --quiet --locked --workspace --all-targets -- -D warnings
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest polhode._native
+
+bench: setup
+	@mkdir -p build
+	$(BIN)/python benchmarks/run.py | tee build/bench.txt
+
+docs:
+	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --locked --no-deps --workspace --exclude polhode-py
+	@echo "The documentation of the core is target/doc/polhode_ga/index.html and target/doc/polhode_rigid/index.html."
+
+clean:
+	rm -rf .venv build target

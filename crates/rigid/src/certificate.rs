@@ -1,0 +1,62 @@
+//! What a run should have conserved, and how far it went astray.
+
+use crate::torque::{Conserved, Phase, Torque};
+
+/// How far a run went astray in what it should have conserved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// The method's name, `exact` for the exact solution.
+    pub method: &'static str,
+    /// Longest step taken, in s; 0 for the exact solution.
+    pub step: f64,
+    /// Steps taken, in all passes.
+    pub steps: u64,
+    /// Largest difference from the run with twice the step, over 2^(order/2): a cautious error estimate.
+    pub error_estimate: Option<f64>,
+    /// Each conserved quantity: its initial value, and its largest change over the run relative to the
+    /// terms that make it up.
+    pub drifts: Vec<(Conserved, f64, f64)>,
+    /// Largest `abs(|R| − 1)` at the output times.
+    pub norm_drift: f64,
+}
+
+/// Follows the conserved quantities along a run.
+pub(crate) struct Watch<'a> {
+    moments: [f64; 3],
+    torques: &'a [Torque],
+    quantities: Vec<Followed>,
+}
+
+/// A quantity with its value at the start, the size of its terms, and its largest change so far.
+struct Followed {
+    quantity: Conserved,
+    start: f64,
+    scale: f64,
+    drift: f64,
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(moments: [f64; 3], torques: &'a [Torque], start: Phase) -> Watch<'a> {
+        let follow = |quantity: Conserved| {
+            // A quantity that starts at zero with nothing to compare to counts absolutely.
+            let scale = match quantity.scale(moments, torques, &start) {
+                0.0 => 1.0,
+                scale => scale,
+            };
+            Followed { quantity, start: quantity.value(moments, torques, &start), scale, drift: 0.0 }
+        };
+        Watch { moments, torques, quantities: Conserved::under(torques).into_iter().map(follow).collect() }
+    }
+
+    pub fn look(&mut self, state: &Phase) {
+        for followed in &mut self.quantities {
+            let value = followed.quantity.value(self.moments, self.torques, state);
+            followed.drift = followed.drift.max((value - followed.start).abs() / followed.scale);
+        }
+    }
+
+    /// Each quantity with its value at the start and its largest relative change.
+    pub fn finish(self) -> Vec<(Conserved, f64, f64)> {
+        self.quantities.into_iter().map(|f| (f.quantity, f.start, f.drift)).collect()
+    }
+}

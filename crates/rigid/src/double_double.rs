@@ -1,0 +1,153 @@
+//! Numbers of twice the precision: an unevaluated sum `hi + lo`, 106 bits.
+//!
+//! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971).
+//! Each operation is exact in its error term, so the relative error of a result is a few 2⁻¹⁰⁴. Used
+//! where an angle grows with time: `frac(ν t)` loses as many digits as `ν t` has before the point.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// `hi + lo`, `|lo| <= ulp(hi)/2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DoubleDouble {
+    pub hi: f64,
+    pub lo: f64,
+}
+
+impl DoubleDouble {
+    pub const ZERO: DoubleDouble = DoubleDouble { hi: 0.0, lo: 0.0 };
+    pub const ONE: DoubleDouble = DoubleDouble { hi: 1.0, lo: 0.0 };
+    pub const PI: DoubleDouble = DoubleDouble { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
+
+    /// `a + b` without error (Knuth).
+    fn two_sum(a: f64, b: f64) -> DoubleDouble {
+        let hi = a + b;
+        let part = hi - a;
+        DoubleDouble { hi, lo: (a - (hi - part)) + (b - part) }
+    }
+
+    /// `a + b` without error for `|a| >= |b|`.
+    fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
+        let hi = a + b;
+        DoubleDouble { hi, lo: b - (hi - a) }
+    }
+
+    /// `a b` without error, by splitting both into halves of 26 bits (Veltkamp, Dekker).
+    fn two_product(a: f64, b: f64) -> DoubleDouble {
+        let split = |x: f64| {
+            let c = 134_217_729.0 * x;
+            let high = c - (c - x);
+            (high, x - high)
+        };
+        let ((a1, a2), (b1, b2)) = (split(a), split(b));
+        let hi = a * b;
+        DoubleDouble { hi, lo: ((a1 * b1 - hi) + a1 * b2 + a2 * b1) + a2 * b2 }
+    }
+
+    pub fn sqrt(self) -> DoubleDouble {
+        if self.hi <= 0.0 {
+            return DoubleDouble::ZERO;
+        }
+        // One Newton step from the double root.
+        let root = self.hi.sqrt();
+        let rest = self - DoubleDouble::two_product(root, root);
+        DoubleDouble::quick_two_sum(root, rest.hi / (2.0 * root))
+    }
+
+    /// The nearest integer and what is left.
+    pub fn split_integer(self) -> (f64, f64) {
+        let integer = self.hi.round();
+        let rest = (self.hi - integer) + self.lo;
+        // hi may itself be an integer with lo reaching past a half.
+        let more = rest.round();
+        (integer + more, rest - more)
+    }
+
+    pub fn value(self) -> f64 {
+        self.hi + self.lo
+    }
+
+    pub fn abs(self) -> DoubleDouble {
+        if self.hi < 0.0 { -self } else { self }
+    }
+}
+
+impl From<f64> for DoubleDouble {
+    fn from(hi: f64) -> DoubleDouble {
+        DoubleDouble { hi, lo: 0.0 }
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = DoubleDouble;
+    fn add(self, o: DoubleDouble) -> DoubleDouble {
+        let (s, t) = (DoubleDouble::two_sum(self.hi, o.hi), DoubleDouble::two_sum(self.lo, o.lo));
+        let s = DoubleDouble::quick_two_sum(s.hi, s.lo + t.hi);
+        DoubleDouble::quick_two_sum(s.hi, s.lo + t.lo)
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = DoubleDouble;
+    fn neg(self) -> DoubleDouble {
+        DoubleDouble { hi: -self.hi, lo: -self.lo }
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = DoubleDouble;
+    fn sub(self, o: DoubleDouble) -> DoubleDouble {
+        self + -o
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = DoubleDouble;
+    fn mul(self, o: DoubleDouble) -> DoubleDouble {
+        let p = DoubleDouble::two_product(self.hi, o.hi);
+        DoubleDouble::quick_two_sum(p.hi, p.lo + self.hi * o.lo + self.lo * o.hi)
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = DoubleDouble;
+    fn div(self, o: DoubleDouble) -> DoubleDouble {
+        let q1 = self.hi / o.hi;
+        let rest = self - o * q1.into();
+        let q2 = rest.hi / o.hi;
+        let rest = rest - o * q2.into();
+        DoubleDouble::quick_two_sum(q1, q2) + (rest.hi / o.hi).into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn number() -> impl Strategy<Value = DoubleDouble> {
+        (-1e3..1e3f64, -1.0..1.0f64)
+            .prop_map(|(hi, lo)| DoubleDouble::quick_two_sum(hi, lo * f64::EPSILON * hi))
+    }
+
+    proptest! {
+        /// Identities that hold exactly for real numbers, to 16 units of 2⁻¹⁰⁴.
+        #[test]
+        fn field_identities(a in number(), b in number(), c in number()) {
+            let unit = 16.0 * 2f64.powi(-104);
+            let size = a.hi.abs() * (b.hi.abs() + c.hi.abs());
+            prop_assert!((a * (b + c) - a * b - a * c).value().abs() <= unit * size);
+            prop_assume!(b.hi.abs() > 1e-3);
+            prop_assert!((a / b * b - a).value().abs() <= unit * a.hi.abs());
+            let root = (a * a).sqrt();
+            prop_assert!((root - a.abs()).value().abs() <= unit * a.hi.abs());
+        }
+    }
+
+    #[test]
+    fn integers_split_off() {
+        let third = DoubleDouble::ONE / 3.0.into();
+        let (integer, rest) = (DoubleDouble::from(1e12) * third).split_integer();
+        assert_eq!(integer, 333_333_333_333.0);
+        assert!((rest - 1.0 / 3.0).abs() < 1e-18 * 1e3);
+    }
+}

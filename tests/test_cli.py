@@ -1,0 +1,507 @@
+"""The command, run as a program: its examples, files, exit codes and what it says when things go wrong."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import polhode as ph
+
+POLHODE = Path(sys.executable).with_name("polhode")
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
+
+SCENE = """\
+title = "Small"
+[body]
+moments = [1, 2, 3]
+[initial]
+spin = { vector = [0.01, 1, 0.01] }
+[run]
+duration = "1 s"
+samples = 11
+"""
+# Steps enough for hours.
+ENDLESS = SCENE.replace('"1 s"', '"1e6 s"').replace("samples = 11", 'step = "1 ms"\nmethod = "kahan_li8"')
+
+
+def polhode(*arguments, cwd=None, **options):
+    """The finished process; whatever happened, no traceback."""
+    options.setdefault("stdout", subprocess.PIPE)
+    done = subprocess.run(
+        [POLHODE, *arguments],
+        cwd=cwd,
+        stderr=subprocess.PIPE,
+        timeout=60,
+        encoding="utf-8",
+        check=False,
+        **options,
+    )
+    assert "Traceback" not in done.stderr, done.stderr
+    assert "Exception ignored" not in done.stderr, done.stderr
+    return done
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """The path of a scene that runs in no time."""
+    path = tmp_path / "small.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def summary_of(path, *arguments):
+    done = polhode("run", path, "--json", *arguments)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+# --- the examples
+
+
+def half_period(i, omega):
+    """2K/λ of a free top about its middle axis, short-axis mode, with K by the arithmetic-geometric mean."""
+    (a, b, c), (wa, wb, wc) = i, omega
+    p = a * (c - a) * wa**2 + b * (c - b) * wb**2
+    q = b * (b - a) * wb**2 + c * (c - a) * wc**2
+    complement = (c - a) * (c * (c - b) * wc**2 - a * (b - a) * wa**2) / ((c - b) * q)
+    assert p > 0
+    assert 0 < complement < 1
+    x, y = 1.0, np.sqrt(complement)
+    while abs(x - y) > 1e-15:
+        x, y = (x + y) / 2, np.sqrt(x * y)
+    return np.pi / x / np.sqrt((c - b) * q / (a * b * c))
+
+
+def test_the_t_handle_flips_as_often_as_the_closed_form_says():
+    result = summary_of(EXAMPLES / "t-handle.toml")
+    motion, body = result["motion"], result["body"]
+    spin = np.array(body["principal_axes"]) @ (2 * np.pi * np.array([0.005, 5, 0.005]))
+    flip = half_period(body["principal_moments"], spin)
+    assert motion["regime"] == "short-axis mode"
+    # Near the separatrix 1 − k² = 5e-6 magnifies the rounding of the moments' digits.
+    assert motion["flip_time"] == pytest.approx(flip, rel=1e-9)
+    assert motion["reversals"]["count"] == 9
+    # Crossings are found by straight lines between outputs 2 ms apart.
+    assert motion["reversals"]["mean_interval"] == pytest.approx(flip, rel=1e-5)
+
+
+def test_the_symmetric_top_agrees_with_the_closed_form():
+    closed = summary_of(EXAMPLES / "symmetric-top.toml")["motion"]["closed_form"]
+    assert closed["largest_rotor_difference"] < 1e-11
+    # Angular velocities of 19 rad/s.
+    assert closed["largest_omega_difference"] < 2e-10
+
+
+def test_toutatis_has_the_published_periods():
+    """Hudson & Ostro 1995: 5.41 and 7.35 days."""
+    result = summary_of(EXAMPLES / "toutatis.toml")
+    motion = result["motion"]
+    assert motion["regime"] == "long-axis mode"
+    assert motion["axis"] == 3
+    assert motion["period"] / 86400 == pytest.approx(5.41, rel=0.01)
+    assert motion["precession_period"] / 86400 == pytest.approx(7.35, rel=0.01)
+    assert result["body"]["mass"] is None
+    assert result["body"]["moment_ratios"] == pytest.approx([1, 3.09, 3.22])
+
+
+def test_the_gyroscope_precesses_by_the_fast_top_formula():
+    motion = summary_of(EXAMPLES / "gyroscope.toml")["motion"]
+    mgl, i3, spin = 0.5 * 9.81 * 0.04, 0.5 * 0.05**2 / 2, 2 * np.pi * 100
+    assert motion["mgl"] == pytest.approx(mgl, rel=1e-12)
+    assert motion["fast_top_precession_rate"] == pytest.approx(mgl / (i3 * spin), rel=1e-12)
+    assert motion["precession_rate"] == pytest.approx(mgl / (i3 * spin), rel=0.005)
+    assert motion["tilt_min"] == pytest.approx(np.radians(30), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["t-handle", "symmetric-top", "toutatis", "gyroscope"])
+def test_examples_check_and_print_a_page(name):
+    assert polhode("check", EXAMPLES / f"{name}.toml").returncode == 0
+    done = polhode("run", EXAMPLES / f"{name}.toml")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for section in ("Body", "Motion", "Conserved", "Run", "Nothing was written"):
+        assert section in done.stdout
+
+
+# --- what it writes
+
+
+@pytest.mark.parametrize("gravity", [False, True], ids=["free", "heavy"])
+def test_the_files(gravity, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    path, output = tmp_path / "a.toml", tmp_path / "out.nc"
+    text = SCENE.replace("[run]", "[gravity]\nacceleration = 9.81\n[run]") if gravity else SCENE
+    path.write_text(
+        text.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2\ncenter_of_mass = [0, 0, 0.5]")
+    )
+    result = summary_of(path, "-o", output)
+    second = "axis" if gravity else "polhode"
+    expected = [output, tmp_path / "out-motion.png", tmp_path / f"out-{second}.png"]
+    assert result["files"] == [str(p) for p in expected]
+    assert sorted(tmp_path.iterdir()) == sorted([path, *expected])
+    for figure in expected[1:]:
+        assert figure.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+        assert figure.read_bytes().endswith(b"IEND\xaeB`\x82")
+
+    data = xarray.open_dataset(output, engine="h5netcdf")
+    assert dict(data.sizes) == {"time": 11, "quaternion": 4, "axis": 3, "axis_": 3}
+    dims_and_units = {name: (v.dims, v.attrs["units"]) for name, v in data.data_vars.items()}
+    assert dims_and_units == {
+        "attitude": (("time", "quaternion"), "1"),
+        "omega_body": (("time", "axis"), "rad/s"),
+        "momentum_space": (("time", "axis"), "kg m^2/s"),
+        "position": (("time", "axis"), "m"),
+        "velocity": (("time", "axis"), "m/s"),
+        "energy": (("time",), "J"),
+        "inertia": (("axis", "axis_"), "kg m^2"),
+    }
+    assert data.quaternion.values.tolist() == ["w", "x", "y", "z"]
+    assert "Omega_space R" in data.attrs["conventions"]
+    assert data.attrs["source"] == f"polhode {ph.__version__}"
+    assert data.attrs["scene"] == path.read_text()
+    assert data.attrs["title"] == result["title"] == "Small"
+    assert data.attrs["method"] == result["run"]["method"]
+
+    np.testing.assert_allclose(data.time.values, np.linspace(0, 1, 11), rtol=1e-15)
+    # A few ulps: the closed form goes through elliptic functions and back.
+    np.testing.assert_allclose(data.omega_body.values[0], [0.01, 1, 0.01], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(data.attitude.values[0], [1, 0, 0, 0], rtol=0, atol=1e-15)
+    conserved = {name: entry["value"] for name, entry in result["conserved"].items()}
+    assert json.loads(data.attrs["conserved"]) == conserved
+    np.testing.assert_allclose(data.energy.values, conserved["energy"], rtol=1e-9)
+    # The columns fit together: L = R I(Ω_B) ~R with the quaternion turned into a rotor.
+    R = ph.Rotor.from_quaternion(data.attitude.values, order="wxyz")
+    L = R(ph.Inertia.from_matrix(data.inertia.values)(ph.bivector(data.omega_body.values)))
+    np.testing.assert_allclose(L.components, data.momentum_space.values, rtol=0, atol=1e-14 * L.norm().max())
+    again = ph.Scene.read(path).run()
+    np.testing.assert_array_equal(again.omega_body.components, data.omega_body.values)
+    data.close()
+
+
+def test_json_is_one_document_and_nothing_else(scene):
+    done = polhode("run", scene, "--json")
+    assert done.stderr == ""
+    result = json.loads(done.stdout)
+    assert result["scene"] == str(scene)
+    assert result["files"] == []
+    assert result["run"]["drift_within_bound"] is True
+    assert result["run"]["duration"] == 1.0
+    # Neither NaN nor Infinity, which are no JSON.
+    json.loads(done.stdout, parse_constant=pytest.fail)
+
+
+def test_it_runs_from_any_directory_and_any_path(tmp_path):
+    """The mesh is found beside its scene; the path has spaces and is not ASCII."""
+    folder = tmp_path / "Ωmega und mehr" / "twó"
+    folder.mkdir(parents=True)
+    scene = folder / "kreisel – 1.toml"
+    scene.write_text((EXAMPLES / "t-handle.toml").read_text().replace("samples = 6001", "samples = 21"))
+    (folder / "t-handle.stl").write_bytes((EXAMPLES / "t-handle.stl").read_bytes())
+    relative = scene.relative_to(tmp_path)
+    done = polhode("run", relative, "-o", "Ωmega und mehr/out put.nc", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (folder.parent / "out put.nc").exists()
+    assert (folder.parent / "out put-polhode.png").exists()
+    assert polhode("check", scene, cwd="/").returncode == 0
+
+
+def test_an_older_file_is_replaced_and_keeps_its_mode(scene, tmp_path):
+    output = tmp_path / "out.nc"
+    output.write_bytes(b"old")
+    output.chmod(0o640)
+    assert polhode("run", scene, "-o", output).returncode == 0
+    assert output.read_bytes().startswith(b"\x89HDF")
+    assert output.stat().st_mode & 0o777 == 0o640
+
+
+# --- help, versions, usage
+
+
+def test_help_and_version():
+    done = polhode("--help")
+    assert done.returncode == 0
+    for word in ("run", "check", "Exit codes", "130"):
+        assert word in done.stdout
+    assert "FILE.nc" in polhode("run", "--help").stdout
+    assert polhode("--version").stdout == f"polhode {ph.__version__}\n"
+
+
+@pytest.mark.parametrize("arguments", [[], ["run"], ["check"], ["walk"], ["run", "a.toml", "--fast"]])
+def test_wrong_usage_is_2(arguments):
+    done = polhode(*arguments)
+    assert done.returncode == 2
+    assert "usage: polhode" in done.stderr
+    assert done.stdout == ""
+
+
+# --- check
+
+
+def test_check_tells_good_from_bad(scene, tmp_path):
+    bad = tmp_path / "bad.toml"
+    bad.write_text(SCENE.replace("duration", "durration"))
+    done = polhode("check", scene)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"{scene}: ok" in done.stdout
+    both = polhode("check", scene, bad)
+    assert both.returncode == 3
+    assert f"{scene}: ok" in both.stdout
+    assert "durration" in both.stderr
+    findings = polhode("check", "--json", bad, scene)
+    assert findings.returncode == 3
+    first, second = json.loads(findings.stdout)
+    assert (first["ok"], second["ok"]) == (False, True)
+    assert "durration" in first["errors"]
+
+
+# --- bad scenes: exact places
+
+BAD = {
+    "near miss": (
+        SCENE.replace("duration", "durration"),
+        "7:1: error: unknown field `durration`, expected `duration`\n"
+        '  |\n7 | durration = "1 s"\n  | ^^^^^^^^^\n',
+    ),
+    "wrong type": (
+        SCENE.replace("samples = 11", 'samples = "11"'),
+        '8:11: error: expected a whole number, found a string\n  |\n8 | samples = "11"\n  |           ^^^^\n',
+    ),
+    "wrong unit": (
+        SCENE.replace('"1 s"', '"1 kg"'),
+        "7:12: error: ",
+    ),
+    "no such unit": (SCENE.replace('"1 s"', '"1 parsnip"'), "7:12: error: "),
+    "impossible body": (
+        SCENE.replace("[1, 2, 3]", "[1, 1, 3]"),
+        "3:11: error: no body has the principal moments 1.0, 1.0, 3.0: i3 = 3.0 exceeds",
+    ),
+    "missing mesh": (
+        SCENE.replace("moments = [1, 2, 3]", 'mesh = "absent.stl"\nmass = 1'),
+        "3:8: error: ",
+    ),
+    "no gravity without mass": (
+        SCENE.replace("[run]", "[gravity]\nacceleration = 9.81\n[run]"),
+        "2:1: error: gravity acts on the mass, add the field `mass`",
+    ),
+    "negative duration": (SCENE.replace('"1 s"', "-1"), "7:12: error: must be more than 0, found -1"),
+    "one sample": (SCENE.replace("11", "1"), "8:11: error: must be from 2 to 10000000, found 1"),
+    "unknown method": (
+        SCENE + 'method = "euler"\n',
+        "9:10: error: unknown method `euler`, expected one of `auto`",
+    ),
+    "a thin rod": (
+        SCENE.replace("moments = [1, 2, 3]", 'solid = "rod"\nlength = 1\nmass = 1'),
+        "2:1: error: principal moments",
+    ),
+    "no TOML": (SCENE.replace("= 11", "11"), "8:9: error: "),
+    "not finite": (SCENE.replace("0.01, 1", "nan, 1"), "5:20: error: `nan` is not a finite number"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_bad_scenes_have_a_place(name, command, tmp_path):
+    text, expected = BAD[name]
+    (tmp_path / "bad.toml").write_text(text)
+    done = polhode(command, "bad.toml", cwd=tmp_path)
+    assert done.returncode == 3
+    assert f"bad.toml:{expected}" in done.stderr
+    assert "^" in done.stderr
+    assert done.stdout == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "parts"),
+    [
+        ("latin.toml", b'title = "caf\xe9"\n', ["latin.toml:1:13", "UTF-8"]),
+        ("empty.toml", b"", ["empty.toml: error: the file is empty", "[body], [initial] and [run]"]),
+        ("noise.toml", bytes(range(256)), ["noise.toml:2:118: error: not UTF-8"]),
+        ("huge.toml", b"#" * 10_000_001, ["huge.toml: error: larger than 10 MB"]),
+    ],
+)
+def test_files_that_are_no_scenes(name, content, parts, tmp_path):
+    (tmp_path / name).write_bytes(content)
+    done = polhode("run", name, cwd=tmp_path)
+    assert done.returncode == 3
+    for part in parts:
+        assert part in done.stderr
+
+
+def test_paths_that_are_no_files(tmp_path):
+    absent = polhode("run", "absent.toml", cwd=tmp_path)
+    assert absent.returncode == 3
+    assert absent.stderr == "absent.toml: error: no such file\n"
+    folder = polhode("run", tmp_path)
+    assert folder.returncode == 3
+    assert "is a directory" in folder.stderr
+
+
+def test_a_missing_mesh_is_named(tmp_path):
+    (tmp_path / "bad.toml").write_text(BAD["missing mesh"][0])
+    done = polhode("run", "bad.toml", cwd=tmp_path)
+    assert "absent.stl: cannot be read" in done.stderr
+
+
+def test_all_errors_are_told_at_once(tmp_path):
+    text = SCENE.replace("duration", "durration").replace("spin", "spinn").replace("= 11", "= 1")
+    (tmp_path / "bad.toml").write_text(text)
+    done = polhode("run", "bad.toml", cwd=tmp_path)
+    assert done.returncode == 3
+    places = [line.split(": error:")[0] for line in done.stderr.splitlines() if ": error:" in line]
+    assert {"bad.toml:5:1", "bad.toml:7:1", "bad.toml:8:11"} <= set(places)
+    lines = [int(place.split(":")[1]) for place in places]
+    assert lines == sorted(lines)
+
+
+# --- runs that fail
+
+
+def test_a_drift_past_the_bound_is_4(tmp_path):
+    (tmp_path / "a.toml").write_text(SCENE + 'step = "0.1 s"\nmethod = "strang"\ndrift_bound = 1e-30\n')
+    done = polhode("run", "a.toml", "-o", "a.nc", cwd=tmp_path)
+    assert done.returncode == 4
+    assert "FAILED" in done.stdout
+    assert "1e-30" in done.stdout
+    assert (tmp_path / "a.nc").exists()
+    result = polhode("run", "a.toml", "--json", cwd=tmp_path)
+    assert result.returncode == 4
+    assert json.loads(result.stdout)["run"]["drift_within_bound"] is False
+
+
+def test_an_unreachable_tolerance_is_1(tmp_path):
+    text = SCENE.replace("[run]", "[gravity]\nacceleration = 9.81\n[run]").replace(
+        "[1, 2, 3]", "[1, 2, 3]\nmass = 1\ncenter_of_mass = [0.1, 0.2, 0.3]"
+    )
+    (tmp_path / "a.toml").write_text(text + "rtol = 1e-18\n")
+    done = polhode("run", "a.toml", "-o", "a.nc", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith("polhode: error: rtol = 1.0e-18 was not reached")
+    assert not (tmp_path / "a.nc").exists()
+
+
+def test_too_many_steps_are_refused_at_once(tmp_path):
+    (tmp_path / "a.toml").write_text(SCENE + 'step = "1e-15 s"\nmethod = "strang"\n')
+    done = polhode("run", "a.toml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "longer step" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("output", "parts"),
+    [
+        ("out.txt", ["out.txt", "name it out.nc"]),
+        ("nowhere/out.nc", ["nowhere/out.nc", "there is no directory nowhere"]),
+        ("folder.nc", ["folder.nc", "not a regular file"]),
+        ("/dev/full", ["/dev/full"]),
+        ("full.nc", ["full.nc", "not a regular file"]),
+        ("small.toml", ["small.toml", ".nc"]),
+    ],
+)
+def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
+    (tmp_path / "folder.nc").mkdir()
+    (tmp_path / "full.nc").symlink_to("/dev/full")
+    before = sorted(tmp_path.iterdir())
+    done = polhode("run", scene, "-o", output, cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith("polhode: error: cannot write ")
+    for part in parts:
+        assert part in done.stderr
+    assert sorted(tmp_path.iterdir()) == before
+    assert scene.read_text() == SCENE
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_directory_without_permission(scene, tmp_path):
+    (tmp_path / "locked").mkdir(mode=0o500)
+    done = polhode("run", scene, "-o", tmp_path / "locked" / "out.nc")
+    assert done.returncode == 1
+    assert "permission" in done.stderr
+
+
+def limit_files(size):
+    """Let no file grow beyond this, as on a disk that is full."""
+
+    def apply():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return apply
+
+
+# 4 kB stop the data (about 18 kB), 32 kB stop the figures.
+@pytest.mark.parametrize(("size", "name"), [(4096, "out.nc"), (32768, "out-motion.png")])
+def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
+    older = {}
+    for file in ("out.nc", "out-motion.png", "out-polhode.png"):
+        (tmp_path / file).write_bytes(f"older {file}".encode())
+        older[file] = (tmp_path / file).read_bytes()
+    done = polhode("run", scene, "-o", tmp_path / "out.nc", preexec_fn=limit_files(size))
+    assert done.returncode == 1
+    assert f"cannot write {tmp_path / name}" in done.stderr
+    assert "too large" in done.stderr.lower()
+    # A run writes its files all or none: data of one run beside figures of another would mislead.
+    assert {file: (tmp_path / file).read_bytes() for file in older} == older
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([*older, "small.toml"])
+
+
+def test_an_interrupted_run_leaves_no_trace(tmp_path):
+    (tmp_path / "long.toml").write_text(ENDLESS)
+    (tmp_path / "out.nc").write_bytes(b"older")
+    with subprocess.Popen(
+        [POLHODE, "run", "long.toml", "-o", "out.nc"], cwd=tmp_path, stdout=-1, stderr=-1, text=True
+    ) as process:
+        time.sleep(1.0)
+        assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        start = time.perf_counter()
+        output, errors = process.communicate(timeout=20)
+    assert time.perf_counter() - start < 2.0
+    assert process.returncode == 130
+    assert "interrupted" in errors
+    assert "Traceback" not in errors
+    assert output == ""
+    assert (tmp_path / "out.nc").read_bytes() == b"older"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["long.toml", "out.nc"]
+
+
+# --- standard output
+
+
+def test_a_reader_that_leaves_early(scene):
+    """As `polhode run … | head -1`, with the reader gone before the first word."""
+    read, write = os.pipe()
+    os.close(read)
+    with os.fdopen(write, "wb") as stdout:
+        done = polhode("run", scene, stdout=stdout)
+    assert done.returncode in (0, 1)
+    assert done.stderr == ""
+
+
+def test_head_gets_its_line():
+    command = f'"{POLHODE}" run "{EXAMPLES / "symmetric-top.toml"}" | head -1'
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout == "Free symmetric top\n"
+    assert done.stderr == ""
+
+
+def test_output_that_cannot_be_printed_is_an_error(scene):
+    with open("/dev/full", "wb") as stdout:
+        done = polhode("run", scene, stdout=stdout)
+    assert done.returncode == 1
+    assert "No space left" in done.stderr
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_any_terminal_encoding_gets_the_page(encoding, scene):
+    """A character that it lacks is no reason to fail."""
+    done = polhode("run", scene, env={**os.environ, "PYTHONIOENCODING": encoding})
+    assert done.returncode == 0, done.stderr
+    assert "short-axis mode" in done.stdout

@@ -35,12 +35,12 @@ ENDLESS = SCENE.replace('"1 s"', '"1e6 s"').replace("samples = 11", 'step = "1 m
 def polhode(*arguments, cwd=None, **options):
     """The finished process; whatever happened, no traceback."""
     options.setdefault("stdout", subprocess.PIPE)
+    options.setdefault("encoding", "utf-8")
     done = subprocess.run(
         [POLHODE, *arguments],
         cwd=cwd,
         stderr=subprocess.PIPE,
         timeout=60,
-        encoding="utf-8",
         check=False,
         **options,
     )
@@ -502,6 +502,6 @@ def test_output_that_cannot_be_printed_is_an_error(scene):
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 def test_any_terminal_encoding_gets_the_page(encoding, scene):
     """A character that it lacks is no reason to fail."""
-    done = polhode("run", scene, env={**os.environ, "PYTHONIOENCODING": encoding})
+    done = polhode("run", scene, encoding=encoding, env={**os.environ, "PYTHONIOENCODING": encoding})
     assert done.returncode == 0, done.stderr
     assert "short-axis mode" in done.stdout

@@ -245,7 +245,7 @@ def test_bad_input_is_refused():
     inertia = ph.Inertia.from_principal_moments(1, 2, 3)
     with pytest.raises(ValueError, match="time NaN at index 1"):
         motion_of((1, 2, 3), (1, 1, 1)).at([0.0, np.nan])
-    with pytest.raises(ValueError, match="not finite"):
+    with pytest.raises(ValueError, match="must be finite"):
         ph.FreeMotion(inertia, ph.Rotor.identity(), ph.bivector([np.inf, 0, 0]))
     with pytest.raises(TypeError, match="Rotor"):
         ph.FreeMotion(inertia, [1, 0, 0, 0], ph.bivector([1, 0, 0]))

@@ -716,7 +716,7 @@ BOX = ph.Body.box([1, 2, 3], mass=1.0)
         ({"method": "euler"}, ["'euler'", "kahan_li8"]),
         ({"rtol": 1e-17, "method": STEPS}, ["rtol = 1.0e-17", "not reached", "rtol >="]),
         ({"body": ph.Body.rod(1.0, mass=1.0)}, ["0 kg m²", "thickness"]),
-        ({"state": ph.State(R0, [0, np.nan, 1])}, ["angular velocity", "NaN"]),
+        ({"state": ph.State(R0, [0, np.nan, 1])}, ["angular velocity", "nan"]),
         ({"state": ph.State(R0, [[0, 0, 1], [0, 1, 0]])}, ["single", "(2,)"]),
         ({"state": ph.State(R0, [0, 0, 1], velocity=[np.nan, 0, 0])}, ["velocity"]),
         ({"force": [0, np.nan, 0]}, ["force"]),

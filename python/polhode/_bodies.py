@@ -87,9 +87,13 @@ class Inertia:
         return hash(self.matrix.tobytes())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        if self.principal_frame == Rotor.identity():
-            return Inertia.from_principal_moments, tuple(self.principal_moments.tolist())
-        return Inertia.from_matrix, (self.matrix,)
+        core = self._core
+        return _restored, (core.matrix().ravel(), core.principal_moments(), core.principal_frame())
+
+
+def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
+    """Restore a pickled inertia."""
+    return Inertia(_native.Inertia.restored(matrix, moments, frame))
 
 
 class Body:

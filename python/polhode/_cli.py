@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import os
 import signal
@@ -25,6 +26,9 @@ OK, FAILED, USAGE, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; the exit code is its value."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
     options = _parser().parse_args(arguments)
     try:
         return int(options.command(options))
@@ -87,7 +91,7 @@ def _run(options: argparse.Namespace) -> int:
     written = _write(output, scene, trajectory)
     result["files"] = [str(path) for path in written]
     if options.json:
-        print(json.dumps(result, indent=2, ensure_ascii=False))
+        print(json.dumps(result, indent=2))
     else:
         print(as_text(result))
         if written:
@@ -114,7 +118,7 @@ def _check(options: argparse.Namespace) -> int:
             if not options.json:
                 print(f"{path}: ok, {scene.body!r}, {len(scene.times)} output times")
     if options.json:
-        print(json.dumps(findings, indent=2, ensure_ascii=False))
+        print(json.dumps(findings, indent=2))
     return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
 
 
@@ -135,33 +139,26 @@ def _checked_output(name: str | None) -> Path | None:
 
 
 def _write(output: Path | None, scene: Scene, trajectory: Trajectory) -> list[Path]:
-    """Write the data and the figures, each whole or not at all."""
+    """Write the data and the figures, all of them or none."""
     if output is None:
         return []
-    import io
-
     import numpy as np
 
     from polhode._files import write_atomically
-    from polhode._plot import axis_figure, motion_figure, polhode_figure
+    from polhode._io import netcdf
+    from polhode._plot import as_png, axis_figure, motion_figure, polhode_figure
 
-    trajectory.save(output)
+    figures = {"motion": motion_figure(trajectory)}
     if scene.torque is None:
-        second = {"polhode": polhode_figure(trajectory)}
+        figures["polhode"] = polhode_figure(trajectory)
     else:
-        second = {
-            "axis": axis_figure(
-                trajectory, np.array(scene.torque.laws[0][1]), "the body's axis from the pivot"
-            )
-        }
-    written = [output]
-    for name, figure in {"motion": motion_figure(trajectory), **second}.items():
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format="png", dpi=160)
-        path = output.with_name(f"{output.stem}-{name}.png")
-        write_atomically(path, buffer.getvalue())
-        written.append(path)
-    return written
+        axis = np.array(scene.torque.laws[0][1])
+        figures["axis"] = axis_figure(trajectory, axis, "the body's axis from the pivot")
+    contents = {output: netcdf(trajectory)}
+    for name, figure in figures.items():
+        contents[output.with_name(f"{output.stem}-{name}.png")] = as_png(figure)
+    write_atomically(contents)
+    return list(contents)
 
 
 @contextmanager

@@ -5,34 +5,51 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 
-def write_atomically(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file so that at any moment the path holds the old content or all of the new.
+def write_atomically(contents: Mapping[Path, bytes]) -> None:
+    """Write files so that at any moment each path holds the old content or all of the new.
 
-    The bytes go to a temporary file beside it, reach the disk, and take the name in one step. On any
-    failure the temporary file is removed and the error, an OSError, names the path.
+    The bytes of all go to temporary files beside them and reach the disk; only then do these take the
+    names, in one step each. On any failure before that no file has changed and the temporary ones are
+    removed; the error, an OSError, names the path.
     """
-    target = Path(path)
-    if target.exists() and not target.is_file():
-        raise OSError(f"cannot write {target}: it exists and is not a regular file")
-    temporary = None
+    with contextlib.ExitStack() as stack:
+        ready = {
+            target: stack.enter_context(_temporary(target, content)) for target, content in contents.items()
+        }
+        for target, temporary in ready.items():
+            with _naming(target):
+                os.replace(temporary, target)
+
+
+@contextlib.contextmanager
+def _temporary(target: Path, content: bytes) -> Iterator[str]:
+    """Write the content to a temporary file beside the target; removed at the end if it is still there."""
+    with _naming(target):
+        if target.exists() and not target.is_file():
+            raise OSError("it exists and is not a regular file")
+        handle, path = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
     try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
-        with os.fdopen(handle, "wb") as file:
+        with _naming(target), os.fdopen(handle, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(temporary, _mode(target))
-        os.replace(temporary, target)
-    except BaseException as error:
-        if temporary is not None:
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(temporary)
-        if isinstance(error, OSError):
-            raise OSError(f"cannot write {target}: {error.strerror or error}") from error
-        raise
+            os.chmod(path, _mode(target))
+        yield path
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(path)
+
+
+@contextlib.contextmanager
+def _naming(target: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise OSError(f"cannot write {target}: {error.strerror or error}") from error
 
 
 def _mode(target: Path) -> int:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import io
 import json
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _native
-from polhode._files import write_atomically
 
 if TYPE_CHECKING:
     import xarray
@@ -67,8 +65,8 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     return xr.Dataset(variables, coordinates, _attributes(trajectory))
 
 
-def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
-    """Write a netCDF4 file atomically: it is made in memory first, so that no partial file is left."""
+def netcdf(trajectory: Trajectory) -> bytes:
+    """Return the content of a netCDF4 file."""
     dataset = to_xarray(trajectory)
     try:
         import h5netcdf  # noqa: F401
@@ -76,7 +74,7 @@ def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
         raise ImportError("netCDF files need h5netcdf: pip install 'polhode[io]'") from error
     buffer = io.BytesIO()
     dataset.to_netcdf(buffer, engine="h5netcdf", encoding={"time": {"_FillValue": None}})
-    write_atomically(path, buffer.getvalue())
+    return buffer.getvalue()
 
 
 def _attributes(trajectory: Trajectory) -> dict[str, Any]:

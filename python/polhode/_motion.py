@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -145,9 +146,10 @@ class Trajectory:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a netCDF file, whole or not at all: an older file stays until the new one is complete."""
-        from polhode._io import save
+        from polhode._files import write_atomically
+        from polhode._io import netcdf
 
-        save(self, path)
+        write_atomically({Path(path): netcdf(self)})
 
     def plot(self) -> Figure:
         """Draw angular velocity, attitude and conserved quantities over time; a matplotlib figure."""
@@ -242,23 +244,25 @@ def simulate(
     ValueError
         For input that is not usable, or a tolerance that was not reached.
     """
+    if torque is not None and not isinstance(torque, Torque):
+        raise TypeError(
+            f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}"
+        )
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be callable, got {type(progress).__name__}")
+    if method not in METHODS:
+        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     start = _single(state)
     mass = body.mass if isinstance(body, Body) else None
     inertia = _ruling_inertia(body, torque)
     when = np.atleast_1d(as_floats(times, "times"))
     if when.ndim != 1:
         raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
-    if method not in METHODS:
-        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
-    if torque is not None and not isinstance(torque, Torque):
-        raise TypeError(
-            f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}"
-        )
-    position, velocity = _center_of_mass(start, when, force, mass)
+    acceleration = _acceleration(force, mass)
     rotors, omegas, momenta, energies, certificate = _native.simulate(
         inertia._core,
         start.rotor._data,
-        np.ascontiguousarray(start.omega_body.components),
+        start.omega_body._data,
         list(torque.laws) if torque else [],
         np.ascontiguousarray(when),
         method,
@@ -266,14 +270,16 @@ def simulate(
         _tolerance(rtol, atol),
         progress,
     )
+    # x0(t) of handout eq. (4.1), under a constant force.
+    x, v, t = start.position.components, start.velocity.components, when[:, np.newaxis]
     return Trajectory(
         time=frozen(when.copy()),
         rotor=Rotor._from_rows(rotors),
         omega_body=Multivector._of(omegas, _BIVECTOR),
         momentum_space=Multivector._of(momenta, _BIVECTOR),
         energy=frozen(energies),
-        position=position,
-        velocity=velocity,
+        position=vector(x + v * t + 0.5 * acceleration * t**2),
+        velocity=vector(v + acceleration * t),
         inertia=inertia,
         certificate=Certificate(**certificate),
     )
@@ -287,7 +293,11 @@ def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
 
 def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     """Both measure the same scaled difference, so the larger one rules."""
-    return max((float(x) for x in (rtol, atol) if x is not None), default=None)
+    given = {name: float(x) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
+    for name, x in given.items():
+        if not (x > 0 and np.isfinite(x)):
+            raise ValueError(f"{name} is {x}; it must be positive and finite")
+    return max(given.values(), default=None)
 
 
 def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
@@ -299,17 +309,18 @@ def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
     return body.inertia_about(np.zeros(3)) if held else body.inertia
 
 
-def _center_of_mass(
-    start: State, when: Array, force: Any, mass: float | None
-) -> tuple[Multivector, Multivector]:
-    """``x0(t)`` of handout eq. (4.1) under a constant force."""
-    acceleration = np.zeros(3)
-    if force is not None:
-        if mass is None:
-            raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
-        acceleration = as_vectors(force, "force") / mass
-    x, v, t = start.position.components, start.velocity.components, when[:, np.newaxis]
-    return vector(x + v * t + 0.5 * acceleration * t**2), vector(v + acceleration * t)
+def _acceleration(force: Any, mass: float | None) -> Array:
+    if force is None:
+        return np.zeros(3)
+    if mass is None:
+        raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
+    return _finite(as_vectors(force, "force"), "the force") / mass
+
+
+def _finite(components: Array, what: str) -> Array:
+    if not np.isfinite(components).all():
+        raise ValueError(f"{what} is {components.tolist()}; it must be finite")
+    return components
 
 
 def _angular_velocity(value: Any) -> Multivector:
@@ -322,4 +333,7 @@ def _single(state: State) -> State:
     shapes = (state.rotor.shape, state.omega_body.shape, state.position.shape, state.velocity.shape)
     if any(shapes):
         raise ValueError(f"the state must be a single one, got batch shapes {shapes}")
+    for name in ("position", "velocity"):
+        _finite(getattr(state, name).components, f"the {name}")
+    _finite(state.omega_body.components, "the angular velocity")
     return state

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +32,18 @@ def _figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
+def as_png(figure: Figure) -> bytes:
+    """Return the figure as a PNG file."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=160)
+    return buffer.getvalue()
+
+
+def _require_times(trajectory: Trajectory) -> None:
+    if not len(trajectory.time):
+        raise ValueError("the motion has no output times, so there is nothing to draw")
+
+
 def _time_unit(trajectory: Trajectory) -> tuple[float, str]:
     span = float(np.abs(trajectory.time).max(initial=0.0))
     for longest, seconds, name in _TIME_UNITS:
@@ -41,6 +54,7 @@ def _time_unit(trajectory: Trajectory) -> tuple[float, str]:
 
 def motion_figure(trajectory: Trajectory) -> Figure:
     """Draw angular velocity in the body, attitude, and what was conserved, over time."""
+    _require_times(trajectory)
     figure = _figure(8, 7.5)
     rates, attitude, drift = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 2))
     seconds, unit = _time_unit(trajectory)
@@ -152,11 +166,16 @@ def polhode_figure(trajectory: Trajectory) -> Figure:
 
     Components are about the principal axes. Where the curve is behind the ellipsoid it is faint.
     """
+    _require_times(trajectory)
     figure = _figure(6.4, 6.4)
     axes = figure.add_subplot()
     moments = trajectory.inertia.principal_moments
     omega = (~trajectory.inertia.principal_frame)(trajectory.omega_body).components
     energy = 0.5 * float((moments * omega[0] ** 2).sum())
+    if energy == 0:
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, "At rest: no polhode", ha="center", transform=axes.transAxes)
+        return figure
     semi_axes = np.sqrt(2 * energy / moments)
     view = _View()
     axes.fill(*view.silhouette(semi_axes).T, facecolor="#F4F6F8", edgecolor=_BLACK, lw=0.9, zorder=0)
@@ -223,6 +242,7 @@ def _separatrix(moments: Array, energy: float) -> list[Array]:
 
 def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction fixed in the body (3,); e3 of space is up."""
+    _require_times(trajectory)
     from polhode._values import vector
 
     figure = _figure(6.4, 6.4)

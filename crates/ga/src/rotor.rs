@@ -230,8 +230,12 @@ impl Rotor {
     pub fn renormalized(self) -> Rotor {
         let c = self.components();
         let excess = c.iter().map(|x| x * x).sum::<f64>() - 1.0;
-        let factor = 1.0 - 0.5 * excess;
-        Rotor { scalar: self.scalar * factor, bivector: self.bivector * factor }
+        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+        let missing = -0.5 * excess;
+        Rotor {
+            scalar: self.scalar + self.scalar * missing,
+            bivector: self.bivector + self.bivector * missing,
+        }
     }
 }
 

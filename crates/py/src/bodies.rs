@@ -16,6 +16,12 @@ fn points(masses: &Rows<'_>, positions: &Rows<'_>) -> PyResult<(Vec<f64>, Vec<Ve
     Ok((numbers(masses)?.to_vec(), positions))
 }
 
+/// A 3x3 matrix from nine numbers, row by row.
+fn square(matrix: &Rows<'_>) -> PyResult<[[f64; 3]; 3]> {
+    let m: [f64; 9] = one(matrix)?;
+    Ok([0, 3, 6].map(|i| [m[i], m[i + 1], m[i + 2]]))
+}
+
 /// A rotor from its row of components.
 pub(crate) fn rotor(row: &Rows<'_>) -> PyResult<Rotor> {
     Rotor::from_components(one(row)?).map_err(bad)
@@ -30,9 +36,13 @@ impl Inertia {
 
     #[staticmethod]
     fn from_matrix(matrix: Rows<'_>) -> PyResult<Inertia> {
-        let m: [f64; 9] = one(&matrix)?;
-        let row = |i: usize| [m[3 * i], m[3 * i + 1], m[3 * i + 2]];
-        inertia::Inertia::from_matrix([row(0), row(1), row(2)]).map(Inertia).map_err(bad)
+        inertia::Inertia::from_matrix(square(&matrix)?).map(Inertia).map_err(bad)
+    }
+
+    #[staticmethod]
+    fn restored(matrix: Rows<'_>, moments: Rows<'_>, frame: Rows<'_>) -> PyResult<Inertia> {
+        let restored = inertia::Inertia::restored(square(&matrix)?, one(&moments)?, rotor(&frame)?);
+        restored.map(Inertia).map_err(bad)
     }
 
     #[staticmethod]
@@ -127,9 +137,7 @@ impl Body {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(bad(format!("scale is {scale}; it must be positive and finite")));
         }
-        py.detach(|| TriangleMesh::read(Path::new(path))?.scaled(scale)?.body(amount))
-            .map(Body)
-            .map_err(|e| bad(format!("{path}: {e}")))
+        py.detach(|| TriangleMesh::read(Path::new(path))?.scaled(scale)?.body(amount)).map(Body).map_err(bad)
     }
 
     fn mass(&self) -> f64 {

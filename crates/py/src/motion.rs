@@ -3,7 +3,7 @@
 use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::free::{FreeMotion, describe};
+use polhode_rigid::free::FreeMotion;
 use polhode_rigid::simulate::{Options, Problem, Progress, SimulateError};
 use polhode_rigid::splitting::{METHODS, Method};
 use polhode_rigid::symmetric_top::SymmetricTop;
@@ -80,7 +80,7 @@ pub(crate) fn free_motion<'py>(
     omega: Rows<'py>,
     times: Rows<'py>,
 ) -> States<'py> {
-    let motion = FreeMotion::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(&omega)?);
+    let motion = FreeMotion::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(&omega)?).map_err(bad)?;
     states(py, numbers(&times)?, |t| motion.at(t))
 }
 
@@ -91,7 +91,7 @@ pub(crate) fn describe_free<'py>(
     inertia: &Inertia,
     omega: Rows<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let d = describe(&inertia.0, angular_velocity(&omega)?);
+    let d = FreeMotion::new(&inertia.0, Rotor::IDENTITY, angular_velocity(&omega)?).map_err(bad)?.describe();
     let result = PyDict::new(py);
     result.set_item("regime", d.regime.to_string())?;
     result.set_item("axis", d.axis + 1)?;

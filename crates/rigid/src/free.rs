@@ -42,6 +42,7 @@
 use crate::double_double::DoubleDouble;
 use crate::elliptic::{complete, incomplete_pi, incomplete_pi_excess, jacobi, r_f};
 use crate::inertia::Inertia;
+use crate::simulate::{SimulateError, check_moments};
 use crate::symmetric_top::equal;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::f64::consts::PI;
@@ -128,14 +129,16 @@ pub struct FreeMotion {
 }
 
 impl FreeMotion {
-    /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes.
-    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> FreeMotion {
-        let frame = inertia.principal_frame();
+    /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes. An
+    /// error if a principal moment is zero.
+    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> Result<FreeMotion, SimulateError> {
+        let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
+        check_moments(moments)?;
         let (rotor, omega) = (rotor * frame, frame.reverse().apply_bivector(omega));
-        FreeMotion { frame, ..FreeMotion::in_principal_axes(inertia.principal_moments(), rotor, omega) }
+        Ok(FreeMotion { frame, ..FreeMotion::in_principal_axes(moments, rotor, omega) })
     }
 
-    /// The motion of a body whose axes are its principal axes.
+    /// The motion of a body whose axes are its principal axes, with positive moments.
     pub fn in_principal_axes(moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
         let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
         let tumbling = Tumbling::new(moments.map(|i| i / size), omega.0.map(|w| w / scale));
@@ -186,11 +189,6 @@ impl FreeMotion {
             ..moving
         }
     }
-}
-
-/// Describes the free motion of a body with angular velocity `omega` in body axes.
-pub fn describe(inertia: &Inertia, omega: Bivector) -> FreeDescription {
-    FreeMotion::new(inertia, Rotor::IDENTITY, omega).describe()
 }
 
 /// The power of two next below the largest magnitude; 1 for zeros.

@@ -50,6 +50,12 @@ impl Inertia {
         Ok(inertia)
     }
 
+    /// The map that told this matrix, these principal moments and this frame before; to restore it as it was.
+    pub fn restored(matrix: [[f64; 3]; 3], moments: [f64; 3], frame: Rotor) -> Result<Inertia, BodyError> {
+        check_moments(moments)?;
+        Ok(Inertia { matrix: checked_symmetric(matrix)?, moments, frame })
+    }
+
     /// The map of point masses about their centre of mass.
     pub fn from_points(masses: &[f64], positions: &[Vector]) -> Result<Inertia, BodyError> {
         Ok(Body::from_points(masses, positions)?.inertia)

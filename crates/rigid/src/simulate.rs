@@ -14,6 +14,9 @@ const MAX_STEPS: f64 = 1e10;
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
 
+/// Below this two passes may differ by rounding, which halving the step does not reduce.
+const ROUNDING_OF_RUNS: f64 = 1e-11;
+
 /// The relative error aimed at when no tolerance is asked for.
 const DEFAULT_RTOL: f64 = 1e-10;
 
@@ -146,6 +149,8 @@ struct Walker<'a> {
     longest: f64,
     steps: u64,
     total_time: f64,
+    /// How much of it is behind, in both directions of time.
+    time_done: f64,
     pass: u32,
     progress: &'a mut dyn FnMut(Progress) -> bool,
 }
@@ -163,6 +168,7 @@ impl Walker<'_> {
         for i in 0..count as u64 {
             self.stepper.step(state, h);
             state.time = if i + 1 == count as u64 { time } else { from + span * ((i + 1) as f64 / count) };
+            self.time_done += h.abs();
             self.after_step(state)?;
         }
         Ok(())
@@ -175,13 +181,21 @@ impl Walker<'_> {
         }
         self.steps += 1;
         if self.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
-            let fraction = (state.time.abs() / self.total_time).min(1.0);
+            let fraction = (self.time_done / self.total_time).min(1.0);
             if !(self.progress)(Progress { pass: self.pass, fraction }) {
                 return Err(SimulateError::Interrupted);
             }
         }
         Ok(())
     }
+}
+
+/// Moments must be positive to turn momentum into rate.
+pub(crate) fn check_moments(moments: [f64; 3]) -> Result<(), SimulateError> {
+    if moments.iter().all(|i| *i > 0.0 && i.is_finite()) {
+        return Ok(());
+    }
+    Err(SimulateError::SingularInertia { moments })
 }
 
 impl Problem {
@@ -264,9 +278,7 @@ impl Problem {
     }
 
     fn check(&self, times: &[f64], options: Options) -> Result<(), SimulateError> {
-        if !self.moments.iter().all(|i| *i > 0.0 && i.is_finite()) {
-            return Err(SimulateError::SingularInertia { moments: self.moments });
-        }
+        check_moments(self.moments)?;
         for (index, &time) in times.iter().enumerate() {
             if !time.is_finite() || index > 0 && time < times[index - 1] {
                 return Err(SimulateError::BadTime { index, time });
@@ -314,6 +326,7 @@ impl Problem {
             longest: 0.0,
             steps: 0,
             total_time: total_time.max(f64::MIN_POSITIVE),
+            time_done: 0.0,
             pass: number,
             progress,
         };
@@ -355,7 +368,10 @@ impl Problem {
             let fine = self.pass(stepper, times, step, number, progress)?;
             steps += fine.steps;
             // The error of the finer run is about difference / 2^order; half the exponent is the margin.
-            let error = self.difference(stepper, &coarse, &fine) / f64::from(1 << (stepper.order() / 2));
+            // Where rounding rules, the difference itself tells the error.
+            let difference = self.difference(stepper, &coarse, &fine);
+            let margin = f64::from(1 << (stepper.order() / 2));
+            let error = (difference / margin).max(difference.min(ROUNDING_OF_RUNS));
             // Near convergence halving gains 2^order; gaining less than 2 is rounding.
             let stuck = error > 0.5 * previous && previous < 1e-2 || number > 30;
             if error <= goal || stuck && error <= acceptable {

@@ -152,7 +152,9 @@ impl Stepper {
     fn restore_momentum(&self, state: &mut Phase) {
         let size = self.fixed.norm_squared();
         if size > 0.0 {
-            state.momentum = state.momentum * (1.5 - 0.5 * state.momentum.norm_squared() / size);
+            // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+            let missing = 0.5 * (size - state.momentum.norm_squared()) / size;
+            state.momentum += state.momentum * missing;
             let wandered = state.rotor.apply_bivector(state.momentum);
             // exp(−½ a∧b/|a||b|) turns the axial vector a into b.
             let back = wandered.dual().wedge(self.fixed.dual()) * (-0.5 / size);
@@ -194,16 +196,18 @@ impl Stepper {
 
     fn turn_about_axis(&self, state: &mut Phase, which: usize, h: f64) {
         let k = self.axes[which];
-        let angle = self.kappa[which] * state.momentum.0[k] * h;
+        let half = 0.5 * self.kappa[which] * state.momentum.0[k] * h;
         let mut plane = Bivector::default();
-        plane.0[k] = -0.5 * angle;
+        plane.0[k] = -half;
         state.rotor = state.rotor * Rotor::exp(plane);
-        // ~q m q turns the other two components by −angle; written out, the one about k is exact.
-        let (sin, cos) = angle.sin_cos();
+        // ~q m q turns the other two components by −2 half; written out, the one about k is exact. The turn is
+        // added to m: rounded cosines and sines would stretch it by the same at every step of a steady motion.
+        let (sin, cos) = half.sin_cos();
+        let (versine, sine) = (2.0 * sin * sin, 2.0 * sin * cos);
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         let (x, y) = (state.momentum.0[i], state.momentum.0[j]);
-        state.momentum.0[i] = cos * x + sin * y;
-        state.momentum.0[j] = cos * y - sin * x;
+        state.momentum.0[i] = x + (sine * y - versine * x);
+        state.momentum.0[j] = y - (sine * x + versine * y);
     }
 
     /// `m' = N − g m` for a time h: `m e^(−gh) + N (1 − e^(−gh))/g`.

@@ -5,7 +5,7 @@ use crate::body::{Body, BodyError};
 use crate::diagnostic::Diagnostic;
 use crate::inertia::Inertia;
 use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
-use crate::simulate::SimulateError;
+use crate::simulate::check_moments;
 use crate::solids::Amount;
 use crate::torque::Torque;
 use polhode_ga::{Rotor, Vector};
@@ -26,11 +26,8 @@ impl Scene {
         };
         let held = self.gravity.is_some();
         let inertia = if held { body.inertia_about(Vector::default()) } else { body.inertia };
-        let moments = inertia.principal_moments();
-        if moments.iter().any(|i| *i <= 0.0) {
-            let message = SimulateError::SingularInertia { moments }.to_string();
-            return Err(vec![self.diagnose("body", message)]);
-        }
+        check_moments(inertia.principal_moments())
+            .map_err(|error| vec![self.diagnose("body", error.to_string())])?;
         Ok((body, torques))
     }
 

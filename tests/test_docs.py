@@ -1,0 +1,33 @@
+"""The scenes in the documentation are scenes."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import polhode as ph
+
+ROOT = Path(__file__).parent.parent
+SCENES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/scenes.md").read_text(), flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("text", SCENES, ids=lambda text: text.splitlines()[1][:20])
+def test_scenes_run(text, tmp_path):
+    (tmp_path / "examples").mkdir()
+    shutil.copy(ROOT / "examples/t-handle.stl", tmp_path / "examples")
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    trajectory = ph.Scene.read(path).run()
+    assert trajectory.certificate.worst < 1e-10
+
+
+def test_there_are_scenes():
+    assert len(SCENES) == 3
+
+
+@pytest.mark.parametrize(
+    "solid", ["box", "ellipsoid", "sphere", "hollow_sphere", "cylinder", "capsule", "cone"]
+)
+def test_solids_are_documented(solid):
+    assert f'"{solid}"' in (ROOT / "docs/scenes.md").read_text()

@@ -1,6 +1,17 @@
-"""Property tests are the same on every run: derived from the test itself, nothing remembered."""
+"""A small scene; and property tests that are the same on every run, each derived from the test itself."""
 
+import pytest
 from hypothesis import settings
+
+from command_line import SCENE
 
 settings.register_profile("polhode", derandomize=True, database=None, deadline=None, max_examples=60)
 settings.load_profile("polhode")
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """The path of a scene that runs in no time."""
+    path = tmp_path / "small.toml"
+    path.write_text(SCENE)
+    return path

@@ -1,0 +1,44 @@
+"""The command, run as a program, and a small scene for it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+POLHODE = Path(sys.executable).with_name("polhode")
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
+
+SCENE = """\
+title = "Small"
+[body]
+moments = [1, 2, 3]
+[initial]
+spin = { vector = [0.01, 1, 0.01] }
+[run]
+duration = "1 s"
+samples = 11
+"""
+
+
+def polhode(*arguments, cwd=None, **options):
+    """The finished process; whatever happened, no traceback."""
+    options.setdefault("stdout", subprocess.PIPE)
+    options.setdefault("encoding", "utf-8")
+    done = subprocess.run(
+        [POLHODE, *arguments],
+        cwd=cwd,
+        stderr=subprocess.PIPE,
+        timeout=60,
+        check=False,
+        **options,
+    )
+    assert "Traceback" not in done.stderr, done.stderr
+    assert "Exception ignored" not in done.stderr, done.stderr
+    return done
+
+
+def summary_of(path, *arguments):
+    done = polhode("run", path, "--json", *arguments)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)

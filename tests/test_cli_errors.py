@@ -1,0 +1,225 @@
+"""The command when things go wrong: the places of errors in scenes, exit codes, and what is left behind."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+
+import pytest
+
+from command_line import POLHODE, SCENE, polhode
+
+# Steps enough for hours.
+ENDLESS = SCENE.replace('"1 s"', '"1e6 s"').replace("samples = 11", 'step = "1 ms"\nmethod = "kahan_li8"')
+
+
+# --- bad scenes: exact places
+
+BAD = {
+    "near miss": (
+        SCENE.replace("duration", "durration"),
+        "7:1: error: unknown field `durration`, expected `duration`\n"
+        '  |\n7 | durration = "1 s"\n  | ^^^^^^^^^\n',
+    ),
+    "wrong type": (
+        SCENE.replace("samples = 11", 'samples = "11"'),
+        '8:11: error: expected a whole number, found a string\n  |\n8 | samples = "11"\n  |           ^^^^\n',
+    ),
+    "wrong unit": (
+        SCENE.replace('"1 s"', '"1 kg"'),
+        "7:12: error: ",
+    ),
+    "no such unit": (SCENE.replace('"1 s"', '"1 parsnip"'), "7:12: error: "),
+    "impossible body": (
+        SCENE.replace("[1, 2, 3]", "[1, 1, 3]"),
+        "3:11: error: no body has the principal moments 1.0, 1.0, 3.0: i3 = 3.0 exceeds",
+    ),
+    "missing mesh": (
+        SCENE.replace("moments = [1, 2, 3]", 'mesh = "absent.stl"\nmass = 1'),
+        "3:8: error: ",
+    ),
+    "no gravity without mass": (
+        SCENE.replace("[run]", "[gravity]\nacceleration = 9.81\n[run]"),
+        "2:1: error: gravity acts on the mass, add the field `mass`",
+    ),
+    "negative duration": (SCENE.replace('"1 s"', "-1"), "7:12: error: must be more than 0, found -1"),
+    "one sample": (SCENE.replace("11", "1"), "8:11: error: must be from 2 to 10000000, found 1"),
+    "unknown method": (
+        SCENE + 'method = "euler"\n',
+        "9:10: error: unknown method `euler`, expected one of `auto`",
+    ),
+    "a thin rod": (
+        SCENE.replace("moments = [1, 2, 3]", 'solid = "rod"\nlength = 1\nmass = 1'),
+        "2:1: error: principal moments",
+    ),
+    "no TOML": (SCENE.replace("= 11", "11"), "8:9: error: "),
+    "not finite": (SCENE.replace("0.01, 1", "nan, 1"), "5:20: error: `nan` is not a finite number"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_bad_scenes_have_a_place(name, command, tmp_path):
+    text, expected = BAD[name]
+    (tmp_path / "bad.toml").write_text(text)
+    done = polhode(command, "bad.toml", cwd=tmp_path)
+    assert done.returncode == 3
+    assert f"bad.toml:{expected}" in done.stderr
+    assert "^" in done.stderr
+    assert done.stdout == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "parts"),
+    [
+        ("latin.toml", b'title = "caf\xe9"\n', ["latin.toml:1:13", "UTF-8"]),
+        ("empty.toml", b"", ["empty.toml: error: the file is empty", "[body], [initial] and [run]"]),
+        ("noise.toml", bytes(range(256)), ["noise.toml:2:118: error: not UTF-8"]),
+        ("huge.toml", b"#" * 10_000_001, ["huge.toml: error: larger than 10 MB"]),
+    ],
+)
+def test_files_that_are_no_scenes(name, content, parts, tmp_path):
+    (tmp_path / name).write_bytes(content)
+    done = polhode("run", name, cwd=tmp_path)
+    assert done.returncode == 3
+    for part in parts:
+        assert part in done.stderr
+
+
+def test_paths_that_are_no_files(tmp_path):
+    absent = polhode("run", "absent.toml", cwd=tmp_path)
+    assert absent.returncode == 3
+    assert absent.stderr == "absent.toml: error: no such file\n"
+    folder = polhode("run", tmp_path)
+    assert folder.returncode == 3
+    assert "is a directory" in folder.stderr
+
+
+def test_a_missing_mesh_is_named(tmp_path):
+    (tmp_path / "bad.toml").write_text(BAD["missing mesh"][0])
+    done = polhode("run", "bad.toml", cwd=tmp_path)
+    assert "absent.stl: cannot be read" in done.stderr
+
+
+def test_all_errors_are_told_at_once(tmp_path):
+    text = SCENE.replace("duration", "durration").replace("spin", "spinn").replace("= 11", "= 1")
+    (tmp_path / "bad.toml").write_text(text)
+    done = polhode("run", "bad.toml", cwd=tmp_path)
+    assert done.returncode == 3
+    places = [line.split(": error:")[0] for line in done.stderr.splitlines() if ": error:" in line]
+    assert {"bad.toml:5:1", "bad.toml:7:1", "bad.toml:8:11"} <= set(places)
+    lines = [int(place.split(":")[1]) for place in places]
+    assert lines == sorted(lines)
+
+
+# --- runs that fail
+
+
+def test_a_drift_past_the_bound_is_4(tmp_path):
+    (tmp_path / "a.toml").write_text(SCENE + 'step = "0.1 s"\nmethod = "strang"\ndrift_bound = 1e-30\n')
+    done = polhode("run", "a.toml", "-o", "a.nc", cwd=tmp_path)
+    assert done.returncode == 4
+    assert "FAILED" in done.stdout
+    assert "1e-30" in done.stdout
+    assert (tmp_path / "a.nc").exists()
+    result = polhode("run", "a.toml", "--json", cwd=tmp_path)
+    assert result.returncode == 4
+    assert json.loads(result.stdout)["run"]["drift_within_bound"] is False
+
+
+def test_an_unreachable_tolerance_is_1(tmp_path):
+    text = SCENE.replace("[run]", "[gravity]\nacceleration = 9.81\n[run]").replace(
+        "[1, 2, 3]", "[1, 2, 3]\nmass = 1\ncenter_of_mass = [0.1, 0.2, 0.3]"
+    )
+    (tmp_path / "a.toml").write_text(text + "rtol = 1e-18\n")
+    done = polhode("run", "a.toml", "-o", "a.nc", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith("polhode: error: rtol = 1.0e-18 was not reached")
+    assert not (tmp_path / "a.nc").exists()
+
+
+def test_too_many_steps_are_refused_at_once(tmp_path):
+    (tmp_path / "a.toml").write_text(SCENE + 'step = "1e-15 s"\nmethod = "strang"\n')
+    done = polhode("run", "a.toml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "longer step" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("output", "parts"),
+    [
+        ("out.txt", ["out.txt", "name it out.nc"]),
+        ("nowhere/out.nc", ["nowhere/out.nc", "there is no directory nowhere"]),
+        ("folder.nc", ["folder.nc", "not a regular file"]),
+        ("/dev/full", ["/dev/full"]),
+        ("full.nc", ["full.nc", "not a regular file"]),
+        ("small.toml", ["small.toml", ".nc"]),
+    ],
+)
+def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
+    (tmp_path / "folder.nc").mkdir()
+    (tmp_path / "full.nc").symlink_to("/dev/full")
+    before = sorted(tmp_path.iterdir())
+    done = polhode("run", scene, "-o", output, cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith("polhode: error: cannot write ")
+    for part in parts:
+        assert part in done.stderr
+    assert sorted(tmp_path.iterdir()) == before
+    assert scene.read_text() == SCENE
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_directory_without_permission(scene, tmp_path):
+    (tmp_path / "locked").mkdir(mode=0o500)
+    done = polhode("run", scene, "-o", tmp_path / "locked" / "out.nc")
+    assert done.returncode == 1
+    assert "permission" in done.stderr
+
+
+def limit_files(size):
+    """Let no file grow beyond this, as on a disk that is full."""
+
+    def apply():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return apply
+
+
+# 4 kB stop the data (about 18 kB), 32 kB stop the figures.
+@pytest.mark.parametrize(("size", "name"), [(4096, "out.nc"), (32768, "out-motion.png")])
+def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
+    older = {}
+    for file in ("out.nc", "out-motion.png", "out-polhode.png"):
+        (tmp_path / file).write_bytes(f"older {file}".encode())
+        older[file] = (tmp_path / file).read_bytes()
+    done = polhode("run", scene, "-o", tmp_path / "out.nc", preexec_fn=limit_files(size))
+    assert done.returncode == 1
+    assert f"cannot write {tmp_path / name}" in done.stderr
+    assert "too large" in done.stderr.lower()
+    # A run writes its files all or none: data of one run beside figures of another would mislead.
+    assert {file: (tmp_path / file).read_bytes() for file in older} == older
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([*older, "small.toml"])
+
+
+def test_an_interrupted_run_leaves_no_trace(tmp_path):
+    (tmp_path / "long.toml").write_text(ENDLESS)
+    (tmp_path / "out.nc").write_bytes(b"older")
+    with subprocess.Popen(
+        [POLHODE, "run", "long.toml", "-o", "out.nc"], cwd=tmp_path, stdout=-1, stderr=-1, text=True
+    ) as process:
+        time.sleep(1.0)
+        assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        start = time.perf_counter()
+        output, errors = process.communicate(timeout=20)
+    assert time.perf_counter() - start < 2.0
+    assert process.returncode == 130
+    assert "interrupted" in errors
+    assert "Traceback" not in errors
+    assert output == ""
+    assert (tmp_path / "out.nc").read_bytes() == b"older"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["long.toml", "out.nc"]

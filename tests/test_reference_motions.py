@@ -1,0 +1,214 @@
+"""Motion against 40-digit references, its error estimate against the error, and the promised orders."""
+
+import json
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from motions import ASYMMETRIC, EPS, METHODS, REFERENCE, SLOPES, START, STEPS, apart, moments, random_walk
+
+# --- reference states
+
+# To 17 digits, of two independent computations with 60 and more: (name, moments, torque, ω0, R0, t, R, ω).
+CASES = [
+    (
+        "short-axis mode",
+        (1, 2, 3),
+        None,
+        [0.25, -0.5, 1.0],
+        [4, -2, 1, 2],
+        100.0,
+        [-0.56890136528237989, 0.049328916585751233, -0.64890548546109417, 0.50283154784363115],
+        [0.55435823171026055, -0.072020489689206699, 1.0400020911941998],
+    ),
+    (
+        "long-axis mode, unsorted moments",
+        (2, 3, 1),
+        None,
+        [-0.25, 0.125, -1.5],
+        [-1, 3, 2, 1],
+        25.0,
+        [-0.09388236650726868, 0.31094910238222551, 0.93957356723068741, 0.10815853525304396],
+        [0.17317457253366569, -0.16267100482034505, -1.5107979902779134],
+    ),
+    (
+        "needle",
+        (1, 1000, 1000.5),
+        None,
+        [2.0, 0.5, 0.25],
+        [4, -2, 1, 2],
+        10.0,
+        [0.34957585890685988, -0.59738037156060908, 0.66078109931484585, 0.29034763531309105],
+        [2.0112137410777113, 0.40010443150843955, -0.39029034051595307],
+    ),
+    (
+        "Lagrange's top",
+        (1, 1, 0.5),
+        ph.torque.heavy([0, 0, 2]),
+        [0.25, -0.5, 6.0],
+        [4, 2, 1, 0],
+        5.0,
+        [-0.83646752676582603, 0.31611845751857293, 0.37858553168163173, 0.2388811266795195],
+        [-0.38756163688950951, 0.45121740293377838, 6.0],
+    ),
+    (
+        "heavy asymmetric top",
+        (1, 2, 2.5),
+        ph.torque.heavy([0.5, 0.25, 1.0]),
+        [0.5, 0.25, 3.0],
+        [4, 1, -2, 1],
+        10.0,
+        [-0.57886584600346536, -0.4844782942282847, -0.23899203842235983, -0.61080104806972069],
+        [0.061092866215364715, -1.0135764388903867, 2.7879526602814955],
+    ),
+    (
+        "gravity gradient",
+        (1, 2, 2.5),
+        ph.torque.gravity_gradient(1.0),
+        [0.0625, 0.03125, 1.125],
+        [8, 1, 0.5, 1],
+        10.0,
+        [0.30365006998377836, 0.1213202822633259, -0.3194943671344459, 0.88938257992820691],
+        [-0.21435819291044553, -0.63814606563180487, 0.4806956025045242],
+    ),
+    (
+        "damping",
+        (1, 2, 3),
+        ph.torque.damping(0.125),
+        [0.5, 1.0, 0.25],
+        [4, -2, 1, 2],
+        10.0,
+        [-0.46506138998930496, 0.71292159296070612, -0.50655785425115729, -0.13733115497966294],
+        [0.27182016725365488, 0.16946989394600029, -0.15138900324639526],
+    ),
+]
+
+
+def growth(inertia, state, t, torque):
+    """How much the motion magnifies a small change of its start: the size of its derivative, at least 1."""
+    delta = 1e-9
+    step = ph.simulate(inertia, state, [t], torque, method=STEPS, rtol=1e-5).certificate.step
+
+    def end(rotor, omega):
+        return ph.simulate(inertia, ph.State(rotor, omega), [t], torque, step=step)
+
+    omega = state.omega_body.components
+    same = end(state.rotor, omega)
+    changes = []
+    for axis in np.eye(3):
+        faster = end(state.rotor, omega + delta * np.linalg.norm(omega) * axis)
+        turned = end(state.rotor * ph.Rotor.from_rotation_vector(2 * delta * axis), omega)
+        for other in (faster, turned):
+            changes.append(apart(other, same.rotor.components, same.omega_body.components) / delta)
+    return max(1.0, np.linalg.norm(changes))
+
+
+def assert_reaches(inertia, state, t, torque, R, omega):
+    """Truncation is bounded by the certificate's estimate, rounding by a random walk times the growth."""
+    motion = ph.simulate(inertia, state, [t], torque, method=STEPS)
+    # The last of the passes took at most two thirds of all steps.
+    rounding = random_walk(motion.certificate.steps) * growth(inertia, state, t, torque)
+    error = apart(motion, np.array([R]), np.array([omega]))
+    assert error <= rounding + motion.certificate.error_estimate
+
+
+@pytest.mark.parametrize("case", CASES, ids=[case[0] for case in CASES])
+def test_reference_states(case):
+    _, i, torque, omega0, rotor, t, R, omega = case
+    state = ph.State(ph.Rotor.from_components(rotor), omega0)
+    assert_reaches(moments(*i), state, t, torque, R, omega)
+    if torque is None:
+        exact = ph.simulate(moments(*i), state, [t])
+        assert apart(exact, np.array([R]), np.array([omega])) <= 5e-15
+
+
+def law_of(case):
+    """The torque law of a case in the reference file; None for a free one, and "none" for no law of ours."""
+    given = case.get("params", case)
+    if "c" in given:
+        return ph.torque.heavy([float(x) for x in given["c"]])
+    if "n" in given and "params" in case:
+        return ph.torque.gravity_gradient(float(given["n"]))
+    if "g" in given:
+        return ph.torque.damping(float(given["g"]))
+    return None
+
+
+def reference_cases():
+    if not REFERENCE.exists():
+        return [pytest.param(None, id="none", marks=pytest.mark.skip("the reference file is not here"))]
+    data = json.loads(REFERENCE.read_text())
+    ours = [c for c in data["torqued"] if "omega0" in c and law_of(c) is not None]
+    return [
+        pytest.param(case, result, id=f"{case['name']}-{result['t']}")
+        for case in data["free_top"] + ours
+        for result in case["results"]
+        if float(result["t"]) <= (40 if case["name"].startswith("near_sep") else 100)
+    ]
+
+
+@pytest.mark.parametrize(("case", "result"), reference_cases())
+def test_the_reference_file(case, result):
+    numbers = [[float(x) for x in case[key]] for key in ("inertia", "R0", "omega0")]
+    inertia, state = moments(*numbers[0]), ph.State(ph.Rotor.from_components(numbers[1]), numbers[2])
+    expected = ([float(x) for x in result[key]] for key in ("R", "omega"))
+    assert_reaches(inertia, state, float(result["t"]), law_of(case), *expected)
+
+
+def test_a_motion_that_magnifies_rounding_too_much_is_refused_or_right():
+    """Along a separatrix 1e-12 away, t = 100 magnifies by 1e11: an error that says so, or digits."""
+    inertia = moments(1, 2, 2.25)
+    state = ph.State(ph.Rotor.identity(), [0.375, 0.5, 0.5 + 2.0**-40])
+    with pytest.raises(ValueError, match=r"rtol = 1\.0e-10 was not reached.*shorter run"):
+        ph.simulate(inertia, state, [100.0], method=STEPS)
+    loose = ph.simulate(inertia, state, [100.0], method=STEPS, rtol=1e-3)
+    assert loose.certificate.error_estimate <= 1e-3
+    exact = ph.simulate(inertia, state, [100.0])
+    assert apart(loose, exact.rotor.components, exact.omega_body.components) <= 1e-3
+
+
+@pytest.mark.parametrize("case", CASES[:3], ids=[case[0] for case in CASES[:3]])
+def test_the_error_estimate_is_no_smaller_than_the_error(case):
+    """It may be too cautious; where rounding rules it must not claim less than there is."""
+    _, i, torque, omega0, rotor, t, R, omega = case
+    state = ph.State(ph.Rotor.from_components(rotor), omega0)
+    motion = ph.simulate(moments(*i), state, [t], torque, method=STEPS)
+    error = apart(motion, np.array([R]), np.array([omega]))
+    assert error <= 2 * motion.certificate.error_estimate + 4 * EPS
+
+
+def test_the_error_estimate_of_a_symmetric_top():
+    top = ph.SymmetricTop(moments(2, 2, 1), START.rotor, START.omega_body)
+    motion = ph.simulate(moments(2, 2, 1), START, [100.0], method=STEPS)
+    exact = top.at([100.0])
+    error = apart(motion, exact.rotor.components, exact.omega_body.components)
+    assert error <= 2 * motion.certificate.error_estimate + 4 * EPS
+
+
+# --- orders
+
+
+@pytest.mark.parametrize("name", SLOPES)
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_has_its_order(name, method):
+    """log(error) against log(step) has the slope of the order, over the last steps before rounding."""
+    inertia, state, torque, t = SLOPES[name]
+    exact = ph.simulate(inertia, state, [t], torque, step=t / 1024)
+    steps, errors = [], []
+    for count in (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256):
+        motion = ph.simulate(inertia, state, [t], torque, method=method, step=t / count)
+        assert motion.certificate.method == method
+        error = apart(motion, exact.rotor.components, exact.omega_body.components)
+        if error > 3e-12:
+            steps.append(t / count)
+            errors.append(error)
+    slope = np.polyfit(np.log(steps[-4:]), np.log(errors[-4:]), 1)[0]
+    # What is left of the next term, two powers higher and of either sign, bends the line a little.
+    assert METHODS[method] - 0.6 < slope < METHODS[method] + 0.6, errors
+
+
+def test_auto_is_exact_for_a_free_body_and_else_the_highest_order():
+    assert ph.simulate(ASYMMETRIC, START, [1.0]).certificate.method == "exact"
+    assert ph.simulate(ASYMMETRIC, START, [1.0], step=0.1).certificate.method == "kahan_li8"
+    assert ph.simulate(ASYMMETRIC, START, [1.0], ph.torque.damping(1)).certificate.method == "kahan_li8"

@@ -37,7 +37,7 @@ from meshes import cube, write_binary_stl, write_obj
         (lambda: ph.Body(0.0, ph.Inertia.from_principal_moments(1, 1, 1)), ["0.0 kg"]),
         (
             lambda: ph.Body(1.0, ph.Inertia.from_principal_moments(1, 1, 1), [0, np.nan, 0]),
-            ["centre of mass", "NaN"],
+            ["centre of mass", "nan"],
         ),
     ],
 )
@@ -79,7 +79,7 @@ MESH_ERRORS = {
     "inside-out": (lambda t: t[:, ::-1], ["inside-out", "-1"]),
     "winding": (flipped_one, ["winding", "3 edges"]),
     "degenerate": (lambda t: np.concatenate([t, t[:1, [0, 0, 1]]]), ["degenerate", "triangle 12"]),
-    "extra face": (doubled, ["three or more triangles"]),
+    "repeated face": (doubled, ["1 repeated triangle", "triangle 12", "triangle 0"]),
     "flat": (lambda t: np.concatenate([t[:2], t[:2, ::-1]]), ["volume"]),
 }
 

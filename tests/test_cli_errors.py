@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -52,7 +53,7 @@ BAD = {
     ),
     "a thin rod": (
         SCENE.replace("moments = [1, 2, 3]", 'solid = "rod"\nlength = 1\nmass = 1'),
-        "2:1: error: principal moments",
+        "3:9: error: principal moments",
     ),
     "no TOML": (SCENE.replace("= 11", "11"), "8:9: error: "),
     "not finite": (SCENE.replace("0.01, 1", "nan, 1"), "5:20: error: `nan` is not a finite number"),
@@ -150,12 +151,9 @@ def test_too_many_steps_are_refused_at_once(tmp_path):
 @pytest.mark.parametrize(
     ("output", "parts"),
     [
-        ("out.txt", ["out.txt", "name it out.nc"]),
         ("nowhere/out.nc", ["nowhere/out.nc", "there is no directory nowhere"]),
         ("folder.nc", ["folder.nc", "not a regular file"]),
-        ("/dev/full", ["/dev/full"]),
         ("full.nc", ["full.nc", "not a regular file"]),
-        ("small.toml", ["small.toml", ".nc"]),
     ],
 )
 def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
@@ -169,6 +167,38 @@ def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
         assert part in done.stderr
     assert sorted(tmp_path.iterdir()) == before
     assert scene.read_text() == SCENE
+
+
+@pytest.mark.parametrize("output", ["out.txt", "/dev/full", "small.toml", ".nc", ""])
+def test_an_output_that_is_no_netcdf_file_is_wrong_usage(output, scene, tmp_path):
+    before = sorted(tmp_path.iterdir())
+    done = polhode("run", scene, "-o", output, cwd=tmp_path)
+    assert done.returncode == 2
+    assert f"name it FILE.nc, not '{output}'" in done.stderr
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_figure_in_the_way_is_found_before_the_run(scene, tmp_path):
+    (tmp_path / "a-motion.png").mkdir()
+    done = polhode("run", scene, "-o", "a.nc", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "a-motion.png: it exists and is not a regular file" in done.stderr
+    assert done.stdout == ""
+
+
+@pytest.mark.parametrize("spin", ["[1e160, 1e160, 1e10]", "[1e300, 1, 1]"])
+def test_what_overflows_is_refused_and_json_stays_json(spin, tmp_path):
+    (tmp_path / "a.toml").write_text(re.sub(r"vector = \[.*?\]", f"vector = {spin}", SCENE))
+    done = polhode("run", "a.toml", "--json", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stdout == ""
+    assert "must be finite" in done.stderr
+
+
+def test_a_path_that_is_no_text(tmp_path):
+    done = polhode("check", os.fsencode(tmp_path) + b"/\xff.toml")
+    assert done.returncode == 3
+    assert "error:" in done.stderr
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

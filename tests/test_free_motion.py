@@ -230,6 +230,39 @@ def test_the_spin_tends_to_the_middle_axis_on_the_separatrix():
         assert np.abs(omega[[0, 2]]).max() < 1e-15
 
 
+@pytest.mark.parametrize("tiny", [1e-13, 1e-16, 1e-20, 1e-60, 1e-140])
+@pytest.mark.parametrize("pattern", [(1, 0, 0), (0, 0, 1), (1, 0, 1)])
+def test_flips_come_however_small_the_disturbance(tiny, pattern):
+    """Half a period away the spin has turned over: beside the separatrix is not on it."""
+    motion = motion_of((1, 2, 3), [p * tiny + m for p, m in zip(pattern, (0, 1, 0), strict=True)])
+    period = motion.describe()["period"]
+    # K = ln(4/k') to the accuracy of k'², and k' is proportional to the disturbance: λ is 1/√3.
+    assert period == pytest.approx(4 * np.sqrt(3) * np.log(4 / tiny), rel=0.02)
+    assert motion.at(period / 2).omega_body.components[1] == pytest.approx(-1, abs=1e-12)
+    assert motion.at(period).omega_body.components == pytest.approx([pattern[0] * tiny, 1, pattern[2] * tiny])
+
+
+def test_the_phase_is_known_up_to_the_horizon():
+    motion = motion_of((1, 1, 1.5), (0.1, 1, 0.2))
+    # |L| is an integral of the motion at 1e16 as at 0; at 1e30 nobody knows the phase.
+    assert np.isfinite(motion.at(1e16).rotor.components).all()
+    for t in (1e30, -1e300):
+        with pytest.raises(ValueError, match=r"times\[0\] = .* lies beyond"):
+            motion.at(t)
+        with pytest.raises(ValueError, match="lies beyond"):
+            ph.simulate(
+                ph.Inertia.from_principal_moments(1, 1, 1.5),
+                ph.State(ph.Rotor.identity(), [0.1, 1, 0.2]),
+                [t],
+            )
+
+
+def test_rates_beyond_floating_point_are_refused():
+    state = ph.State(ph.Rotor.identity(), [1e308, 1e308, 1e307])
+    with pytest.raises(ValueError, match="energy of the rotation"):
+        ph.simulate(ph.Inertia.from_principal_moments(1, 2, 2.5), state, [0.0, 1.0])
+
+
 def test_batches_of_times():
     motion = motion_of((1, 2, 3), (0.25, -0.5, 1))
     times = np.arange(6.0).reshape(2, 3)

@@ -260,7 +260,7 @@ def test_projection_onto_a_tilted_plane():
 
 
 def test_projection_onto_nothing_is_an_error():
-    with pytest.raises(ValueError, match="no inverse"):
+    with pytest.raises(ValueError, match="no direction"):
         e1.project(0 * e2)
 
 

@@ -28,6 +28,14 @@ def as_floats(values: Any, what: str) -> Array:
     return array.astype(np.float64, copy=False)
 
 
+def as_float(value: Any, what: str) -> float:
+    """Return one real number; anything else is a TypeError that names it."""
+    array = as_floats(value, what)
+    if array.ndim:
+        raise TypeError(f"{what} must be one number, got shape {array.shape}")
+    return float(array)
+
+
 def as_components(values: Any, size: int, what: str) -> Array:
     """Return a read-only, contiguous copy of shape (..., size)."""
     array = as_floats(values, what)
@@ -55,7 +63,11 @@ def batch_shape(shape: Any) -> Shape:
     try:
         return (operator.index(shape),)
     except TypeError:
+        pass
+    try:
         return tuple(operator.index(length) for length in shape)
+    except TypeError as error:
+        raise TypeError(f"a batch shape is a whole number or a tuple of them, got {shape!r}") from error
 
 
 def joined(*parts: Array) -> Array:

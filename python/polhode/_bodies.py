@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_components, as_floats
+from polhode._arrays import Array, as_components, as_float, as_floats
 from polhode._multivector import _BIVECTOR, Multivector
 from polhode._rotor import Rotor
-from polhode._values import as_vectors, pure, vector
+from polhode._values import as_point, as_vectors, pure, vector
 
 
 class Inertia:
@@ -109,8 +109,8 @@ class Body:
     def __init__(self, mass: float, inertia: Inertia, center_of_mass: Any = 0) -> None:
         if not isinstance(inertia, Inertia):
             raise TypeError(f"inertia must be an Inertia, got {type(inertia).__name__}")
-        center = np.zeros(3) if np.isscalar(center_of_mass) and center_of_mass == 0 else center_of_mass
-        self._core = _native.Body(float(mass), inertia._core, as_vectors(center, "centre of mass"))
+        center = as_point(center_of_mass, "the centre of mass")
+        self._core = _native.Body(as_float(mass, "the mass"), inertia._core, center)
 
     @classmethod
     def _of(cls, core: _native.Body) -> Body:
@@ -208,7 +208,9 @@ class Body:
         A missing or corrupt file, an open, inconsistently wound, inside-out or degenerate mesh is an
         error that says where.
         """
-        return Body._of(_native.Body.from_mesh(os.fspath(path), float(scale), *_amount(mass, density)))
+        return Body._of(
+            _native.Body.from_mesh(os.fspath(path), as_float(scale, "the scale"), *_amount(mass, density))
+        )
 
     # --- what it is
 
@@ -229,17 +231,33 @@ class Body:
 
     def inertia_about(self, point: Any) -> Inertia:
         """Inertia about a point fixed in the body (a vector or (3,), in m)."""
-        return Inertia(self._core.inertia_about(as_vectors(point, "point")))
+        return Inertia(self._core.inertia_about(as_point(point, "the point")))
 
-    def moved(self, rotor: Rotor | None = None, position: Any = (0.0, 0.0, 0.0)) -> Body:
+    def moved(self, rotor: Rotor | None = None, position: Any = 0) -> Body:
         """Return the body at a pose: its points x go to ``R x ~R + position``."""
-        components = (rotor if rotor is not None else Rotor.identity())._data
-        return Body._of(self._core.moved(components, as_vectors(position, "position")))
+        turn = Rotor.identity() if rotor is None else rotor
+        if not isinstance(turn, Rotor) or turn.shape:
+            raise TypeError(f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_components")
+        return Body._of(self._core.moved(turn._data, as_point(position, "the position")))
 
     def __add__(self, other: Body) -> Body:
         if not isinstance(other, Body):
             return NotImplemented
         return Body._of(self._core.combine(other._core))
+
+    def __radd__(self, other: object) -> Body:
+        """``0 + body``, so that ``sum(bodies)`` works."""
+        return self if other == 0 else NotImplemented
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Body):
+            return NotImplemented
+        return (self.mass, self.inertia) == (other.mass, other.inertia) and bool(
+            self.center_of_mass == other.center_of_mass
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.mass, self.inertia))
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{i:.8g}" for i in self.inertia.principal_moments)
@@ -256,7 +274,10 @@ def _amount(mass: float | None, density: float | None) -> tuple[float | None, fl
     """Exactly one of mass and density."""
     if (mass is None) == (density is None):
         raise TypeError("give exactly one of mass= (kg) and density= (kg/m³)")
-    return (None if mass is None else float(mass)), (None if density is None else float(density))
+    return (
+        None if mass is None else as_float(mass, "the mass"),
+        None if density is None else as_float(density, "the density"),
+    )
 
 
 def _points(masses: Any, positions: Any) -> tuple[Array, Array]:

@@ -67,6 +67,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o",
         "--output",
         metavar="FILE.nc",
+        type=_netcdf_name,
         help="write the motion to this netCDF file, and figures beside it (FILE-motion.png …)",
     )
     run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
@@ -83,22 +84,24 @@ def _run(options: argparse.Namespace) -> int:
     from polhode._scene import Scene
     from polhode._summary import as_text, summary
 
-    output = _checked_output(options.output)
+    output = None if options.output is None else Path(options.output)
     scene = Scene.read(options.scene)
+    targets = _checked_targets(output, scene)
     with _progress(scene.path.name) as report:
         trajectory = scene.run(report)
     result = summary(scene, trajectory)
-    written = _write(output, scene, trajectory)
-    result["files"] = [str(path) for path in written]
-    if options.json:
-        print(json.dumps(result, indent=2))
-    else:
+    if not options.json:
         print(as_text(result))
-        if written:
-            print("Written")
-            print("\n".join(f"  {path}" for path in written))
-        else:
-            print("Nothing was written; add -o FILE.nc for the data and the figures.")
+    if targets:
+        _write(targets, scene, trajectory)
+    result["files"] = [str(path) for path in targets]
+    if options.json:
+        print(json.dumps(result, indent=2, allow_nan=False))
+    elif targets:
+        print("Written")
+        print("\n".join(f"  {path}" for path in targets))
+    else:
+        print("Nothing was written; add -o FILE.nc for the data and the figures.")
     return OK if result["run"]["drift_within_bound"] else DRIFTED
 
 
@@ -122,43 +125,46 @@ def _check(options: argparse.Namespace) -> int:
     return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
 
 
-def _checked_output(name: str | None) -> Path | None:
-    """Refuse what cannot be written before the work, not after it."""
-    if name is None:
-        return None
+def _netcdf_name(name: str) -> str:
+    """Return the name of the output file; anything but a netCDF file is wrong usage."""
     path = Path(name)
-    if path.suffix != ".nc":
-        raise OSError(f"cannot write {path}: the output is a netCDF file, name it {path.stem or 'run'}.nc")
-    if not path.parent.is_dir():
-        raise OSError(f"cannot write {path}: there is no directory {path.parent}; make it first")
-    if path.exists() and not path.is_file():
-        raise OSError(f"cannot write {path}: it exists and is not a regular file")
-    if not os.access(path.parent, os.W_OK):
-        raise OSError(f"cannot write {path}: no permission to write in {path.parent}")
-    return path
+    if path.suffix.lower() != ".nc":
+        raise argparse.ArgumentTypeError(f"the output is a netCDF file, name it FILE.nc, not {name!r}")
+    return name
 
 
-def _write(output: Path | None, scene: Scene, trajectory: Trajectory) -> list[Path]:
-    """Write the data and the figures, all of them or none."""
+def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
+    """Return the paths of the data and the two figures; what cannot be written is refused before the work."""
     if output is None:
         return []
-    import numpy as np
+    import h5netcdf  # noqa: F401
+    import matplotlib as mpl  # noqa: F401
+    import xarray as xr  # noqa: F401
 
+    second = "polhode" if scene.weight is None else "axis"
+    targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in ("motion", second))]
+    for path in targets:
+        if not path.parent.is_dir():
+            raise OSError(f"cannot write {path}: there is no directory {path.parent}; make it first")
+        if path.exists() and not path.is_file():
+            raise OSError(f"cannot write {path}: it exists and is not a regular file")
+        if not os.access(path.parent, os.W_OK):
+            raise OSError(f"cannot write {path}: no permission to write in {path.parent}")
+    return targets
+
+
+def _write(targets: list[Path], scene: Scene, trajectory: Trajectory) -> None:
+    """Write the data and the figures, all of them or none."""
     from polhode._files import write_atomically
     from polhode._io import netcdf
     from polhode._plot import as_png, axis_figure, motion_figure, polhode_figure
 
-    figures = {"motion": motion_figure(trajectory)}
-    if scene.torque is None:
-        figures["polhode"] = polhode_figure(trajectory)
+    if scene.weight is None:
+        second = polhode_figure(trajectory)
     else:
-        axis = np.array(scene.torque.laws[0][1])
-        figures["axis"] = axis_figure(trajectory, axis, "the body's axis from the pivot")
-    contents = {output: netcdf(trajectory)}
-    for name, figure in figures.items():
-        contents[output.with_name(f"{output.stem}-{name}.png")] = as_png(figure)
-    write_atomically(contents)
-    return list(contents)
+        second = axis_figure(trajectory, scene.weight, "the body's axis from the pivot")
+    contents = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
+    write_atomically(dict(zip(targets, contents, strict=True)))
 
 
 @contextmanager

@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_floats, frozen
+from polhode._arrays import Array, as_float, as_floats, frozen
 from polhode._bodies import Body, Inertia
 from polhode._multivector import _BIVECTOR, Multivector
 from polhode._rotor import Rotor
-from polhode._values import as_bivectors, as_vectors, bivector, vector
+from polhode._values import as_bivectors, as_point, as_vectors, bivector, vector
 from polhode.torque import Torque
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-METHODS: tuple[str, ...] = ("auto", *_native.methods())
+METHODS: tuple[str, ...] = ("auto", "exact", *_native.methods())
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +53,8 @@ class State:
         object.__setattr__(self, "omega_body", _angular_velocity(self.omega_body))
         for name in ("position", "velocity"):
             value = getattr(self, name)
-            components = np.zeros(3) if np.isscalar(value) and value == 0 else as_vectors(value, name)
-            object.__setattr__(self, name, vector(components))
+            zero = not isinstance(value, Multivector) and np.ndim(value) == 0 and value == 0
+            object.__setattr__(self, name, vector(np.zeros(3) if zero else as_vectors(value, name)))
 
 
 class FreeMotion:
@@ -95,7 +95,8 @@ class SymmetricTop(FreeMotion):
     """The free top with two equal moments, by handout eq. (4.35).
 
     ``R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)``, ``Ω_l = L/i1``, ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` with the
-    symmetry axis e3 of the body, or whichever it is. A ValueError if all three moments differ.
+    symmetry axis e3 of the body, or whichever it is. A ValueError if all three moments differ. The rates are
+    rounded, so the error grows with the angle turned; that of `FreeMotion` does not.
     """
 
     _solution = staticmethod(_native.symmetric_top)
@@ -226,7 +227,7 @@ def simulate(
     force
         A constant force in space on the centre of mass, a vector or (3,) in N; it needs a `Body`.
     method
-        ``"auto"``: the exact solution, as `FreeMotion`, for a free body without a `step`; else the last of
+        ``"auto"``: ``"exact"``, as `FreeMotion`, for a free body without a `step`; else the last of
         ``strang`` (order 2), ``yoshida4``, ``kahan_li6``, ``kahan_li8``, symmetric compositions of exact
         turns and kicks.
     rtol, atol
@@ -252,6 +253,8 @@ def simulate(
         raise TypeError(f"progress must be callable, got {type(progress).__name__}")
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
+    if method == "exact" and (torque is not None or step is not None):
+        raise ValueError('method "exact" is for free motion without a step; leave it out for others')
     start = _single(state)
     mass = body.mass if isinstance(body, Body) else None
     inertia = _ruling_inertia(body, torque)
@@ -259,26 +262,32 @@ def simulate(
     if when.ndim != 1:
         raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
     acceleration = _acceleration(force, mass)
+    if _is_held(torque) and acceleration.any():
+        raise ValueError(
+            "with ph.torque.heavy the body is held at a fixed point: no force and no velocity move it"
+        )
     rotors, omegas, momenta, energies, certificate = _native.simulate(
         inertia._core,
         start.rotor._data,
         start.omega_body._data,
         list(torque.laws) if torque else [],
         np.ascontiguousarray(when),
-        method,
-        None if step is None else float(step),
+        "auto" if method == "exact" else method,
+        None if step is None else as_float(step, "step"),
         _tolerance(rtol, atol),
         progress,
     )
     # x0(t) of handout eq. (4.1), under a constant force.
     x, v, t = start.position.components, start.velocity.components, when[:, np.newaxis]
+    with np.errstate(over="ignore"):
+        place = x + v * t + 0.5 * acceleration * t**2 if acceleration.any() else x + v * t
     return Trajectory(
         time=frozen(when.copy()),
         rotor=Rotor._from_rows(rotors),
         omega_body=Multivector._of(omegas, _BIVECTOR),
         momentum_space=Multivector._of(momenta, _BIVECTOR),
         energy=frozen(energies),
-        position=vector(x + v * t + 0.5 * acceleration * t**2),
+        position=vector(place),
         velocity=vector(v + acceleration * t),
         inertia=inertia,
         certificate=Certificate(**certificate),
@@ -287,13 +296,17 @@ def simulate(
 
 def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
     """Say what the invariants of a free motion tell: regime, modulus, energy, |L|, periods in s."""
+    if not isinstance(inertia, Inertia):
+        raise TypeError(f"inertia must be an Inertia, got {type(inertia).__name__}; see Body.inertia")
     omega = _angular_velocity(omega_body)
+    if omega.shape:
+        raise ValueError(f"the angular velocity must be a single one, got batch shape {omega.shape}")
     return _native.describe_free(inertia._core, np.ascontiguousarray(omega.components))
 
 
 def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     """Both measure the same scaled difference, so the larger one rules."""
-    given = {name: float(x) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
+    given = {name: as_float(x, name) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
     for name, x in given.items():
         if not (x > 0 and np.isfinite(x)):
             raise ValueError(f"{name} is {x}; it must be positive and finite")
@@ -305,8 +318,12 @@ def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
         return body
     if not isinstance(body, Body):
         raise TypeError(f"body must be a Body or an Inertia, got {type(body).__name__}")
-    held = torque is not None and any(name == "heavy" for name, _ in torque.laws)
-    return body.inertia_about(np.zeros(3)) if held else body.inertia
+    return body.inertia_about(0) if _is_held(torque) else body.inertia
+
+
+def _is_held(torque: Torque | None) -> bool:
+    """Whether the body is held at a fixed point, the origin of its axes."""
+    return torque is not None and any(name == "heavy" for name, _ in torque.laws)
 
 
 def _acceleration(force: Any, mass: float | None) -> Array:
@@ -314,7 +331,7 @@ def _acceleration(force: Any, mass: float | None) -> Array:
         return np.zeros(3)
     if mass is None:
         raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
-    return _finite(as_vectors(force, "force"), "the force") / mass
+    return as_point(force, "the force") / mass
 
 
 def _finite(components: Array, what: str) -> Array:

@@ -149,7 +149,8 @@ class Multivector:
         if other is None:
             return NotImplemented
         mask = self._mask | other._mask
-        return Multivector._of(combine(self._with_grades(mask), other._with_grades(mask)), mask)
+        with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
+            return Multivector._of(combine(self._with_grades(mask), other._with_grades(mask)), mask)
 
     def __add__(self, other: Any) -> Multivector:
         return self._linear(other, np.add)  # type: ignore[no-any-return]
@@ -181,7 +182,8 @@ class Multivector:
             raise ZeroDivisionError(
                 "division of a multivector by zero" + (f" at index {index}" if index else "")
             )
-        return Multivector._of(self._data / divisor._data, self._mask)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return Multivector._of(self._data / divisor._data, self._mask)
 
     def __rtruediv__(self, other: Any) -> Multivector:
         dividend = _coerced(other)
@@ -363,7 +365,8 @@ class Multivector:
         """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹`` (a∥ of handout eq. 1.7)."""
         if not isinstance(blade, Multivector) or blade._held().bit_count() > 1:
             raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
-        projected = self.left_contraction(blade) * blade.inverse()
+        unit = blade.normalized()  # so that nothing overflows
+        projected = self.left_contraction(unit) * unit.inverse()
         return Multivector._of(projected._with_grades(self._mask), self._mask)
 
     def reject(self, blade: Multivector) -> Multivector:
@@ -389,6 +392,8 @@ class Multivector:
         right = _coerced(other)
         if right is None:
             raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
+        if np.any(np.less(rtol, 0)) or np.any(np.less(atol, 0)):
+            raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
         mask = self._mask | right._mask
         a, b = np.broadcast_arrays(self._with_grades(mask), right._with_grades(mask))
         # Measured in units of the largest component, so that nothing overflows.

@@ -94,6 +94,8 @@ class Rotor(Multivector):
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:
         """From a ``scipy.spatial.transform.Rotation``."""
+        if not hasattr(rot, "as_quat"):
+            raise TypeError(f"from_scipy needs a scipy.spatial.transform.Rotation, got {type(rot).__name__}")
         return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
 
     @staticmethod

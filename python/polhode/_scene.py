@@ -32,8 +32,8 @@ class Scene:
         False where the file gives an inertia alone; the body then has 1 kg, which a free motion ignores.
     state
         The state at time 0.
-    torque
-        Gravity about the fixed point, or None.
+    weight
+        ``c = m g (centre of mass − fixed point)`` in body axes (3,) in N m, or None without gravity.
     times
         Output times in s.
     method, step, rtol
@@ -48,7 +48,7 @@ class Scene:
     body: Body
     tells_mass: bool
     state: State
-    torque: Torque | None
+    weight: Array | None
     times: Array
     method: str
     step: float | None
@@ -65,7 +65,6 @@ class Scene:
             A ValueError whose text gives file, line and column of everything that is wrong, with the line.
         """
         fields = _native.read_scene(os.fspath(path))
-        heavy = fields["heavy"]
         return Scene(
             path=Path(path),
             text=fields["text"],
@@ -73,13 +72,18 @@ class Scene:
             body=Body._of(fields["body"]),
             tells_mass=fields["tells_mass"],
             state=State(Rotor._from_rows(fields["rotor"]), fields["omega_body"]),
-            torque=None if heavy is None else laws.heavy(heavy),
+            weight=fields["heavy"],
             times=frozen(fields["times"]),
             method=fields["method"],
             step=fields["step"],
             rtol=fields["rtol"],
             drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
         )
+
+    @property
+    def torque(self) -> Torque | None:
+        """Gravity about the fixed point, or None."""
+        return None if self.weight is None else laws.heavy(self.weight)
 
     def run(self, progress: Callable[[int, float], object] | None = None) -> Trajectory:
         """Return the motion at the output times; errors and `progress` as for `polhode.simulate`."""

@@ -14,6 +14,9 @@ from polhode._values import vector
 # Within this of each other two moments are equal for the purpose of words: that of a real body's data.
 _NEARLY = 1e-6
 
+# An angle that grows by less than this between samples, in rad, is followed without doubt.
+_FOLLOWED = 2.0
+
 _SECONDS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"), (6e7, 86400.0, "d"))
 
 
@@ -31,7 +34,9 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
             "moment_ratios": (np.sort(moments) / moments.min()).tolist(),
             "principal_axes": trajectory.inertia.principal_frame.to_matrix().T.tolist(),
         },
-        "motion": _heavy_motion(scene, trajectory) if scene.torque else _free_motion(scene, trajectory),
+        "motion": _free_motion(scene, trajectory)
+        if scene.weight is None
+        else _heavy_motion(scene.weight, scene, trajectory),
         "conserved": {
             name: {"value": value, "drift": proof.drift[name]} for name, value in proof.conserved.items()
         },
@@ -53,7 +58,11 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
 def _free_motion(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     motion = describe_free(trajectory.inertia, scene.state.omega_body)
     motion["kind"] = "free"
-    motion["reversals"] = _reversals(trajectory)
+    flip = motion["flip_time"]
+    sampled = flip is not None and float(np.diff(trajectory.time).max()) < 0.25 * flip
+    motion["reversals"] = _reversals(trajectory) if sampled else None
+    if trajectory.certificate.method == "exact":
+        return motion
     try:
         top = SymmetricTop(trajectory.inertia, scene.state.rotor, scene.state.omega_body)
     except ValueError:
@@ -78,11 +87,9 @@ def _reversals(trajectory: Trajectory) -> dict[str, Any] | None:
     return {"count": int(at.size), "mean_interval": float(np.diff(moments).mean())}
 
 
-def _heavy_motion(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
+def _heavy_motion(c: Array, scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     """Tell how the line from the fixed point to the centre of mass moves, and the fast top's precession."""
     motion: dict[str, Any] = {"kind": "heavy", "regime": "heavy body about a fixed point"}
-    assert scene.torque is not None
-    c = np.array(scene.torque.laws[0][1])
     size = float(np.linalg.norm(c))
     motion["mgl"] = size
     if size == 0:
@@ -91,8 +98,7 @@ def _heavy_motion(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     path = trajectory.rotor(vector(axis)).components
     tilt = np.arctan2(np.hypot(path[:, 0], path[:, 1]), path[:, 2])
     motion["tilt_min"], motion["tilt_max"] = float(tilt.min()), float(tilt.max())
-    azimuth = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
-    motion["precession_rate"] = float((azimuth[-1] - azimuth[0]) / trajectory.time[-1])
+    motion["precession_rate"] = _precession_rate(trajectory, path)
     matrix = trajectory.inertia.matrix
     along = float(axis @ matrix @ axis)
     if _is_symmetric_about(matrix, axis):
@@ -101,6 +107,18 @@ def _heavy_motion(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
         motion["spin"] = spin
         motion["fast_top_precession_rate"] = size / (along * spin) if spin else None
     return motion
+
+
+def _precession_rate(trajectory: Trajectory, path: Array) -> float | None:
+    """Return the mean rate of a path's azimuth; None if the samples are too far apart to follow it."""
+    spin = trajectory.rotor(trajectory.omega_body).components
+    across = np.maximum(np.hypot(path[:, 0], path[:, 1]), np.finfo(float).tiny)
+    # The azimuth's rate is at most the speed ω x n of the direction over its distance from the vertical.
+    fastest = float((np.linalg.norm(np.cross(spin, path), axis=1) / across).max())
+    if fastest * float(np.diff(trajectory.time).max()) > _FOLLOWED:
+        return None
+    azimuth = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
+    return float((azimuth[-1] - azimuth[0]) / trajectory.time[-1])
 
 
 def _is_symmetric_about(matrix: Array, axis: Array) -> bool:
@@ -117,7 +135,7 @@ def _is_symmetric_about(matrix: Array, axis: Array) -> bool:
 def as_text(summary: dict[str, Any], columns: int = 18) -> str:
     """Return the summary as a page for a terminal."""
     body, motion, run = summary["body"], summary["motion"], summary["run"]
-    lines = [str(summary["title"]), ""]
+    lines = ["".join(c if c.isprintable() else "\ufffd" for c in summary["title"]), ""]
 
     def section(name: str) -> None:
         lines.append(name)
@@ -190,11 +208,14 @@ def _heavy_rows(motion: dict[str, Any], row: Any) -> None:
         return
     degrees = [np.degrees(motion[key]) for key in ("tilt_min", "tilt_max")]
     row("tilt from up", f"{degrees[0]:.6g}° to {degrees[1]:.6g}°")
-    row("precession", f"{_number(motion['precession_rate'])} rad/s on average")
-    fast = motion.get("fast_top_precession_rate")
+    rate, fast = motion["precession_rate"], motion.get("fast_top_precession_rate")
+    if rate is None:
+        row("precession", "not followed: the output times are too far apart")
+    else:
+        row("precession", f"{_number(rate)} rad/s on average")
     if fast is not None:
-        off = motion["precession_rate"] / fast - 1
-        row("fast-top formula", f"{_number(fast)} rad/s, m g l/(i3 ω3); the average is off by {off:+.2e}")
+        off = "" if rate is None else f"; the average is off by {rate / fast - 1:+.2e}"
+        row("fast-top formula", f"{_number(fast)} rad/s, m g l/(i3 ω3){off}")
 
 
 def _number(x: float, digits: int = 6) -> str:

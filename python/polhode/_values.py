@@ -80,6 +80,18 @@ def as_vectors(values: Any, what: str) -> Array:
     return pure(values, 1, what) if isinstance(values, Multivector) else as_components(values, 3, what)
 
 
+def as_point(value: Any, what: str) -> Array:
+    """Return the components (3,) of a single finite vector, from a vector, an array, or 0."""
+    if not isinstance(value, Multivector) and np.ndim(value) == 0 and np.all(value == 0):
+        return np.zeros(3)
+    components = as_vectors(value, what)
+    if components.shape != (3,):
+        raise ValueError(f"{what} must be a single vector, got shape {components.shape}")
+    if not np.isfinite(components).all():
+        raise ValueError(f"{what} is {components.tolist()}; it must be finite")
+    return components
+
+
 def as_bivectors(values: Any, what: str) -> Array:
     """Return components (..., 3) over (e2e3, e3e1, e1e2) from an array or a bivector."""
     return pure(values, 2, what) if isinstance(values, Multivector) else as_components(values, 3, what)

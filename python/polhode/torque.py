@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from polhode._arrays import Array
+from polhode._arrays import Array, as_float
 from polhode._values import as_bivectors, as_vectors
 
 
@@ -22,6 +22,10 @@ class Torque:
         if not isinstance(other, Torque):
             return NotImplemented
         return Torque(self.laws + other.laws)
+
+    def __radd__(self, other: object) -> Torque:
+        """``0 + torque``, so that ``sum(torques)`` works."""
+        return self if other == 0 else NotImplemented
 
 
 def heavy(c: Any) -> Torque:
@@ -40,12 +44,12 @@ def gravity_gradient(n: float) -> Torque:
     With ``u = cos(nt) e1 + sin(nt) e2`` from planet to body, the axial vector of the torque is
     ``3n² u x I(u)``.
     """
-    return Torque((("gravity_gradient", (float(n),)),))
+    return Torque((("gravity_gradient", (as_float(n, "n"),)),))
 
 
 def damping(g: float) -> Torque:
     """Return the torque ``−g L``, g in 1/s: spin dies away as ``exp(−g t)``."""
-    return Torque((("damping", (float(g),)),))
+    return Torque((("damping", (as_float(g, "g"),)),))
 
 
 def constant_body(N: Any) -> Torque:

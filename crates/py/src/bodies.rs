@@ -5,7 +5,7 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::{Amount, Solid, TriangleMesh, body, inertia};
 use pyo3::prelude::*;
 use std::convert::Infallible;
-use std::path::Path;
+use std::path::PathBuf;
 
 /// The inertia map.
 #[pyclass(frozen, module = "polhode._native")]
@@ -128,7 +128,7 @@ impl Body {
     #[pyo3(signature = (path, scale, mass, density))]
     fn from_mesh(
         py: Python<'_>,
-        path: &str,
+        path: PathBuf,
         scale: f64,
         mass: Option<f64>,
         density: Option<f64>,
@@ -137,7 +137,7 @@ impl Body {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(bad(format!("scale is {scale}; it must be positive and finite")));
         }
-        py.detach(|| TriangleMesh::read(Path::new(path))?.scaled(scale)?.body(amount)).map(Body).map_err(bad)
+        py.detach(|| TriangleMesh::read(&path)?.scaled(scale)?.body(amount)).map(Body).map_err(bad)
     }
 
     fn mass(&self) -> f64 {
@@ -153,14 +153,14 @@ impl Body {
     }
 
     fn inertia_about(&self, point: Rows<'_>) -> PyResult<Inertia> {
-        Ok(Inertia(self.0.inertia_about(Vector(one(&point)?))))
+        self.0.inertia_about(Vector(one(&point)?)).map(Inertia).map_err(bad)
     }
 
     fn moved(&self, rotor_row: Rows<'_>, position: Rows<'_>) -> PyResult<Body> {
-        Ok(Body(self.0.moved(rotor(&rotor_row)?, Vector(one(&position)?))))
+        self.0.moved(rotor(&rotor_row)?, Vector(one(&position)?)).map(Body).map_err(bad)
     }
 
-    fn combine(&self, other: &Body) -> Body {
-        Body(self.0.combine(&other.0))
+    fn combine(&self, other: &Body) -> PyResult<Body> {
+        self.0.combine(&other.0).map(Body).map_err(bad)
     }
 }

@@ -4,7 +4,7 @@ use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::free::FreeMotion;
-use polhode_rigid::simulate::{Options, Problem, Progress, SimulateError};
+use polhode_rigid::simulate::{Options, Problem, Progress, SimulateError, check_horizon};
 use polhode_rigid::splitting::{METHODS, Method};
 use polhode_rigid::symmetric_top::SymmetricTop;
 use polhode_rigid::torque::Torque;
@@ -81,6 +81,7 @@ pub(crate) fn free_motion<'py>(
     times: Rows<'py>,
 ) -> States<'py> {
     let motion = FreeMotion::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(&omega)?).map_err(bad)?;
+    check_horizon(numbers(&times)?, motion.horizon()).map_err(bad)?;
     states(py, numbers(&times)?, |t| motion.at(t))
 }
 

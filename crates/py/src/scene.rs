@@ -8,7 +8,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::Path;
+use std::path::PathBuf;
 
 create_exception!(polhode, SceneError, PyValueError, "What is wrong with a scene file, with its places.");
 
@@ -19,9 +19,9 @@ fn report(diagnostics: &[Diagnostic]) -> PyErr {
 
 /// Reads a scene file: a dict of what it says, in SI units, with the body made.
 #[pyfunction]
-pub(crate) fn read_scene<'py>(py: Python<'py>, path: &str) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let built = py.detach(|| {
-        let scene = scene::Scene::read(Path::new(path))?;
+        let scene = scene::Scene::read(&path)?;
         scene.build().map(|(body, torques)| (scene, body, torques))
     });
     let (scene, body, torques) = built.map_err(|diagnostics| report(&diagnostics))?;

@@ -65,37 +65,32 @@ impl Body {
             let d = (x - first - center).0;
             second.add(|i, j| m * d[i] * d[j]);
         }
-        Body::new(mass, Inertia::from_second_moment(second.matrix())?, first + center)
+        let inertia = Inertia::from_second_moment(second.matrix())?;
+        let apart = positions.iter().zip(masses).any(|(x, m)| *m > 0.0 && *x != first + center);
+        let body = if apart { Body::extended } else { Body::new };
+        body(mass, inertia, first + center)
     }
 
     /// The inertia map about another point, in the same axes.
-    pub fn inertia_about(&self, point: Vector) -> Inertia {
+    pub fn inertia_about(&self, point: Vector) -> Result<Inertia, BodyError> {
         let shift = point_inertia(self.mass, self.center_of_mass - point);
         Inertia::from_symmetric(sum(self.inertia.matrix(), shift))
     }
 
     /// The body after `x ↦ R x ~R + position`.
-    pub fn moved(&self, rotor: Rotor, position: Vector) -> Body {
-        Body {
-            mass: self.mass,
-            center_of_mass: rotor.apply(self.center_of_mass) + position,
-            inertia: self.inertia.rotated(rotor),
-        }
+    pub fn moved(&self, rotor: Rotor, position: Vector) -> Result<Body, BodyError> {
+        Body::new(self.mass, self.inertia.rotated(rotor), rotor.apply(self.center_of_mass) + position)
     }
 
     /// The two bodies joined rigidly. About their common centre of mass the parallel axes of both
     /// together amount to one term: the reduced mass `m1 m2/(m1 + m2)` at their distance.
-    pub fn combine(&self, other: &Body) -> Body {
+    pub fn combine(&self, other: &Body) -> Result<Body, BodyError> {
         let mass = self.mass + other.mass;
         let distance = other.center_of_mass - self.center_of_mass;
         let share = other.mass / mass;
         let reduced = point_inertia(self.mass * share, distance);
         let matrix = sum(sum(self.inertia.matrix(), other.inertia.matrix()), reduced);
-        Body {
-            mass,
-            center_of_mass: self.center_of_mass + distance * share,
-            inertia: Inertia::from_symmetric(matrix),
-        }
+        Body::new(mass, Inertia::from_symmetric(matrix)?, self.center_of_mass + distance * share)
     }
 }
 

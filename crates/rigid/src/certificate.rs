@@ -51,7 +51,11 @@ impl<'a> Watch<'a> {
     pub fn look(&mut self, state: &Phase) {
         for followed in &mut self.quantities {
             let value = followed.quantity.value(self.moments, self.torques, state);
-            followed.drift = followed.drift.max((value - followed.start).abs() / followed.scale);
+            let drift = (value - followed.start).abs() / followed.scale;
+            // f64::max would forget a NaN.
+            if !(drift <= followed.drift || followed.drift.is_nan()) {
+                followed.drift = drift;
+            }
         }
     }
 

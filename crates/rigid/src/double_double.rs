@@ -14,6 +14,8 @@ pub(crate) struct DoubleDouble {
 }
 
 impl DoubleDouble {
+    /// Relative rounding of an operation, 2⁻¹⁰⁴.
+    pub const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
     pub const ZERO: DoubleDouble = DoubleDouble { hi: 0.0, lo: 0.0 };
     pub const ONE: DoubleDouble = DoubleDouble { hi: 1.0, lo: 0.0 };
     pub const PI: DoubleDouble = DoubleDouble { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };

@@ -91,9 +91,9 @@ pub struct FreeDescription {
     pub modulus: f64,
     /// Principal axis (0, 1, 2) that the polhode encircles.
     pub axis: usize,
-    /// Period of the angular velocity in the body, 4K/λ, in s. Infinite on the separatrix.
+    /// Period of the angular velocity in the body, 4K/λ, in s. None where nothing repeats or changes.
     pub period: Option<f64>,
-    /// Mean rate of precession about L, in rad/s.
+    /// Mean rate of precession about L, in rad/s; None with the period.
     pub precession_rate: Option<f64>,
 }
 
@@ -112,7 +112,10 @@ impl FreeDescription {
     }
 }
 
-/// A free motion: rotor and angular velocity at any time.
+/// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
+const MOST_TURNS: f64 = 1e17;
+
+/// A free motion: rotor and angular velocity at any time up to its [`FreeMotion::horizon`].
 #[derive(Clone, Copy, Debug)]
 pub struct FreeMotion {
     frame: Rotor,
@@ -143,6 +146,15 @@ impl FreeMotion {
         let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
         let tumbling = Tumbling::new(moments.map(|i| i / size), omega.0.map(|w| w / scale));
         FreeMotion { frame: Rotor::IDENTITY, moments, rotor, omega, scale, tumbling }
+    }
+
+    /// How far in time the phase is known, in s: to [`MOST_TURNS`].
+    pub fn horizon(&self) -> f64 {
+        let fastest = match &self.tumbling {
+            Some(top) => top.turns_per_second.hi.max(top.lambda / (4.0 * PI)) * self.scale,
+            None => self.omega.norm() / (4.0 * PI),
+        };
+        MOST_TURNS / fastest
     }
 
     /// Rotor and body angular velocity at time `t` in s.
@@ -184,8 +196,8 @@ impl FreeMotion {
         let Some(periods) = &top.periods else { return moving };
         let rate = top.linear_rate + top.s * top.kappa * top.lambda * periods.complete_pi / periods.quarter;
         FreeDescription {
-            period: Some(4.0 * periods.quarter / top.lambda / self.scale),
-            precession_rate: Some(rate * self.scale),
+            period: Some(4.0 * periods.quarter / top.lambda / self.scale).filter(|x| x.is_finite()),
+            precession_rate: Some(rate * self.scale).filter(|x| x.is_finite()),
             ..moving
         }
     }
@@ -272,7 +284,8 @@ impl Tumbling {
         let [small, b, large] = order;
         // i_x (i_x − i_b) ω_x²
         let term = |x: usize| dd(i[x]) * (dd(i[x]) - dd(i[b])) * dd(w[x]) * dd(w[x]);
-        let d = term(large) + term(small);
+        let (high, low) = (term(large), term(small));
+        let d = high + low;
         let (a, c) = if d.hi >= 0.0 { (small, large) } else { (large, small) };
         let s = if c == large { 1.0 } else { -1.0 };
         let (ia, ib, ic) = (dd(i[a]), dd(i[b]), dd(i[c]));
@@ -289,8 +302,8 @@ impl Tumbling {
         // The order (a, b, c) is even if it is a cyclic one.
         let parity = if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
         let sigma = 1f64.copysign(w[c]);
-        // Beyond twice the precision D is rounding.
-        let on_separatrix = kc2.hi <= 1e-30;
+        // D is known to a few roundings of its two terms.
+        let on_separatrix = d.hi.abs() <= 16.0 * DoubleDouble::EPSILON * (high.hi - low.hi);
         // cn keeps its sign on the separatrix: ω_a < 0 is the half turn about c of a motion with ω_a > 0.
         let half_turn = if on_separatrix { 1f64.copysign(w[a]) } else { 1.0 };
         let tau = sigma * s * parity * half_turn;

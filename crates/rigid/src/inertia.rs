@@ -45,7 +45,7 @@ impl Inertia {
     /// The map with this matrix on bivector components. The principal moments come out ascending; of the
     /// rotors to the principal axes, which may point either way, the one nearest to 1 is taken.
     pub fn from_matrix(m: [[f64; 3]; 3]) -> Result<Inertia, BodyError> {
-        let inertia = Inertia::from_symmetric(checked_symmetric(m)?);
+        let inertia = Inertia::from_symmetric(checked_symmetric(m)?)?;
         check_moments(inertia.moments)?;
         Ok(inertia)
     }
@@ -69,14 +69,18 @@ impl Inertia {
     }
 
     /// From a matrix that is symmetric and belongs to a body by the way it was made.
-    pub(crate) fn from_symmetric(matrix: [[f64; 3]; 3]) -> Inertia {
+    /// An error only if its numbers are beyond floating point.
+    pub(crate) fn from_symmetric(matrix: [[f64; 3]; 3]) -> Result<Inertia, BodyError> {
+        if let Some(&value) = matrix.iter().flatten().find(|x| !x.is_finite()) {
+            return Err(BodyError::NotFinite { what: "an entry of the inertia matrix".into(), value });
+        }
         let (mut moments, axes) = symmetric_eigen(matrix);
         let diagonal = matrix[0][1] == 0.0 && matrix[1][2] == 0.0 && matrix[0][2] == 0.0;
         if !diagonal {
             let threshold = ZERO_MOMENT * moments[2];
             moments = moments.map(|i| if i.abs() <= threshold { 0.0 } else { i });
         }
-        Inertia { matrix, moments, frame: nearest_frame(axes) }
+        Ok(Inertia { matrix, moments, frame: nearest_frame(axes) })
     }
 
     /// `I(B)`: the angular momentum of a body with angular velocity `B`.

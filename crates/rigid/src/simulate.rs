@@ -4,7 +4,7 @@ use crate::certificate::{Certificate, Watch};
 use crate::free::FreeMotion;
 use crate::inertia::Inertia;
 use crate::splitting::{Method, Stepper};
-use crate::torque::{Conserved, Phase, Torque, energy};
+use crate::torque::{Conserved, Phase, Torque, energy, kinetic};
 use polhode_ga::{Bivector, Rotor};
 use std::fmt;
 
@@ -34,6 +34,8 @@ pub enum SimulateError {
     BadTime { index: usize, time: f64 },
     /// A step, tolerance, angular velocity or torque that is not usable.
     BadValue { what: &'static str, value: f64 },
+    /// The phase of an exact motion is not known so far from time 0.
+    BeyondHorizon { index: usize, time: f64, horizon: f64 },
     /// More steps than could be taken.
     TooManySteps { steps: f64, step: f64 },
     /// Two runs with halved step still differ, and halving no longer helps.
@@ -65,6 +67,11 @@ impl fmt::Display for SimulateError {
                     "step" | "rtol" => " and positive",
                     _ => "",
                 }
+            ),
+            SimulateError::BeyondHorizon { index, time, horizon } => write!(
+                f,
+                "times[{index}] = {time:e} s lies beyond {horizon:.1e} s, where the phase of this rotation is no longer \
+                 known to rounding; take times nearer to 0"
             ),
             SimulateError::TooManySteps { steps, step } => write!(
                 f,
@@ -176,7 +183,7 @@ impl Walker<'_> {
 
     fn after_step(&mut self, state: &Phase) -> Result<(), SimulateError> {
         self.watch.look(state);
-        if !state.momentum.norm_squared().is_finite() || !state.rotor.components()[0].is_finite() {
+        if !is_finite(state) {
             return Err(SimulateError::Diverged { time: state.time });
         }
         self.steps += 1;
@@ -187,6 +194,18 @@ impl Walker<'_> {
             }
         }
         Ok(())
+    }
+}
+
+fn is_finite(state: &Phase) -> bool {
+    state.momentum.0.iter().chain(&state.rotor.components()).all(|x| x.is_finite())
+}
+
+/// Times must not lie beyond the horizon of an exact motion.
+pub fn check_horizon(times: &[f64], horizon: f64) -> Result<(), SimulateError> {
+    match times.iter().position(|t| t.abs() > horizon) {
+        Some(index) => Err(SimulateError::BeyondHorizon { index, time: times[index], horizon }),
+        None => Ok(()),
     }
 }
 
@@ -224,7 +243,7 @@ impl Problem {
     ) -> Result<Motion, SimulateError> {
         self.check(times, options)?;
         if options.method.is_none() && options.step.is_none() && self.torques.is_empty() {
-            return Ok(self.motion(self.exact(times), "exact", None, 0));
+            return Ok(self.motion(self.exact(times)?, "exact", None, 0));
         }
         let method = options.method.unwrap_or(Method::best());
         let stepper = Stepper::new(self.moments, self.torques.clone(), method, &self.start());
@@ -240,8 +259,9 @@ impl Problem {
     }
 
     /// The exact states of a free body, as a pass without steps.
-    fn exact(&self, times: &[f64]) -> Pass {
+    fn exact(&self, times: &[f64]) -> Result<Pass, SimulateError> {
         let motion = FreeMotion::in_principal_axes(self.moments, self.rotor, self.omega);
+        check_horizon(times, motion.horizon())?;
         let phase = |&time: &f64| {
             let (rotor, omega) = motion.at(time);
             Phase { rotor, momentum: Bivector([0, 1, 2].map(|k| self.moments[k] * omega.0[k])), time }
@@ -249,7 +269,10 @@ impl Problem {
         let states: Vec<Phase> = times.iter().map(phase).collect();
         let mut watch = self.watch();
         states.iter().for_each(|state| watch.look(state));
-        Pass { states, drifts: watch.finish(), longest: 0.0, steps: 0 }
+        if let Some(state) = states.iter().find(|s| !is_finite(s)) {
+            return Err(SimulateError::Diverged { time: state.time });
+        }
+        Ok(Pass { states, drifts: watch.finish(), longest: 0.0, steps: 0 })
     }
 
     fn watch(&self) -> Watch<'_> {
@@ -286,6 +309,11 @@ impl Problem {
         }
         if let Some(&value) = self.omega.0.iter().find(|x| !x.is_finite()) {
             return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+        }
+        let start = self.start();
+        let value = kinetic(self.moments, start.momentum) + start.momentum.norm_squared();
+        if !value.is_finite() {
+            return Err(SimulateError::BadValue { what: "the energy of the rotation", value });
         }
         for torque in &self.torques {
             let value = torque.size(self.moments) + torque.damping_rate();

@@ -101,9 +101,9 @@ proptest! {
     #[test]
     fn parts_make_the_whole((masses, positions) in points(), r in rotor(), x in vector()) {
         let body = |range: std::ops::Range<usize>| {
-            Body::from_points(&masses[range.clone()], &positions[range]).unwrap().moved(r, x)
+            Body::from_points(&masses[range.clone()], &positions[range]).unwrap().moved(r, x).unwrap()
         };
-        let (joined, whole) = (body(0..2).combine(&body(2..6)), body(0..6));
+        let (joined, whole) = (body(0..2).combine(&body(2..6)).unwrap(), body(0..6));
         prop_assert!((joined.mass - whole.mass).abs() <= 4.0 * EPS * whole.mass);
         prop_assert!((joined.center_of_mass - whole.center_of_mass).norm() <= 64.0 * EPS);
         // Distances of up to 10 between the parts are rounded, against moments of a few.
@@ -122,7 +122,7 @@ proptest! {
         for (&m, &x) in masses.iter().zip(&positions) {
             expected += (x - p).wedge((x - p).dot_bivector(b)) * m;
         }
-        let about = body.inertia_about(p);
+        let about = body.inertia_about(p).unwrap();
         prop_assert!((about.apply(b) - expected).norm() <= 64.0 * EPS * largest(about.matrix()) * b.norm());
     }
 
@@ -218,9 +218,9 @@ fn a_diagonal_matrix_keeps_its_axes() {
 #[test]
 fn two_half_boxes_are_a_box() {
     let half = Solid::Box { lengths: [1.0, 3.0, 0.5] }.body(Amount::Density(2.0)).unwrap();
-    let [left, right] = [-0.5, 0.5].map(|x| half.moved(Rotor::IDENTITY, Vector([x, 0.0, 0.0])));
+    let [left, right] = [-0.5, 0.5].map(|x| half.moved(Rotor::IDENTITY, Vector([x, 0.0, 0.0])).unwrap());
     let whole = Solid::Box { lengths: [2.0, 3.0, 0.5] }.body(Amount::Density(2.0)).unwrap();
-    for joined in [left.combine(&right), right.combine(&left)] {
+    for joined in [left.combine(&right).unwrap(), right.combine(&left).unwrap()] {
         assert_eq!((joined.mass, joined.center_of_mass), (whole.mass, whole.center_of_mass));
         assert_close(joined.inertia.matrix(), whole.inertia.matrix(), 4.0);
     }

@@ -79,8 +79,8 @@ fn corrupt_obj() {
     let face = |f: &str| obj(&format!("{vertices}{f}\n"));
     assert_eq!(obj("v 0 0 0\nv 1 zero 0\n"), format!("rock: line 2: 'zero' is no number{end}"));
     assert_eq!(obj("v 0 0 0 red\n"), format!("rock: line 1: 'red' is no number{end}"));
-    // Lines that end in a carriage return alone are one line.
-    assert_eq!(obj("v 0 0 0\rv 1 0 0\r"), format!("rock: line 1: 'v' is no number{end}"));
+    // Lines may end in a carriage return alone.
+    assert_eq!(obj("v 0 0 0\rv 1 zero 0\r"), format!("rock: line 2: 'zero' is no number{end}"));
     assert_eq!(obj("v 0 \\\n 0\n"), format!("rock: line 1: a vertex with 2 of 3 coordinates{end}"));
     assert_eq!(face("f 1 2"), format!("rock: line 4: a face with 2 of at least 3 corners{end}"));
     let no = |i: i64| {
@@ -313,6 +313,28 @@ fn degenerate_triangles() {
 }
 
 #[test]
+fn repeated_triangles() {
+    let mut faces = OCTAHEDRON.to_vec();
+    let [a, b, c] = faces[2];
+    faces.push([b, c, a]);
+    faces.extend(OCTAHEDRON);
+    let message = body(octahedron(), faces);
+    let start =
+        "mesh: 9 repeated triangles, the first is triangle 8 (counted from 0), which is triangle 2 again";
+    assert!(message.starts_with(start), "{message}");
+}
+
+#[test]
+fn byte_order_marks_and_other_texts() {
+    let with_mark = b"\xef\xbb\xbfv 0 0 0\nv 1 zero 0\n";
+    let error = TriangleMesh::parse(with_mark, MeshFormat::Obj, "rock").unwrap_err().to_string();
+    assert!(error.starts_with("rock: line 2: 'zero'"), "{error}");
+    let page = "<!DOCTYPE html>\n".repeat(20);
+    let error = TriangleMesh::parse(page.as_bytes(), MeshFormat::Stl, "rock").unwrap_err().to_string();
+    assert!(error.contains("this text is no STL"), "{error}");
+}
+
+#[test]
 fn open_meshes() {
     let mut faces = OCTAHEDRON.to_vec();
     faces.remove(5);
@@ -337,14 +359,14 @@ fn inconsistent_winding() {
     );
 }
 
-/// The same triangle twice: its edges have three triangles, two of them the same way.
+/// A wall across the middle: its four edges have three triangles, two of them the same way.
 #[test]
 fn unbalanced_edges() {
     let mut faces = OCTAHEDRON.to_vec();
-    faces.push([2, 4, 0]);
+    faces.extend([[0, 2, 1], [0, 1, 3]]);
     assert_eq!(
         body(octahedron(), faces),
-        "mesh: the mesh is not a closed surface: 3 edges of three or more triangles traversed unequally often in the two directions, \
+        "mesh: the mesh is not a closed surface: 4 edges of three or more triangles traversed unequally often in the two directions, \
          the first from (1.0, 0.0, 0.0) to (0.0, 1.0, 0.0) of triangle 0 (counted from 0), 2 times this way and 1 times back; \
          remove the extra faces or reorient them"
     );

@@ -9,6 +9,7 @@ use super::integrals::Integrals;
 use super::{TriangleMesh, Welder};
 use polhode_ga::Vector;
 use std::array::from_fn;
+use std::collections::HashMap;
 
 /// Extents in this range keep fifth powers of lengths, down to 1e-10 of the extent, in range.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
@@ -74,6 +75,31 @@ fn is_flat([a, b, c]: [Vector; 3]) -> bool {
         let (plus, minus) = (u[j] * v[k], u[k] * v[j]);
         (plus - minus).abs() <= 2.0 * f64::EPSILON * (plus.abs() + minus.abs())
     })
+}
+
+/// No triangle twice, with the same corners in the same sense. (The walls of two bodies that touch have the
+/// same corners in opposite senses.)
+pub(super) fn repetitions(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
+    let mut welder = Welder::default();
+    let mut seen = HashMap::with_capacity(mesh.faces.len());
+    let (mut count, mut first) = (0, None);
+    for (triangle, face) in mesh.faces.iter().enumerate() {
+        let [a, b, c] = face.map(|i| welder.number(mesh.vertices[i as usize]));
+        let smallest_first = match a.min(b).min(c) {
+            least if least == a => [a, b, c],
+            least if least == b => [b, c, a],
+            _ => [c, a, b],
+        };
+        let original = *seen.entry(smallest_first).or_insert(triangle);
+        if original != triangle {
+            count += 1;
+            first.get_or_insert((triangle, original));
+        }
+    }
+    match first {
+        Some((triangle, original)) => Err(MeshProblem::Repeated { count, triangle, original }),
+        None => Ok(()),
+    }
 }
 
 /// A triangle's edge between two welded vertices; sorted, the edges between the same two come together.

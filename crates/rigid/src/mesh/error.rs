@@ -83,6 +83,15 @@ pub enum MeshProblem {
         /// Its corners.
         corners: [Vector; 3],
     },
+    /// Triangles that are there twice: the body would count twice.
+    Repeated {
+        /// How many.
+        count: usize,
+        /// The first of them.
+        triangle: usize,
+        /// The one that it repeats.
+        original: usize,
+    },
     /// Edges with a triangle on one side only.
     Open {
         /// How many.
@@ -229,6 +238,11 @@ impl fmt::Display for MeshProblem {
                 Point(*b),
                 Point(*c),
                 if *count == 1 { "it" } else { "them" },
+            ),
+            MeshProblem::Repeated { count, triangle, original } => write!(
+                f,
+                "{count} repeated {}, the first is triangle {triangle} (counted from 0), which is triangle {original} again; remove the copies",
+                if *count == 1 { "triangle" } else { "triangles" },
             ),
             MeshProblem::Open { count, edge } => write!(
                 f,

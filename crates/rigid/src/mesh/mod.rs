@@ -93,6 +93,8 @@ impl TriangleMesh {
 
     /// The mesh in the bytes of a file; errors call it by `name`.
     pub fn parse(bytes: &[u8], format: MeshFormat, name: &str) -> Result<TriangleMesh, MeshError> {
+        // A UTF-8 byte order mark, which some editors put before a text.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let parsed = match format {
             _ if bytes.is_empty() => Err(MeshProblem::Empty),
             MeshFormat::Stl => stl::parse(bytes),
@@ -141,6 +143,7 @@ impl TriangleMesh {
     fn checked_body(&self, amount: Amount) -> Result<Body, MeshProblem> {
         check::size(self)?;
         check::triangles(self)?;
+        check::repetitions(self)?;
         check::edges(self)?;
         let middle = check::middle(self);
         let rough = integrals(self, middle);

@@ -28,6 +28,10 @@ fn parse_binary(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
     };
     let count = u32::from_le_bytes([a, b, c, d]);
     let expected = HEADER as u64 + RECORD as u64 * u64::from(count);
+    if bytes[..HEADER].iter().all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace()) {
+        let what = "this text is no STL, which begins with 'solid', nor a binary one";
+        return Err(corrupt(Place::Byte(0), what));
+    }
     let what = format!("{count} triangles need {expected} bytes, but there are {}", bytes.len());
     if (bytes.len() as u64) < expected {
         return Err(MeshProblem::Truncated { place: end, what });

@@ -3,9 +3,10 @@
 use super::error::{MeshProblem, Place};
 use polhode_ga::Vector;
 
-/// The lines of a file, numbered from 1, without their ends.
+/// The lines of a file, numbered from 1, without their ends: LF, CR LF, or CR alone in a file without LF.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
-    (1..).zip(bytes.split(|&b| b == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
+    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+    (1..).zip(bytes.split(move |&b| b == end).map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
 }
 
 /// The words of a line.

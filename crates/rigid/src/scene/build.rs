@@ -20,14 +20,16 @@ impl Scene {
             None => (body, Vec::new()),
             Some(gravity) => {
                 let body = body.moved(Rotor::IDENTITY, -gravity.pivot);
+                let body = body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
                 let torque = Torque::Heavy(body.center_of_mass * (body.mass * gravity.acceleration));
                 (body, vec![torque])
             }
         };
         let held = self.gravity.is_some();
-        let inertia = if held { body.inertia_about(Vector::default()) } else { body.inertia };
+        let inertia = if held { body.inertia_about(Vector::default()) } else { Ok(body.inertia) };
+        let inertia = inertia.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
         check_moments(inertia.principal_moments())
-            .map_err(|error| vec![self.diagnose("body", error.to_string())])?;
+            .map_err(|error| vec![self.diagnose(self.shape_field(), error.to_string())])?;
         Ok((body, torques))
     }
 
@@ -51,6 +53,16 @@ impl Scene {
             }
         };
         body.map_err(|error| vec![error])
+    }
+
+    /// The field that says what the body is.
+    fn shape_field(&self) -> &'static str {
+        match self.body {
+            BodySpec::Mesh { .. } => "body.mesh",
+            BodySpec::Solid { .. } => "body.solid",
+            BodySpec::Moments { .. } => "body.moments",
+            BodySpec::Inertia { .. } => "body.inertia",
+        }
     }
 
     /// Whether the file tells the mass, or what it follows from.

@@ -42,75 +42,11 @@
 use crate::double_double::DoubleDouble;
 use crate::elliptic::{complete, incomplete_pi, incomplete_pi_excess, jacobi, r_f};
 use crate::inertia::Inertia;
+use crate::regime::{FreeDescription, Regime};
 use crate::simulate::{SimulateError, check_moments};
 use crate::symmetric_top::equal;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::f64::consts::PI;
-use std::fmt;
-
-/// How a free body moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Regime {
-    /// No rotation.
-    Rest,
-    /// A fixed axis: a principal axis, or any axis of a sphere.
-    Steady,
-    /// Two equal moments: regular precession, handout eq. (4.35).
-    Symmetric,
-    /// The polhode encircles the axis of the largest moment.
-    ShortAxis,
-    /// The polhode encircles the axis of the smallest moment.
-    LongAxis,
-    /// Exactly between the two: the spin tends to the middle axis.
-    Separatrix,
-}
-
-impl fmt::Display for Regime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Regime::Rest => "at rest",
-            Regime::Steady => "steady rotation about a fixed axis",
-            Regime::Symmetric => "symmetric top, regular precession",
-            Regime::ShortAxis => "short-axis mode",
-            Regime::LongAxis => "long-axis mode",
-            Regime::Separatrix => "separatrix",
-        })
-    }
-}
-
-/// What the invariants of a free motion tell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FreeDescription {
-    /// The kind of motion.
-    pub regime: Regime,
-    /// Kinetic energy in J.
-    pub energy: f64,
-    /// Size of the angular momentum in kg m²/s.
-    pub angular_momentum: f64,
-    /// Modulus k of the elliptic functions.
-    pub modulus: f64,
-    /// Principal axis (0, 1, 2) that the polhode encircles.
-    pub axis: usize,
-    /// Period of the angular velocity in the body, 4K/λ, in s. None where nothing repeats or changes.
-    pub period: Option<f64>,
-    /// Mean rate of precession about L, in rad/s; None with the period.
-    pub precession_rate: Option<f64>,
-}
-
-impl FreeDescription {
-    /// Period of the mean precession about L, in s.
-    pub fn precession_period(&self) -> Option<f64> {
-        self.precession_rate.map(|rate| 2.0 * PI / rate)
-    }
-
-    /// Time between reversals of the spin about the middle axis, half the period, in s.
-    pub fn flip_time(&self) -> Option<f64> {
-        match self.regime {
-            Regime::ShortAxis | Regime::LongAxis => self.period.map(|t| 0.5 * t),
-            _ => None,
-        }
-    }
-}
 
 /// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
 const MOST_TURNS: f64 = 1e17;

@@ -5,7 +5,7 @@
 //! takes the plane of rotation to the plane of angular momentum.
 //!
 //! Rooms: [`inertia`] (the map), [`body`] (mass, centre of mass, inertia; composition), [`solids`]
-//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] (the free top, exact), [`elliptic`],
+//! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] (the free top, exact), [`regime`], [`elliptic`],
 //! [`symmetric_top`],
 //! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs), [`certificate`] (what they conserved); [`units`] and
 //! [`scene`] (what a person writes in a scene file), [`diagnostic`] (errors that show their place in a file).
@@ -21,6 +21,7 @@ pub mod elliptic;
 pub mod free;
 pub mod inertia;
 pub mod mesh;
+pub mod regime;
 pub mod scene;
 pub mod simulate;
 pub mod solids;

@@ -3,8 +3,9 @@
 use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::SimulateError;
 use polhode_rigid::free::FreeMotion;
-use polhode_rigid::simulate::{Options, Problem, Progress, SimulateError, check_horizon};
+use polhode_rigid::simulate::{Options, Problem, Progress, check_horizon};
 use polhode_rigid::splitting::{METHODS, Method};
 use polhode_rigid::symmetric_top::SymmetricTop;
 use polhode_rigid::torque::Torque;

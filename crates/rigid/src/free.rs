@@ -43,7 +43,8 @@ use crate::double_double::DoubleDouble;
 use crate::elliptic::{complete, incomplete_pi, incomplete_pi_excess, jacobi, r_f};
 use crate::inertia::Inertia;
 use crate::regime::{FreeDescription, Regime};
-use crate::simulate::{SimulateError, check_moments};
+use crate::simulate::check_moments;
+use crate::simulate_error::SimulateError;
 use crate::symmetric_top::equal;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::f64::consts::PI;
@@ -84,7 +85,7 @@ impl FreeMotion {
         FreeMotion { frame: Rotor::IDENTITY, moments, rotor, omega, scale, tumbling }
     }
 
-    /// How far in time the phase is known, in s: to [`MOST_TURNS`].
+    /// How far in time, in s, the phase is known: to 1e17 turns.
     pub fn horizon(&self) -> f64 {
         let fastest = match &self.tumbling {
             Some(top) => top.turns_per_second.hi.max(top.lambda / (4.0 * PI)) * self.scale,

@@ -3,13 +3,10 @@
 use crate::certificate::{Certificate, Watch};
 use crate::free::FreeMotion;
 use crate::inertia::Inertia;
+use crate::simulate_error::{MAX_STEPS, SimulateError};
 use crate::splitting::{Method, Stepper};
 use crate::torque::{Conserved, Phase, Torque, energy, kinetic};
 use polhode_ga::{Bivector, Rotor};
-use std::fmt;
-
-/// Most steps that a run may take: hours of work, and beyond it rounding adds up.
-const MAX_STEPS: f64 = 1e10;
 
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
@@ -23,76 +20,6 @@ const DEFAULT_RTOL: f64 = 1e-10;
 /// The relative error that still counts when none is asked for and rounding lets no smaller one through:
 /// a motion along a separatrix magnifies it a thousandfold and more. The certificate tells the estimate.
 const WORST_UNASKED: f64 = 1e-6;
-
-/// Why a run failed.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub enum SimulateError {
-    /// Moments must be positive to turn momentum into rate.
-    SingularInertia { moments: [f64; 3] },
-    /// Output times must be finite and must not fall.
-    BadTime { index: usize, time: f64 },
-    /// A step, tolerance, angular velocity or torque that is not usable.
-    BadValue { what: &'static str, value: f64 },
-    /// The phase of an exact motion is not known so far from time 0.
-    BeyondHorizon { index: usize, time: f64, horizon: f64 },
-    /// More steps than could be taken.
-    TooManySteps { steps: f64, step: f64 },
-    /// Two runs with halved step still differ, and halving no longer helps.
-    NotConverged { rtol: f64, reached: f64, step: f64 },
-    /// A component became NaN or infinite.
-    Diverged { time: f64 },
-    /// The caller asked to stop.
-    Interrupted,
-}
-
-impl fmt::Display for SimulateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            SimulateError::SingularInertia { moments: [a, b, c] } => write!(
-                f,
-                "principal moments {a}, {b}, {c} kg m² include a zero: the body has no definite rate about that \
-                 axis; give it some thickness"
-            ),
-            SimulateError::BadTime { index, time } => {
-                write!(
-                    f,
-                    "times[{index}] = {time}: output times must be finite and must not decrease; sort them"
-                )
-            }
-            SimulateError::BadValue { what, value } => write!(
-                f,
-                "{what} is {value}; it must be finite{}",
-                match *what {
-                    "step" | "rtol" => " and positive",
-                    _ => "",
-                }
-            ),
-            SimulateError::BeyondHorizon { index, time, horizon } => write!(
-                f,
-                "times[{index}] = {time:e} s lies beyond {horizon:.1e} s, where the phase of this rotation is no longer \
-                 known to rounding; take times nearer to 0"
-            ),
-            SimulateError::TooManySteps { steps, step } => write!(
-                f,
-                "the run would take {steps:.1e} steps of {step:.3e} s, more than {MAX_STEPS:.0e}; shorten it or ask \
-                 for a longer step"
-            ),
-            SimulateError::NotConverged { rtol, reached, step } => write!(
-                f,
-                "rtol = {rtol:.1e} was not reached: halving the step to {step:.3e} s leaves {reached:.1e}; the motion \
-                 magnifies rounding that much, so ask for rtol >= {:.0e} or a shorter run",
-                2.0 * reached
-            ),
-            SimulateError::Diverged { time } => {
-                write!(f, "the motion became NaN or infinite at t = {time} s; use a shorter step")
-            }
-            SimulateError::Interrupted => write!(f, "interrupted"),
-        }
-    }
-}
-
-impl std::error::Error for SimulateError {}
 
 /// What to solve: a body and its state at time 0. Kept in principal axes.
 #[derive(Clone, Debug)]

@@ -1,0 +1,76 @@
+//! Why a motion could not be computed.
+
+use std::fmt;
+
+/// Most steps that a run may take: hours of work, and beyond it rounding adds up.
+pub(crate) const MAX_STEPS: f64 = 1e10;
+
+/// Why a run failed.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum SimulateError {
+    /// Moments must be positive to turn momentum into rate.
+    SingularInertia { moments: [f64; 3] },
+    /// Output times must be finite and must not fall.
+    BadTime { index: usize, time: f64 },
+    /// A step, tolerance, angular velocity or torque that is not usable.
+    BadValue { what: &'static str, value: f64 },
+    /// The phase of an exact motion is not known so far from time 0.
+    BeyondHorizon { index: usize, time: f64, horizon: f64 },
+    /// More steps than could be taken.
+    TooManySteps { steps: f64, step: f64 },
+    /// Two runs with halved step still differ, and halving no longer helps.
+    NotConverged { rtol: f64, reached: f64, step: f64 },
+    /// A component became NaN or infinite.
+    Diverged { time: f64 },
+    /// The caller asked to stop.
+    Interrupted,
+}
+
+impl fmt::Display for SimulateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SimulateError::SingularInertia { moments: [a, b, c] } => write!(
+                f,
+                "principal moments {a}, {b}, {c} kg m² include a zero: the body has no definite rate about that \
+                 axis; give it some thickness"
+            ),
+            SimulateError::BadTime { index, time } => {
+                write!(
+                    f,
+                    "times[{index}] = {time}: output times must be finite and must not decrease; sort them"
+                )
+            }
+            SimulateError::BadValue { what, value } => write!(
+                f,
+                "{what} is {value}; it must be finite{}",
+                match *what {
+                    "step" | "rtol" => " and positive",
+                    _ => "",
+                }
+            ),
+            SimulateError::BeyondHorizon { index, time, horizon } => write!(
+                f,
+                "times[{index}] = {time:e} s lies beyond {horizon:.1e} s, where the phase of this rotation is no longer \
+                 known to rounding; take times nearer to 0"
+            ),
+            SimulateError::TooManySteps { steps, step } => write!(
+                f,
+                "the run would take {steps:.1e} steps of {step:.3e} s, more than {MAX_STEPS:.0e}; shorten it or ask \
+                 for a longer step"
+            ),
+            SimulateError::NotConverged { rtol, reached, step } => write!(
+                f,
+                "rtol = {rtol:.1e} was not reached: halving the step to {step:.3e} s leaves {reached:.1e}; the motion \
+                 magnifies rounding that much, so ask for rtol >= {:.0e} or a shorter run",
+                2.0 * reached
+            ),
+            SimulateError::Diverged { time } => {
+                write!(f, "the motion became NaN or infinite at t = {time} s; use a shorter step")
+            }
+            SimulateError::Interrupted => write!(f, "interrupted"),
+        }
+    }
+}
+
+impl std::error::Error for SimulateError {}

@@ -47,6 +47,7 @@ lint: setup
 bench: setup
 	@mkdir -p build
 	$(BIN)/python benchmarks/run.py | tee build/bench.txt
+	cargo run --quiet --locked --release -p polhode-ga --example batch | tee -a build/bench.txt
 
 docs:
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --locked --no-deps --workspace --exclude polhode-py

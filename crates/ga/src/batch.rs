@@ -1,26 +1,126 @@
-//! Any product over rows of numbers.
+//! Functions of two rows over many rows: any product, and `R X ~R`.
 //!
-//! Values lie row by row, `(rows, components)`. A block of rows is turned so that each component is
-//! contiguous; then every term of the plan is one loop over the block, which compilers vectorise.
+//! Each function says what it does to a row, and the same arithmetic as one loop over the lanes of a block
+//! of rows, which compilers vectorise.
 
-use crate::product::{Grades, Plan};
+use crate::product::{Grades, Plan, Term};
 use crate::rotor::Rotor;
-use crate::values::Vector;
+use crate::simd::{Kernel, LANES, Lane, Path};
+use crate::sweep::sweep;
+use crate::values::{Vector, geometric};
 
-/// Rows in a block: three operands of 8 × 32 numbers stay in the first-level cache.
-const LANES: usize = 32;
-
-/// A factor: one row for all, or a row for each.
-fn load(block: &mut [[f64; LANES]], data: &[f64], size: usize, first: usize, rows: usize) {
-    if data.len() == size {
-        for (lane, &x) in block.iter_mut().zip(data) {
-            lane.fill(x);
+impl Kernel for Plan {
+    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for term in &self.terms {
+            out[term.out] += f64::from(term.sign) * a[term.a] * b[term.b];
         }
-        return;
     }
-    for (row, values) in data[first * size..(first + rows) * size].chunks_exact(size).enumerate() {
-        for (lane, &x) in block.iter_mut().zip(values) {
-            lane[row] = x;
+
+    #[inline(always)]
+    fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+        out.fill(Lane::filled(0.0));
+        // The terms come in order of `out`; up to eight of a lane are added at a time, in registers.
+        for terms in self.terms.chunk_by(|s, t| s.out == t.out).flat_map(|terms| terms.chunks(8)) {
+            let lane = &mut out[terms[0].out];
+            match terms.len() {
+                1 => add::<1>(terms, a, b, lane),
+                2 => add::<2>(terms, a, b, lane),
+                3 => add::<3>(terms, a, b, lane),
+                4 => add::<4>(terms, a, b, lane),
+                5 => add::<5>(terms, a, b, lane),
+                6 => add::<6>(terms, a, b, lane),
+                7 => add::<7>(terms, a, b, lane),
+                _ => add::<8>(terms, a, b, lane),
+            }
+        }
+    }
+}
+
+/// Adds `N` terms to a lane of the product.
+#[inline(always)]
+fn add<const N: usize>(terms: &[Term], a: &[Lane], b: &[Lane], out: &mut Lane) {
+    let signs: [f64; N] = std::array::from_fn(|t| f64::from(terms[t].sign));
+    let xs: [&Lane; N] = std::array::from_fn(|t| &a[terms[t].a]);
+    let ys: [&Lane; N] = std::array::from_fn(|t| &b[terms[t].b]);
+    // A copy, which the compiler knows to be apart from the factors.
+    let mut sums = out.0;
+    for l in 0..LANES {
+        for t in 0..N {
+            sums[l] += signs[t] * xs[t].0[l] * ys[t].0[l];
+        }
+    }
+    out.0 = sums;
+}
+
+/// The geometric product of all grades in 3-d space, written out.
+struct Geometric<'a>(&'a Plan);
+
+impl Kernel for Geometric<'_> {
+    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        self.0.row(a, b, out);
+    }
+
+    #[inline(always)]
+    fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+        let (a, b, out) = (&a[..8], &b[..8], &mut out[..8]);
+        for l in 0..LANES {
+            let row = |lanes: &[Lane]| std::array::from_fn(|k| lanes[k].0[l]);
+            let product = geometric(row(a), row(b));
+            for k in 0..8 {
+                // A sum that begins with 0, as in the plan, is never −0.
+                out[k].0[l] = product[k] + 0.0;
+            }
+        }
+    }
+}
+
+/// `R X ~R` for X that holds some grades: vector and bivector turn as three numbers each, scalar and
+/// trivector stay.
+struct Turn(Grades);
+
+impl Turn {
+    /// Where each part begins, and how many numbers it has.
+    fn parts(&self) -> impl Iterator<Item = (usize, usize)> {
+        let present = (0..4).filter(|&k| self.0.contains(k));
+        present.map(|k| if k % 3 == 0 { 1 } else { 3 }).scan(0, |next, width| {
+            *next += width;
+            Some((*next - width, width))
+        })
+    }
+}
+
+impl Kernel for Turn {
+    const FAST_ROWS: bool = true;
+
+    fn row(&self, rotor: &[f64], value: &[f64], out: &mut [f64]) {
+        let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotor[k]));
+        for (at, width) in self.parts() {
+            if width == 1 {
+                out[at] = value[at];
+            } else {
+                let turned = rotor.apply(Vector([value[at], value[at + 1], value[at + 2]]));
+                out[at..at + 3].copy_from_slice(&turned.0);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn block(&self, rotors: &[Lane], values: &[Lane], out: &mut [Lane]) {
+        let rotors = &rotors[..4];
+        for (at, width) in self.parts() {
+            if width == 1 {
+                out[at] = values[at];
+                continue;
+            }
+            let (values, out) = (&values[at..at + 3], &mut out[at..at + 3]);
+            for l in 0..LANES {
+                let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotors[k].0[l]));
+                let turned = rotor.apply(Vector([values[0].0[l], values[1].0[l], values[2].0[l]]));
+                for k in 0..3 {
+                    out[k].0[l] = turned.0[k];
+                }
+            }
         }
     }
 }
@@ -31,33 +131,15 @@ impl Plan {
     /// # Panics
     /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
     pub fn run(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        self.run_on(Path::best(), a, b, out);
+    }
+
+    fn run_on(&self, path: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
         let (na, nb, nout) = self.sizes;
-        let total = out.len() / nout;
-        assert_eq!(out.len(), total * nout);
-        assert!(a.len() == na || a.len() == total * na, "left factor has the wrong length");
-        assert!(b.len() == nb || b.len() == total * nb, "right factor has the wrong length");
-        let mut a_block = vec![[0.0; LANES]; na];
-        let mut b_block = vec![[0.0; LANES]; nb];
-        let mut out_block = vec![[0.0; LANES]; nout];
-        for first in (0..total).step_by(LANES) {
-            let rows = LANES.min(total - first);
-            load(&mut a_block, a, na, first, rows);
-            load(&mut b_block, b, nb, first, rows);
-            out_block.fill([0.0; LANES]);
-            for term in &self.terms {
-                let (x, y) = (&a_block[term.a], &b_block[term.b]);
-                let z = &mut out_block[term.out];
-                let sign = f64::from(term.sign);
-                for i in 0..LANES {
-                    z[i] += sign * x[i] * y[i];
-                }
-            }
-            let rows_out = out[first * nout..(first + rows) * nout].chunks_exact_mut(nout);
-            for (row, values) in rows_out.enumerate() {
-                for (x, lane) in values.iter_mut().zip(&out_block) {
-                    *x = lane[row];
-                }
-            }
+        if self.is_geometric {
+            sweep(path, &Geometric(self), (a, na), (b, nb), (out, nout));
+        } else {
+            sweep(path, self, (a, na), (b, nb), (out, nout));
         }
     }
 }
@@ -66,69 +148,60 @@ impl Plan {
 /// stay; vector and bivector each turn as three numbers. One row of either meets every row of the other.
 ///
 /// # Panics
-/// If the numbers of rows do not fit together.
+/// If there are no grades, or the numbers of rows do not fit together.
 pub fn turn(rotors: &[f64], values: &[f64], grades: Grades, out: &mut [f64]) {
-    const WIDTH: [usize; 4] = [1, 3, 3, 1];
-    let present = (0..4).filter(|&k| grades.contains(k));
-    let size: usize = present.clone().map(|k| WIDTH[k]).sum();
-    let (rotors, total) = (rotors.as_chunks::<4>().0, out.len() / size);
-    assert!(rotors.len() == 1 || rotors.len() == total, "rotors have the wrong length");
-    assert!(values.len() == size || values.len() == total * size, "values have the wrong length");
-    let mut at = 0;
-    for k in present {
-        for (row, target) in out.chunks_exact_mut(size).enumerate() {
-            let first = if values.len() == size { at } else { row * size + at };
-            if WIDTH[k] == 1 {
-                target[at] = values[first];
-            } else {
-                let rotor = Rotor::from_unit_components(rotors[if rotors.len() == 1 { 0 } else { row }]);
-                let turned = rotor.apply(Vector([values[first], values[first + 1], values[first + 2]]));
-                target[at..at + 3].copy_from_slice(&turned.0);
-            }
-        }
-        at += WIDTH[k];
-    }
+    turn_on(Path::best(), rotors, values, grades, out);
+}
+
+fn turn_on(path: Path, rotors: &[f64], values: &[f64], grades: Grades, out: &mut [f64]) {
+    let turn = Turn(grades);
+    let size = turn.parts().map(|(_, width)| width).sum();
+    sweep(path, &turn, (rotors, 4), (values, size), (out, size));
 }
 
 #[cfg(test)]
 mod tests {
-    use super::turn;
-    use crate::product::{Grades, Plan, Product};
-    use crate::table::{Algebra, Signature};
+    use super::*;
+    use crate::product::Product;
+    use crate::sweep::STREAMED;
+    use crate::table::{Algebra, G3, Signature};
     use crate::{Multivector, Rotor};
 
-    /// Every set of grades, one row against many both ways, equals `R X ~R` by products to 8 roundings.
-    #[test]
-    fn turning_equals_the_sandwich() {
-        let number = |i: usize| (i * 7 % 11) as f64 - 4.5;
-        let rotors: Vec<Rotor> = (0..5)
-            .map(|i| Rotor::from_components(std::array::from_fn(|k| number(4 * i + k))).unwrap())
-            .collect();
-        for grades in (1..16).map(Grades) {
-            let indices = grades.indices(&crate::table::G3);
-            for (n, m) in [(1, 1), (1, 5), (5, 1), (5, 5)] {
-                let r: Vec<f64> = rotors[..n].iter().flat_map(|r| r.components()).collect();
-                let x: Vec<f64> = (0..m * indices.len()).map(number).collect();
-                let mut out = vec![f64::NAN; n.max(m) * indices.len()];
-                turn(&r, &x, grades, &mut out);
-                for row in 0..n.max(m) {
-                    let mut full = Multivector::default();
-                    for (k, &i) in indices.iter().enumerate() {
-                        full.0[i] = x[(if m == 1 { 0 } else { row }) * indices.len() + k];
-                    }
-                    let rotor = rotors[if n == 1 { 0 } else { row }];
-                    let turned = Multivector::from(rotor) * full * Multivector::from(rotor.reverse());
-                    for (k, &i) in indices.iter().enumerate() {
-                        let error = (out[row * indices.len() + k] - turned.0[i]).abs();
-                        assert!(error <= 8.0 * f64::EPSILON * full.norm(), "{grades:?} {error}");
-                    }
-                }
-            }
+    /// Around the widths of registers and blocks.
+    const ROWS: [usize; 11] = [0, 1, 7, 8, 9, 31, 63, 64, 65, 129, 200];
+
+    /// Equal bit for bit; any NaN equals any other.
+    fn assert_same(got: &[f64], expected: &[f64], what: &str) {
+        assert_eq!(got.len(), expected.len());
+        for (i, (x, y)) in got.iter().zip(expected).enumerate() {
+            assert!(x.to_bits() == y.to_bits() || x.is_nan() && y.is_nan(), "{what}, number {i}: {x} {y}");
         }
     }
 
-    /// Row counts around the block size, and one row against many, in several algebras: every row
-    /// equals the sum over the table.
+    /// Numbers whose products and sums round, or with signed zeros, infinities and NaN between them.
+    fn numbers(count: usize, special: bool) -> Vec<f64> {
+        const SPECIAL: [f64; 7] = [0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e308, 5e-324];
+        let number =
+            |i: usize| if special && i.is_multiple_of(3) { SPECIAL[i % 7] } else { (i as f64 * 0.7).sin() };
+        (0..count).map(number).collect()
+    }
+
+    /// The sum over the table, in order of the left factor's components.
+    fn by_table(algebra: &Algebra, product: Product, plan: &Plan, a: &[f64], b: &[f64]) -> Vec<f64> {
+        let mut full = vec![0.0; algebra.blades().len()];
+        for i in 0..a.len() {
+            for j in 0..b.len() {
+                let (sign, k) = product.of_basis(algebra, i, j);
+                if sign != 0 {
+                    full[k] += f64::from(sign) * a[i] * b[j];
+                }
+            }
+        }
+        plan.grades.indices(algebra).iter().map(|&k| full[k]).collect()
+    }
+
+    /// Each row on each path, one row against many both ways, in several algebras: the same numbers as
+    /// the sum over the table, bit for bit.
     #[test]
     fn every_row_equals_the_table() {
         for (p, q, r) in [(3, 0, 0), (2, 0, 0), (3, 0, 1), (4, 1, 0), (1, 3, 0)] {
@@ -137,24 +210,105 @@ mod tests {
             let size = algebra.blades().len();
             for product in Product::ALL {
                 let plan = Plan::new(&algebra, product, all, all);
-                let out_indices = plan.grades.indices(&algebra);
-                for rows in [1, 31, 32, 33, 70] {
-                    let a: Vec<f64> = (0..rows * size).map(|i| (i * 7 % 11) as f64 - 5.0).collect();
-                    let b: Vec<f64> = (0..size).map(|i| (i * 5 % 13) as f64 - 6.0).collect();
-                    let mut out = vec![f64::NAN; rows * out_indices.len()];
-                    plan.run(&a, &b, &mut out);
-                    for row in 0..rows {
-                        let mut expected = vec![0.0; size];
-                        for i in 0..size {
-                            for j in 0..size {
-                                let (sign, k) = product.of_basis(&algebra, i, j);
-                                expected[k] += f64::from(sign) * a[row * size + i] * b[j];
-                            }
-                        }
-                        for (x, &k) in out_indices.iter().enumerate() {
-                            assert_eq!(out[row * out_indices.len() + x], expected[k]);
-                        }
+                let (n, special) = (ROWS[10], size == 8);
+                let (a, b) = (numbers(n * size, special), numbers(n * size + 5, false).split_off(5));
+                let row = |x: &[f64], i: usize| x[i * size..(i + 1) * size].to_vec();
+                let pick = |i: usize, j: usize| by_table(&algebra, product, &plan, &row(&a, i), &row(&b, j));
+                let each: Vec<f64> = (0..n).flat_map(|i| pick(i, i)).collect();
+                let one_a: Vec<f64> = (0..n).flat_map(|i| pick(0, i)).collect();
+                let one_b: Vec<f64> = (0..n).flat_map(|i| pick(i, 0)).collect();
+                for path in Path::available() {
+                    for rows in ROWS {
+                        let what = format!("{path:?} {:?} {product:?} {rows}", algebra.signature());
+                        let mut out = vec![0.5; rows * plan.sizes.2];
+                        let length = out.len();
+                        plan.run_on(path, &a[..rows * size], &b[..rows * size], &mut out);
+                        assert_same(&out, &each[..length], &what);
+                        plan.run_on(path, &a[..size], &b[..rows * size], &mut out);
+                        assert_same(&out, &one_a[..length], &what);
+                        plan.run_on(path, &a[..rows * size], &b[..size], &mut out);
+                        assert_same(&out, &one_b[..length], &what);
                     }
+                }
+            }
+        }
+    }
+
+    /// Every pair of sets of grades in 3-d space, so that lanes of every number from 1 to 8 occur.
+    #[test]
+    fn every_pair_of_grades_equals_its_rows() {
+        let rows = 75;
+        for (ga, gb) in (1..16).flat_map(|ga| (1..16).map(move |gb| (Grades(ga), Grades(gb)))) {
+            let plan = Plan::g3(Product::Geometric, ga, gb);
+            let (na, nb, nout) = plan.sizes;
+            let (a, b) = (numbers(rows * na, false), numbers(rows * nb, true));
+            let mut expected = vec![0.5; rows * nout];
+            for (row, out) in expected.chunks_exact_mut(nout).enumerate() {
+                plan.row(&a[row * na..(row + 1) * na], &b[row * nb..(row + 1) * nb], out);
+            }
+            for path in Path::available() {
+                let mut out = vec![0.5; rows * nout];
+                plan.run_on(path, &a, &b, &mut out);
+                assert_same(&out, &expected, &format!("{path:?} {ga:?} {gb:?}"));
+            }
+        }
+    }
+
+    /// A result that goes past the caches, wherever it begins in a cache line, is that of small pieces.
+    #[test]
+    fn streamed_results_are_the_same() {
+        let rows = STREAMED / 9 + 37;
+        let (r, v) = (numbers(4 * rows, false), numbers(3 * rows, false));
+        let piece = 1000;
+        let mut expected = vec![0.0; 3 * rows];
+        for (i, out) in expected.chunks_mut(3 * piece).enumerate() {
+            let (first, last) = (i * piece, i * piece + out.len() / 3);
+            turn(&r[4 * first..4 * last], &v[3 * first..3 * last], Grades(0b0010), out);
+        }
+        for path in Path::available() {
+            for offset in 0..8 {
+                let mut out = vec![0.5; 3 * rows + 9];
+                turn_on(path, &r, &v, Grades(0b0010), &mut out[offset..offset + 3 * rows]);
+                assert_same(&out[offset..offset + 3 * rows], &expected, &format!("{path:?} {offset}"));
+                let around = out[..offset].iter().chain(&out[offset + 3 * rows..]);
+                assert!(around.copied().all(|x| x == 0.5), "{path:?} {offset}");
+            }
+        }
+    }
+
+    /// Every set of grades, one row against many both ways, on every path: the numbers of the typed
+    /// values bit for bit, and `R X ~R` by products to 8 roundings.
+    #[test]
+    fn turning_equals_the_sandwich() {
+        let n = 70;
+        let unit = |c: &[f64]| Rotor::from_components(std::array::from_fn(|k| c[k])).unwrap();
+        let rotors: Vec<Rotor> = numbers(4 * n, false).chunks_exact(4).map(unit).collect();
+        let r: Vec<f64> = rotors.iter().flat_map(|r| r.components()).collect();
+        for grades in (1..16).map(Grades) {
+            let indices = grades.indices(&G3);
+            let size = indices.len();
+            let x = numbers(size * n, false);
+            for (many_r, many_x) in [(1, 1), (1, n), (n, 1), (n, n), (9, 9), (1, 9)] {
+                let rows = many_r.max(many_x);
+                let mut expected = Vec::new();
+                for row in 0..rows {
+                    let mut full = Multivector::default();
+                    for (k, &i) in indices.iter().enumerate() {
+                        full.0[i] = x[(if many_x == 1 { 0 } else { row }) * size + k];
+                    }
+                    let rotor = rotors[if many_r == 1 { 0 } else { row }];
+                    let typed = rotor.apply_multivector(full);
+                    let sandwich = Multivector::from(rotor) * full * Multivector::from(rotor.reverse());
+                    for &i in &indices {
+                        let error = (typed.0[i] - sandwich.0[i]).abs();
+                        assert!(error <= 8.0 * f64::EPSILON * full.norm(), "{grades:?} {error}");
+                        expected.push(typed.0[i]);
+                    }
+                }
+                for path in Path::available() {
+                    let mut out = vec![f64::NAN; rows * size];
+                    turn_on(path, &r[..4 * many_r], &x[..size * many_x], grades, &mut out);
+                    assert_same(&out, &expected, &format!("{path:?} {grades:?} {many_r} {many_x}"));
                 }
             }
         }

@@ -27,6 +27,8 @@ pub mod functions;
 pub mod pauli;
 pub mod product;
 pub mod rotor;
+mod simd;
+mod sweep;
 pub mod table;
 pub mod values;
 

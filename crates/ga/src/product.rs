@@ -132,6 +132,8 @@ pub struct Plan {
     pub grades: Grades,
     /// The terms.
     pub terms: Vec<Term>,
+    /// Whether it is the geometric product of all grades in 3-d space, which is also written out.
+    pub(crate) is_geometric: bool,
 }
 
 impl Plan {
@@ -155,7 +157,11 @@ impl Plan {
             term.out = iout.binary_search(&term.out).expect("its grade is in the set");
         }
         found.sort_by_key(|t| (t.out, t.a));
-        Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found }
+        let is_geometric = product == Product::Geometric
+            && algebra.signature() == G3.signature()
+            && Grades::ALL.within(ga)
+            && Grades::ALL.within(gb);
+        Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found, is_geometric }
     }
 
     /// The plan in [`G3`], made once for each product and pair of grades.

@@ -270,21 +270,27 @@ impl From<Trivector> for Multivector {
 impl Mul for Multivector {
     type Output = Multivector;
 
-    /// The geometric product: for each component, the pairs of blades that the table sends there.
     fn mul(self, other: Multivector) -> Multivector {
-        let [m0, m1, m2, m3, m4, m5, m6, m7] = self.0;
-        let [n0, n1, n2, n3, n4, n5, n6, n7] = other.0;
-        Multivector([
-            m0 * n0 + m1 * n1 + m2 * n2 + m3 * n3 - m4 * n4 - m5 * n5 - m6 * n6 - m7 * n7,
-            m0 * n1 + m1 * n0 - m2 * n6 + m3 * n5 - m4 * n7 - m5 * n3 + m6 * n2 - m7 * n4,
-            m0 * n2 + m2 * n0 - m3 * n4 + m1 * n6 - m5 * n7 - m6 * n1 + m4 * n3 - m7 * n5,
-            m0 * n3 + m3 * n0 - m1 * n5 + m2 * n4 - m6 * n7 - m4 * n2 + m5 * n1 - m7 * n6,
-            m0 * n4 + m4 * n0 + m2 * n3 - m3 * n2 + m1 * n7 + m7 * n1 - m5 * n6 + m6 * n5,
-            m0 * n5 + m5 * n0 + m3 * n1 - m1 * n3 + m2 * n7 + m7 * n2 - m6 * n4 + m4 * n6,
-            m0 * n6 + m6 * n0 + m1 * n2 - m2 * n1 + m3 * n7 + m7 * n3 - m4 * n5 + m5 * n4,
-            m0 * n7 + m7 * n0 + m1 * n4 + m4 * n1 + m2 * n5 + m5 * n2 + m3 * n6 + m6 * n3,
-        ])
+        Multivector(geometric(self.0, other.0))
     }
+}
+
+/// The geometric product: for each component, the pairs of blades that the table sends there, in order
+/// of the left one.
+#[inline(always)]
+pub(crate) fn geometric(m: [f64; 8], n: [f64; 8]) -> [f64; 8] {
+    let [m0, m1, m2, m3, m4, m5, m6, m7] = m;
+    let [n0, n1, n2, n3, n4, n5, n6, n7] = n;
+    [
+        m0 * n0 + m1 * n1 + m2 * n2 + m3 * n3 - m4 * n4 - m5 * n5 - m6 * n6 - m7 * n7,
+        m0 * n1 + m1 * n0 - m2 * n6 + m3 * n5 - m4 * n7 - m5 * n3 + m6 * n2 - m7 * n4,
+        m0 * n2 + m1 * n6 + m2 * n0 - m3 * n4 + m4 * n3 - m5 * n7 - m6 * n1 - m7 * n5,
+        m0 * n3 - m1 * n5 + m2 * n4 + m3 * n0 - m4 * n2 + m5 * n1 - m6 * n7 - m7 * n6,
+        m0 * n4 + m1 * n7 + m2 * n3 - m3 * n2 + m4 * n0 - m5 * n6 + m6 * n5 + m7 * n1,
+        m0 * n5 - m1 * n3 + m2 * n7 + m3 * n1 + m4 * n6 + m5 * n0 - m6 * n4 + m7 * n2,
+        m0 * n6 + m1 * n2 - m2 * n1 + m3 * n7 - m4 * n5 + m5 * n4 + m6 * n0 + m7 * n3,
+        m0 * n7 + m1 * n4 + m2 * n5 + m3 * n6 + m4 * n1 + m5 * n2 + m6 * n3 + m7 * n0,
+    ]
 }
 
 #[cfg(test)]

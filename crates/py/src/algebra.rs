@@ -1,7 +1,6 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Array, Out, Rows, bad, map_rows, numbers};
-use numpy::{PyArray1, PyArrayMethods};
+use crate::arrays::{Array, Out, Rows, bad, filled, map_rows, numbers};
 use polhode_ga::batch::turn;
 use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
@@ -39,12 +38,7 @@ pub(crate) fn product<'py>(
     for (length, size) in [(a.len(), na), (b.len(), nb)] {
         check_rows(length, size, rows)?;
     }
-    let out = py.detach(|| {
-        let mut out = vec![0.0; rows * nout];
-        plan.run(a, b, &mut out);
-        out
-    });
-    Ok((PyArray1::from_vec(py, out).reshape(vec![rows, nout])?, plan.grades.0))
+    Ok((filled(py, [rows, nout], |out| plan.run(a, b, out))?, plan.grades.0))
 }
 
 /// `inverse`, `exp`, `log` or `sqrt` of rows of eight components; also the grades of the values.
@@ -156,17 +150,15 @@ pub(crate) fn rotor_apply<'py>(
     grades: u16,
     rows: usize,
 ) -> Out<'py> {
+    if grades == 0 || grades >= 16 {
+        return Err(bad("a value of 3-d space has some of the grades 0 to 3"));
+    }
     let (rotors, values) = (numbers(&rotors)?, numbers(&values)?);
     let size = Grades(grades).indices(&G3).len();
     for (length, size) in [(rotors.len(), 4), (values.len(), size)] {
         check_rows(length, size, rows)?;
     }
-    let out = py.detach(|| {
-        let mut out = vec![0.0; rows * size];
-        turn(rotors, values, Grades(grades), &mut out);
-        out
-    });
-    PyArray1::from_vec(py, out).reshape(vec![rows, size])
+    filled(py, [rows, size], |out| turn(rotors, values, Grades(grades), out))
 }
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.

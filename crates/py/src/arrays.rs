@@ -1,6 +1,6 @@
 //! Between NumPy arrays and fixed-size rows.
 
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -45,6 +45,22 @@ pub(crate) fn table<'py, const N: usize>(
 ) -> Out<'py> {
     let shape = vec![rows.len(), N];
     PyArray1::from_vec(py, rows.flatten().collect()).reshape(shape)
+}
+
+/// A new array of shape (rows, size), filled while the GIL is released.
+///
+/// NumPy allocates it, which asks for huge pages where it is large: faulting in small ones costs several
+/// times the arithmetic of a product.
+pub(crate) fn filled<'py>(
+    py: Python<'py>,
+    [rows, size]: [usize; 2],
+    fill: impl FnOnce(&mut [f64]) + Send,
+) -> Out<'py> {
+    let array = PyArray2::zeros(py, [rows, size], false);
+    let mut target = array.readwrite();
+    let numbers = target.as_slice_mut()?;
+    py.detach(|| fill(numbers));
+    Ok(array.to_dyn().clone())
 }
 
 /// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.

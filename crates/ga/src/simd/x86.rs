@@ -1,0 +1,316 @@
+//! The paths of x86-64. `gather` and `scatter` return how many rows they did; the rest is left to others.
+
+use super::{Kernel, LANES, Lane};
+use std::arch::x86_64::*;
+
+#[target_feature(enable = "avx2")]
+pub(super) fn apply_avx2<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+    kernel.block(a, b, out);
+}
+
+#[target_feature(enable = "avx512f")]
+pub(super) fn apply_avx512<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+    kernel.block(a, b, out);
+}
+
+/// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own
+/// prefetching stops.
+#[inline(always)]
+fn prefetch(from: *const f64) {
+    // SAFETY: a hint; it reads nothing, so that the address may be any.
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_add(512).cast()) };
+}
+
+/// Four rows of four numbers, transposed: pairs of rows, then of pairs.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn transpose_avx2([r0, r1, r2, r3]: [__m256d; 4]) -> [__m256d; 4] {
+    let (a0, a1) = (_mm256_unpacklo_pd(r0, r1), _mm256_unpackhi_pd(r0, r1));
+    let (b0, b1) = (_mm256_unpacklo_pd(r2, r3), _mm256_unpackhi_pd(r2, r3));
+    [
+        _mm256_permute2f128_pd::<0x20>(a0, b0),
+        _mm256_permute2f128_pd::<0x20>(a1, b1),
+        _mm256_permute2f128_pd::<0x31>(a0, b0),
+        _mm256_permute2f128_pd::<0x31>(a1, b1),
+    ]
+}
+
+/// Eight rows of eight numbers, transposed: pairs of rows, then of pairs, then of fours.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn transpose_avx512([r0, r1, r2, r3, r4, r5, r6, r7]: [__m512d; 8]) -> [__m512d; 8] {
+    let (a0, a1) = (_mm512_unpacklo_pd(r0, r1), _mm512_unpackhi_pd(r0, r1));
+    let (b0, b1) = (_mm512_unpacklo_pd(r2, r3), _mm512_unpackhi_pd(r2, r3));
+    let (c0, c1) = (_mm512_unpacklo_pd(r4, r5), _mm512_unpackhi_pd(r4, r5));
+    let (d0, d1) = (_mm512_unpacklo_pd(r6, r7), _mm512_unpackhi_pd(r6, r7));
+    // Each of a0 … d1 holds four columns of two rows, two numbers side by side; 0x88 takes the first
+    // and third of both, 0xdd the second and fourth.
+    let (p0, p2) = (_mm512_shuffle_f64x2::<0x88>(a0, b0), _mm512_shuffle_f64x2::<0xdd>(a0, b0));
+    let (p1, p3) = (_mm512_shuffle_f64x2::<0x88>(a1, b1), _mm512_shuffle_f64x2::<0xdd>(a1, b1));
+    let (q0, q2) = (_mm512_shuffle_f64x2::<0x88>(c0, d0), _mm512_shuffle_f64x2::<0xdd>(c0, d0));
+    let (q1, q3) = (_mm512_shuffle_f64x2::<0x88>(c1, d1), _mm512_shuffle_f64x2::<0xdd>(c1, d1));
+    [
+        _mm512_shuffle_f64x2::<0x88>(p0, q0),
+        _mm512_shuffle_f64x2::<0x88>(p1, q1),
+        _mm512_shuffle_f64x2::<0x88>(p2, q2),
+        _mm512_shuffle_f64x2::<0x88>(p3, q3),
+        _mm512_shuffle_f64x2::<0xdd>(p0, q0),
+        _mm512_shuffle_f64x2::<0xdd>(p1, q1),
+        _mm512_shuffle_f64x2::<0xdd>(p2, q2),
+        _mm512_shuffle_f64x2::<0xdd>(p3, q3),
+    ]
+}
+
+/// Rows to lanes and back by square transposes of `$n` rows by `$n` columns. The last square of a long
+/// row overlaps the one before. A short row is read, or written, with the beginning of the next one,
+/// whose own numbers are written later; so a group is done only if that next one is there.
+macro_rules! squares {
+    ($feature:tt, $n:literal, $zero:ident, $load:ident, $store:ident, $transpose:ident, $gather:ident, $scatter:ident) => {
+        /// # Safety
+        /// The numbers fit the lanes, which are at least one.
+        #[target_feature(enable = $feature)]
+        pub(super) unsafe fn $gather(rows: &[f64], lanes: &mut [Lane]) -> usize {
+            let size = lanes.len();
+            let last = size.saturating_sub($n);
+            let mut done = 0;
+            while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= LANES {
+                for column in (0..size).step_by($n).map(|column| column.min(last)) {
+                    let mut square = [$zero(); $n];
+                    for i in 0..$n {
+                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
+                        unsafe {
+                            let row = rows.as_ptr().add((done + i) * size + column);
+                            prefetch(row);
+                            square[i] = $load(row);
+                        }
+                    }
+                    let square = $transpose(square);
+                    for k in 0..$n {
+                        if k < size {
+                            // SAFETY: `done + $n <= LANES`.
+                            unsafe { $store(lanes[column + k].0.as_mut_ptr().add(done), square[k]) };
+                        }
+                    }
+                }
+                done += $n;
+            }
+            done
+        }
+
+        /// # Safety
+        /// The numbers fit the lanes, which are at least one.
+        #[target_feature(enable = $feature)]
+        pub(super) unsafe fn $scatter(lanes: &[Lane], rows: &mut [f64]) -> usize {
+            let size = lanes.len();
+            let last = size.saturating_sub($n);
+            let mut done = 0;
+            while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= LANES {
+                for column in (0..size).step_by($n).map(|column| column.min(last)) {
+                    let mut square = [$zero(); $n];
+                    for k in 0..$n {
+                        if k < size {
+                            // SAFETY: `done + $n <= LANES`.
+                            square[k] = unsafe { $load(lanes[column + k].0.as_ptr().add(done)) };
+                        }
+                    }
+                    let square = $transpose(square);
+                    for i in 0..$n {
+                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
+                        unsafe { $store(rows.as_mut_ptr().add((done + i) * size + column), square[i]) };
+                    }
+                }
+                done += $n;
+            }
+            done
+        }
+    };
+}
+
+squares!(
+    "avx2",
+    4,
+    _mm256_setzero_pd,
+    _mm256_loadu_pd,
+    _mm256_storeu_pd,
+    transpose_avx2,
+    gather_avx2,
+    scatter_avx2
+);
+
+squares!(
+    "avx512f",
+    8,
+    _mm512_setzero_pd,
+    _mm512_loadu_pd,
+    _mm512_storeu_pd,
+    transpose_avx512,
+    gather_squares,
+    scatter_squares
+);
+
+/// Calls a function of the constant number of lanes below eight, or the other one.
+macro_rules! by_size {
+    ($size:expr, $few:ident, $many:ident, $arguments:tt) => {
+        match $size {
+            1 => $few::<1> $arguments,
+            2 => $few::<2> $arguments,
+            3 => $few::<3> $arguments,
+            4 => $few::<4> $arguments,
+            5 => $few::<5> $arguments,
+            6 => $few::<6> $arguments,
+            7 => $few::<7> $arguments,
+            _ => $many $arguments,
+        }
+    };
+}
+
+/// # Safety
+/// The numbers fit the lanes, which are at least one.
+#[target_feature(enable = "avx512f")]
+pub(super) unsafe fn gather_avx512(rows: &[f64], lanes: &mut [Lane]) -> usize {
+    // SAFETY: passed on.
+    unsafe { by_size!(lanes.len(), gather_few, gather_squares, (rows, lanes)) }
+}
+
+/// # Safety
+/// The numbers fit the lanes, which are at least one.
+#[target_feature(enable = "avx512f")]
+pub(super) unsafe fn scatter_avx512(lanes: &[Lane], rows: &mut [f64]) -> usize {
+    // SAFETY: passed on.
+    unsafe { by_size!(lanes.len(), scatter_few, scatter_squares, (lanes, rows)) }
+}
+
+/// Eight rows of `SIZE` numbers fill `SIZE` registers without gaps: number `k` of row `i` is number
+/// `i SIZE + k` of them all.
+///
+/// # Safety
+/// The numbers fit the `SIZE` lanes.
+#[target_feature(enable = "avx512f")]
+unsafe fn gather_few<const SIZE: usize>(rows: &[f64], lanes: &mut [Lane]) -> usize {
+    let whole = rows.len() / (8 * SIZE);
+    for group in 0..whole {
+        let mut registers = [_mm512_setzero_pd(); SIZE];
+        for r in 0..SIZE {
+            // SAFETY: `8 SIZE` numbers from `8 SIZE group` on are within the rows.
+            unsafe {
+                let from = rows.as_ptr().add((group * SIZE + r) * 8);
+                prefetch(from);
+                registers[r] = _mm512_loadu_pd(from);
+            }
+        }
+        for (lane, &x) in lanes.iter_mut().zip(&pick(registers, &Picks::<SIZE>::GATHER)) {
+            // SAFETY: `group < LANES / 8`, since the numbers fit the lanes.
+            unsafe { _mm512_storeu_pd(lane.0.as_mut_ptr().add(group * 8), x) };
+        }
+    }
+    whole * 8
+}
+
+/// The inverse of [`gather_few`].
+///
+/// # Safety
+/// The numbers fit the `SIZE` lanes.
+#[target_feature(enable = "avx512f")]
+unsafe fn scatter_few<const SIZE: usize>(lanes: &[Lane], rows: &mut [f64]) -> usize {
+    let whole = rows.len() / (8 * SIZE);
+    for group in 0..whole {
+        let mut registers = [_mm512_setzero_pd(); SIZE];
+        for (x, lane) in registers.iter_mut().zip(lanes) {
+            // SAFETY: `group < LANES / 8`, since the numbers fit the lanes.
+            *x = unsafe { _mm512_loadu_pd(lane.0.as_ptr().add(group * 8)) };
+        }
+        let registers = pick(registers, &Picks::<SIZE>::SCATTER);
+        for r in 0..SIZE {
+            // SAFETY: `8 SIZE` numbers from `8 SIZE group` on are within the rows.
+            unsafe { _mm512_storeu_pd(rows.as_mut_ptr().add((group * SIZE + r) * 8), registers[r]) };
+        }
+    }
+    whole * 8
+}
+
+/// Indices that pick each register of a result from `SIZE` registers, taken in one by one: of the
+/// permute that takes in the source `s`, index `i` is `8 + at` where number `i` of the result is number
+/// `at` of `s`, and keeps what is there otherwise. The first permute takes in the sources 0 and 1.
+type Indices<const SIZE: usize> = [[[i64; 8]; SIZE]; SIZE];
+
+struct Picks<const SIZE: usize>;
+
+impl<const SIZE: usize> Picks<SIZE> {
+    /// Number `i` of lane `k` is number `i SIZE + k` of the registers.
+    const GATHER: Indices<SIZE> = {
+        let mut indices = [[[0; 8]; SIZE]; SIZE];
+        let mut n = 0;
+        while n < 8 * SIZE {
+            let (i, k) = (n / SIZE, n % SIZE);
+            set(&mut indices[k], i, n / 8, n % 8);
+            n += 1;
+        }
+        indices
+    };
+
+    /// Number `i SIZE + k` of the registers is number `i` of lane `k`.
+    const SCATTER: Indices<SIZE> = {
+        let mut indices = [[[0; 8]; SIZE]; SIZE];
+        let mut n = 0;
+        while n < 8 * SIZE {
+            let (i, k) = (n / SIZE, n % SIZE);
+            set(&mut indices[n / 8], n % 8, k, i);
+            n += 1;
+        }
+        indices
+    };
+}
+
+/// Number `i` of the result is number `at` of the source `from`.
+const fn set<const SIZE: usize>(indices: &mut [[i64; 8]; SIZE], i: usize, from: usize, at: usize) {
+    let mut source = 1;
+    while source < SIZE {
+        indices[source][i] = if source == from {
+            8 + at as i64
+        } else if source == 1 && from == 0 {
+            at as i64
+        } else {
+            i as i64
+        };
+        source += 1;
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn pick<const SIZE: usize>(sources: [__m512d; SIZE], indices: &Indices<SIZE>) -> [__m512d; SIZE] {
+    let mut picked = [sources[0]; SIZE];
+    for r in 0..SIZE {
+        for s in 1..SIZE {
+            // SAFETY: eight integers of 64 bits.
+            let index = unsafe { _mm512_loadu_epi64(indices[r][s].as_ptr()) };
+            picked[r] = _mm512_permutex2var_pd(picked[r], index, sources[s]);
+        }
+    }
+    picked
+}
+
+/// # Safety
+/// The slices have one length, a multiple of 4, and `to` begins at a cache line.
+#[target_feature(enable = "avx2")]
+pub(super) unsafe fn stream_avx2(from: &[f64], to: &mut [f64]) {
+    for i in (0..to.len()).step_by(4) {
+        // SAFETY: four numbers from `i` on are within both, and aligned in `to`.
+        unsafe { _mm256_stream_pd(to.as_mut_ptr().add(i), _mm256_loadu_pd(from.as_ptr().add(i))) };
+    }
+}
+
+/// # Safety
+/// The slices have one length, a multiple of 8, and `to` begins at a cache line.
+#[target_feature(enable = "avx512f")]
+pub(super) unsafe fn stream_avx512(from: &[f64], to: &mut [f64]) {
+    for i in (0..to.len()).step_by(8) {
+        // SAFETY: eight numbers from `i` on are within both, and aligned in `to`.
+        unsafe { _mm512_stream_pd(to.as_mut_ptr().add(i), _mm512_loadu_pd(from.as_ptr().add(i))) };
+    }
+}
+
+pub(super) fn fence() {
+    // SAFETY: every x86-64 machine has the instruction.
+    unsafe { _mm_sfence() };
+}

@@ -15,6 +15,8 @@ from polhode._multivector import scalar as scalar
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
 from polhode._rotor import Rotor as Rotor
+from polhode._rotor import mean as mean
+from polhode._rotor import slerp as slerp
 from polhode._scene import Scene as Scene
 from polhode._values import I as I
 from polhode._values import bivector as bivector

@@ -189,6 +189,40 @@ class Rotor(Multivector):
         return (self.log() * as_floats(n, "the power of a rotor")).exp()  # type: ignore[return-value]
 
 
+def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
+    """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
+
+    The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
+    or −S.
+    """
+    for value in (R, S):
+        if not isinstance(value, Rotor):
+            raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
+    step = (~R * S)._data
+    shorter = Rotor._from_rows(np.where(step[..., :1] < 0, -step, step))
+    path: Rotor = R * shorter**t  # type: ignore[assignment]
+    return path
+
+
+def mean(R: Rotor, weights: Any = None) -> Rotor:
+    """Return the mean attitude of a batch (n,), whatever the signs: the Q that minimises ``Σ w |R − Q|²``.
+
+    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
+    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
+    ValueError where no attitude is closer than all others, as for half turns about three axes.
+    """
+    if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
+        raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
+    w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
+    if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
+        raise ValueError(f"weights must be {R.shape[0]} finite numbers >= 0, not all 0, got {w.tolist()}")
+    values, vectors = np.linalg.eigh((w[:, np.newaxis] * R._data).T @ R._data)
+    if values[3] - values[2] <= 8 * np.finfo(float).eps * values[3]:
+        raise ValueError("the rotors have no mean: two attitudes are equally close to all of them")
+    best = vectors[:, 3]
+    return Rotor.from_components(-best if best[0] < 0 else best)
+
+
 def _to_wxyz(order: str) -> list[int]:
     """Return where w, x, y, z stand in a quaternion of this order."""
     if order == "wxyz":

@@ -200,7 +200,7 @@ def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
             raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
     step = (~R * S)._data
     shorter = Rotor._from_rows(np.where(step[..., :1] < 0, -step, step))
-    path: Rotor = R * shorter**t  # type: ignore[assignment]
+    path: Rotor = R * shorter**t
     return path
 
 

@@ -51,11 +51,16 @@ def frozen(array: Array) -> Array:
 
 
 def rows(data: Array, batch: Shape) -> Array:
-    """Return the data as (n, K) for a batch: one row if it is a single value, else one row for each."""
+    """Return data in C order with one row of components, or one for each value of the batch."""
     size = data.shape[-1]
-    if data.size == size:
-        return np.ascontiguousarray(data).reshape(1, size)
-    return np.ascontiguousarray(np.broadcast_to(data, (*batch, size))).reshape(-1, size)
+    if data.size != size and data.shape[:-1] != batch:
+        data = np.broadcast_to(data, (*batch, size))
+    return np.ascontiguousarray(data)
+
+
+def common_batch(a: Shape, b: Shape) -> Shape:
+    """Return the shape that two batches broadcast to."""
+    return a if a == b else np.broadcast_shapes(a, b)
 
 
 def batch_shape(shape: Any) -> Shape:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _format, _native
-from polhode._arrays import Array, Shape, as_floats, frozen, rows
+from polhode._arrays import Array, Shape, as_floats, common_batch, frozen, rows
 
 if TYPE_CHECKING:
     from polhode._rotor import Rotor
@@ -195,7 +195,7 @@ class Multivector:
         right = _coerced(other)
         if right is None:
             return NotImplemented  # type: ignore[no-any-return]
-        batch = np.broadcast_shapes(self.shape, right.shape)
+        batch = common_batch(self.shape, right.shape)
         left_rows, right_rows = rows(self._data, batch), rows(right._data, batch)
         count = math.prod(batch)
         data, mask = _native.product(name, left_rows, self._mask, right_rows, right._mask, count)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, joined, rows
+from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, common_batch, joined, rows
 from polhode._multivector import (
     _BIVECTOR,
     _EVEN,
@@ -139,7 +139,7 @@ class Rotor(Multivector):
             raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
         if isinstance(value, Rotor):
             return self * value * ~self
-        batch = np.broadcast_shapes(self.shape, value.shape)
+        batch = common_batch(self.shape, value.shape)
         turned = _native.rotor_apply(
             rows(self._data, batch), rows(value._data, batch), value._mask, math.prod(batch)
         )

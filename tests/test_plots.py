@@ -188,3 +188,15 @@ def test_the_path_of_the_axis_is_the_turned_axis():
     path = motion.rotor.to_matrix()[:, :, 2]
     np.testing.assert_allclose(flat, _View().project(path), rtol=0, atol=1e-12)
     np.testing.assert_array_equal(front, path @ _View().toward >= 0)
+
+
+@pytest.mark.parametrize(("rate", "label"), [(10.0, "attitude rotor"), (1000.0, "of principal axis 3")])
+def test_a_fast_spinner_shows_its_axis(rate, label):
+    """Sixteen turns are drawn as the rotor, sixteen hundred as the axis that they go about."""
+    inertia = ph.Inertia.from_principal_moments(1, 1, 2)
+    state = ph.State(ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, 0.3), [0.0, 0.01 * rate, rate])
+    figure = ph.simulate(inertia, state, np.linspace(0, 10, 400)).plot()
+    axes = figure.axes[1]
+    assert label in axes.get_ylabel()
+    drawn = np.stack([line.get_ydata() for line in axes.get_lines()])
+    assert np.abs(np.linalg.norm(drawn, axis=0) - 1).max() < 1e-12

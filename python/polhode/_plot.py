@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import Array
+from polhode._values import vector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 _BLUE, _ORANGE, _GREEN, _BLACK = "#0072B2", "#D55E00", "#009E73", "#222222"
 _AXES = (_BLUE, _ORANGE, _GREEN)
 _FAINT = "#B8B8B8"
+
+# More turns than this in one figure are a solid block.
+_TURNS_SEEN = 100
 
 # (longest duration that reads well, seconds in the unit, its name)
 _TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1e9, 86400.0, "d"))
@@ -62,11 +66,7 @@ def motion_figure(trajectory: Trajectory) -> Figure:
     for k, (plane, colour) in enumerate(zip(("e2∧e3", "e3∧e1", "e1∧e2"), _AXES, strict=True)):
         rates.plot(t, trajectory.omega_body.components[:, k], color=colour, lw=1.2, label=plane)
     rates.set_ylabel("angular velocity\nin the body, rad/s")
-    parts = ("1", "e2∧e3", "e3∧e1", "e1∧e2")
-    for k, (part, colour) in enumerate(zip(parts, (_BLACK, *_AXES), strict=True)):
-        attitude.plot(t, trajectory.rotor.components[:, k], color=colour, lw=1.2, label=part)
-    attitude.set_ylabel("attitude rotor R\n(body to space)")
-    attitude.set_ylim(-1.08, 1.08)
+    _draw_attitude(attitude, trajectory, t)
     _draw_drift(drift, trajectory, t)
     drift.set_xlabel(f"time, {unit}")
     for axes in (rates, attitude, drift):
@@ -76,6 +76,26 @@ def motion_figure(trajectory: Trajectory) -> Figure:
     figure.align_ylabels()
     figure.suptitle(trajectory.attributes.get("title", "Motion of a rigid body"))
     return figure
+
+
+def _draw_attitude(axes: Axes, trajectory: Trajectory, t: Array) -> None:
+    """Draw the rotor; of a body that spins too often to be seen, the direction of the axis it spins about."""
+    rates = (~trajectory.inertia.principal_frame)(trajectory.omega_body).components
+    speed = np.linalg.norm(rates, axis=1)
+    turns = float(np.abs(np.diff(trajectory.time) * 0.5 * (speed[1:] + speed[:-1])).sum()) / (2 * np.pi)
+    if turns <= _TURNS_SEEN:
+        parts = ("1", "e2∧e3", "e3∧e1", "e1∧e2")
+        for k, (part, colour) in enumerate(zip(parts, (_BLACK, *_AXES), strict=True)):
+            axes.plot(t, trajectory.rotor.components[:, k], color=colour, lw=1.2, label=part)
+        axes.set_ylabel("attitude rotor R\n(body to space)")
+    else:
+        k = int(np.argmax(np.abs(rates).mean(axis=0)))
+        axis = vector(trajectory.inertia.principal_frame.to_matrix()[:, k])
+        path = trajectory.rotor(axis).components
+        for j, (name, colour) in enumerate(zip(("e1", "e2", "e3"), _AXES, strict=True)):
+            axes.plot(t, path[:, j], color=colour, lw=1.2, label=name)
+        axes.set_ylabel(f"direction in space\nof principal axis {k + 1}")
+    axes.set_ylim(-1.08, 1.08)
 
 
 def _draw_drift(axes: Axes, trajectory: Trajectory, t: Array) -> None:
@@ -91,7 +111,7 @@ def _draw_drift(axes: Axes, trajectory: Trajectory, t: Array) -> None:
         series["|L|"] = (size - size[0]) / max(size[0], np.finfo(float).tiny)
     if "vertical_angular_momentum" in conserved:
         size = max(float(np.linalg.norm(momentum, axis=1).max()), np.finfo(float).tiny)
-        series["L·e1∧e2"] = (momentum[:, 2] - momentum[0, 2]) / size
+        series["L about e3"] = (momentum[:, 2] - momentum[0, 2]) / size
     exponent = -16
     largest = max((float(np.abs(values).max()) for values in series.values()), default=0.0)
     if largest > 0:
@@ -243,8 +263,6 @@ def _separatrix(moments: Array, energy: float) -> list[Array]:
 def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction fixed in the body (3,); e3 of space is up."""
     _require_times(trajectory)
-    from polhode._values import vector
-
     figure = _figure(6.4, 6.4)
     axes = figure.add_subplot()
     view = _View()

@@ -11,8 +11,8 @@ use polhode_ga::{Bivector, Rotor};
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
 
-/// Below this two passes may differ by rounding, which halving the step does not reduce.
-const ROUNDING_OF_RUNS: f64 = 1e-11;
+/// Below this two passes may differ by rounding, which the motion magnifies and halving the step does not reduce.
+const ROUNDING_OF_RUNS: f64 = 1e-10;
 
 /// The relative error aimed at when no tolerance is asked for.
 const DEFAULT_RTOL: f64 = 1e-10;

@@ -137,19 +137,16 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     """Return the paths of the data and the two figures; what cannot be written is refused before the work."""
     if output is None:
         return []
-    import h5netcdf  # noqa: F401
-    import matplotlib as mpl  # noqa: F401
-    import xarray as xr  # noqa: F401
+    from polhode._extras import optional
+    from polhode._files import check_target
+    from polhode._io import require_libraries
 
+    require_libraries()
+    optional("matplotlib", "plot", "a figure")
     second = "polhode" if scene.weight is None else "axis"
     targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in ("motion", second))]
     for path in targets:
-        if not path.parent.is_dir():
-            raise OSError(f"cannot write {path}: there is no directory {path.parent}; make it first")
-        if path.exists() and not path.is_file():
-            raise OSError(f"cannot write {path}: it exists and is not a regular file")
-        if not os.access(path.parent, os.W_OK):
-            raise OSError(f"cannot write {path}: no permission to write in {path.parent}")
+        check_target(path)
     return targets
 
 

@@ -25,12 +25,22 @@ def write_atomically(contents: Mapping[Path, bytes]) -> None:
                 os.replace(temporary, target)
 
 
+def check_target(target: Path) -> None:
+    """Raise an OSError that names the path if a file could not be put there."""
+    with _naming(target):
+        if not target.parent.is_dir():
+            raise OSError(f"there is no directory {target.parent}; make it first")
+        if target.exists() and not target.is_file():
+            raise OSError("it exists and is not a regular file")
+        if not os.access(target.parent, os.W_OK):
+            raise OSError(f"no permission to write in {target.parent}")
+
+
 @contextlib.contextmanager
 def _temporary(target: Path, content: bytes) -> Iterator[str]:
     """Write the content to a temporary file beside the target; removed at the end if it is still there."""
+    check_target(target)
     with _naming(target):
-        if target.exists() and not target.is_file():
-            raise OSError("it exists and is not a regular file")
         handle, path = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
     try:
         with _naming(target), os.fdopen(handle, "wb") as file:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
+from polhode._extras import optional
 
 if TYPE_CHECKING:
     import xarray
@@ -27,10 +28,7 @@ CONVENTIONS = (
 
 def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     """Return a dataset with dimensions time, quaternion and axis, units and conventions."""
-    try:
-        import xarray as xr
-    except ImportError as error:
-        raise ImportError("labelled data needs xarray: pip install 'polhode[io]'") from error
+    xr = optional("xarray", "io", "labelled data")
 
     def variable(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
         return (dims, np.array(data), {"units": units, "long_name": text})
@@ -62,16 +60,20 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         "axis": ["x", "y", "z"],
         "axis_": ["x", "y", "z"],
     }
-    return xr.Dataset(variables, coordinates, _attributes(trajectory))
+    dataset: xarray.Dataset = xr.Dataset(variables, coordinates, _attributes(trajectory))
+    return dataset
+
+
+def require_libraries() -> None:
+    """Raise an ImportError now if a netCDF file could not be written later."""
+    optional("xarray", "io", "labelled data")
+    optional("h5netcdf", "io", "a netCDF file")
 
 
 def netcdf(trajectory: Trajectory) -> bytes:
     """Return the content of a netCDF4 file."""
+    require_libraries()
     dataset = to_xarray(trajectory)
-    try:
-        import h5netcdf  # noqa: F401
-    except ImportError as error:
-        raise ImportError("netCDF files need h5netcdf: pip install 'polhode[io]'") from error
     buffer = io.BytesIO()
     dataset.to_netcdf(buffer, engine="h5netcdf", encoding={"time": {"_FillValue": None}})
     return buffer.getvalue()

@@ -263,9 +263,7 @@ def simulate(
         raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
     acceleration = _acceleration(force, mass)
     if _is_held(torque) and acceleration.any():
-        raise ValueError(
-            "with ph.torque.heavy the body is held at a fixed point: no force and no velocity move it"
-        )
+        raise ValueError("with ph.torque.heavy the body is held at a fixed point: no force moves it")
     rotors, omegas, momenta, energies, certificate = _native.simulate(
         inertia._core,
         start.rotor._data,
@@ -279,7 +277,7 @@ def simulate(
     )
     # x0(t) of handout eq. (4.1), under a constant force.
     x, v, t = start.position.components, start.velocity.components, when[:, np.newaxis]
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore"):  # t² may overflow where no force needs it
         place = x + v * t + 0.5 * acceleration * t**2 if acceleration.any() else x + v * t
     return Trajectory(
         time=frozen(when.copy()),
@@ -301,7 +299,7 @@ def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
     omega = _angular_velocity(omega_body)
     if omega.shape:
         raise ValueError(f"the angular velocity must be a single one, got batch shape {omega.shape}")
-    return _native.describe_free(inertia._core, np.ascontiguousarray(omega.components))
+    return _native.describe_free(inertia._core, omega._data)
 
 
 def _tolerance(rtol: float | None, atol: float | None) -> float | None:

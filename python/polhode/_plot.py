@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import Array
+from polhode._extras import optional
 from polhode._values import vector
 
 if TYPE_CHECKING:
@@ -29,11 +30,10 @@ _TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1e
 
 
 def _figure(width: float, height: float) -> Figure:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ImportError("figures need matplotlib: pip install 'polhode[plot]'") from error
-    return Figure(figsize=(width, height), layout="constrained")
+    figure: Figure = optional("matplotlib.figure", "plot", "a figure").Figure(
+        figsize=(width, height), layout="constrained"
+    )
+    return figure
 
 
 def as_png(figure: Figure) -> bytes:

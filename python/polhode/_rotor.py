@@ -9,6 +9,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, common_batch, joined, rows
+from polhode._extras import optional
 from polhode._multivector import (
     _BIVECTOR,
     _EVEN,
@@ -119,11 +120,9 @@ class Rotor(Multivector):
 
     def to_scipy(self) -> Rotation:
         """Return a ``scipy.spatial.transform.Rotation``."""
-        try:
-            from scipy.spatial.transform import Rotation
-        except ImportError as error:
-            raise ImportError("to_scipy needs SciPy: pip install 'polhode[scipy]'") from error
-        return Rotation.from_quat(self.to_quaternion(order="xyzw"))
+        transform = optional("scipy.spatial.transform", "scipy", "to_scipy")
+        rotation: Rotation = transform.Rotation.from_quat(self.to_quaternion(order="xyzw"))
+        return rotation
 
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""

@@ -46,6 +46,7 @@ use crate::regime::{FreeDescription, Regime};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
 use crate::symmetric_top::equal;
+use crate::torque::{angular_momentum, kinetic};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::f64::consts::PI;
 
@@ -110,11 +111,11 @@ impl FreeMotion {
     /// What the invariants tell.
     pub fn describe(&self) -> FreeDescription {
         let (i, w) = (self.moments, self.omega.0);
-        let momentum = Vector([0, 1, 2].map(|k| i[k] * w[k]));
+        let momentum = angular_momentum(i, self.omega);
         let largest = |x: &usize, y: &usize| w[*x].abs().total_cmp(&w[*y].abs());
         let still = FreeDescription {
             regime: if w == [0.0; 3] { Regime::Rest } else { Regime::Steady },
-            energy: 0.5 * momentum.dot(self.omega.dual()),
+            energy: kinetic(i, momentum),
             angular_momentum: momentum.norm(),
             modulus: 0.0,
             axis: (0..3).max_by(largest).unwrap_or(0),

@@ -5,13 +5,14 @@ use crate::free::FreeMotion;
 use crate::inertia::Inertia;
 use crate::simulate_error::{MAX_STEPS, SimulateError};
 use crate::splitting::{Method, Stepper};
-use crate::torque::{Conserved, Phase, Torque, energy, kinetic};
+use crate::torque::{Conserved, Phase, Torque, angular_momentum, angular_velocity, energy, kinetic};
 use polhode_ga::{Bivector, Rotor};
 
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
 
-/// Below this two passes may differ by rounding, which the motion magnifies and halving the step does not reduce.
+/// Below this two passes may differ by rounding, which the motion magnifies and halving the step does not
+/// reduce.
 const ROUNDING_OF_RUNS: f64 = 1e-10;
 
 /// The relative error aimed at when no tolerance is asked for.
@@ -160,8 +161,9 @@ impl Problem {
 
     /// The motion at `times` (s, not decreasing, of either sign); the state given is that at time 0.
     ///
-    /// A free body moves exactly if nothing else is asked for. With no fixed step, runs with steps h, h/2, h/4 … until two of them agree within the tolerance in
-    /// the rotor (of size 1) and in the angular velocity relative to its largest size.
+    /// A free body moves exactly if nothing else is asked for. With no fixed step, runs with steps h, h/2,
+    /// h/4 … until two of them agree within the tolerance in the rotor (of size 1) and in the angular
+    /// velocity relative to its largest size.
     pub fn simulate(
         &self,
         times: &[f64],
@@ -191,7 +193,7 @@ impl Problem {
         check_horizon(times, motion.horizon())?;
         let phase = |&time: &f64| {
             let (rotor, omega) = motion.at(time);
-            Phase { rotor, momentum: Bivector([0, 1, 2].map(|k| self.moments[k] * omega.0[k])), time }
+            Phase { rotor, momentum: angular_momentum(self.moments, omega), time }
         };
         let states: Vec<Phase> = times.iter().map(phase).collect();
         let mut watch = self.watch();
@@ -209,7 +211,7 @@ impl Problem {
     /// A pass in body axes, with its certificate.
     fn motion(&self, pass: Pass, method: &'static str, error_estimate: Option<f64>, steps: u64) -> Motion {
         let (states, frame) = (pass.states, self.frame);
-        let omega = |s: &Phase| Bivector([0, 1, 2].map(|k| s.momentum.0[k] / self.moments[k]));
+        let omega = |s: &Phase| angular_velocity(self.moments, s.momentum);
         let off_unit = |s: &Phase| s.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
         Motion {
             rotors: states.iter().map(|s| s.rotor * frame.reverse()).collect(),
@@ -257,8 +259,7 @@ impl Problem {
     }
 
     fn start(&self) -> Phase {
-        let momentum = Bivector([0, 1, 2].map(|k| self.moments[k] * self.omega.0[k]));
-        Phase { rotor: self.rotor, momentum, time: 0.0 }
+        Phase { rotor: self.rotor, momentum: angular_momentum(self.moments, self.omega), time: 0.0 }
     }
 
     fn pass(
@@ -324,7 +325,7 @@ impl Problem {
             steps += fine.steps;
             // The error of the finer run is about difference / 2^order; half the exponent is the margin.
             // Where rounding rules, the difference itself tells the error.
-            let difference = self.difference(stepper, &coarse, &fine);
+            let difference = self.difference(&coarse, &fine);
             let margin = f64::from(1 << (stepper.order() / 2));
             let error = (difference / margin).max(difference.min(ROUNDING_OF_RUNS));
             // Near convergence halving gains 2^order; gaining less than 2 is rounding.
@@ -342,8 +343,8 @@ impl Problem {
     }
 
     /// Largest difference of two runs in rotor and relative angular velocity.
-    fn difference(&self, stepper: &Stepper, coarse: &Pass, fine: &Pass) -> f64 {
-        let omega = |s: &Phase| stepper.omega(s.momentum);
+    fn difference(&self, coarse: &Pass, fine: &Pass) -> f64 {
+        let omega = |s: &Phase| angular_velocity(self.moments, s.momentum);
         let fastest = fine.states.iter().map(|s| omega(s).norm()).fold(f64::MIN_POSITIVE, f64::max);
         let apart = |(a, b): (&Phase, &Phase)| {
             let (r, s) = (a.rotor.components(), b.rotor.components());

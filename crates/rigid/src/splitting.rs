@@ -167,11 +167,6 @@ impl Stepper {
         self.method.order
     }
 
-    /// The angular velocity in principal axes, in rad/s.
-    pub fn omega(&self, momentum: Bivector) -> Bivector {
-        Bivector([0, 1, 2].map(|k| momentum.0[k] / self.moments[k]))
-    }
-
     /// The rate of the fastest turn, in rad/s, a scale for steps: each turn's for the largest momentum
     /// that the energy allows, `m_k² <= 2E i_k`, and the swing in the torque.
     pub fn fastest_rate(&self, start: &Phase) -> f64 {

@@ -34,11 +34,6 @@ impl SymmetricTop {
         Some(SymmetricTop { rotor, omega, left: momentum / i1, right })
     }
 
-    /// The constant bivectors `Ω_l` (in space) and `Ω_r` (in body axes), in rad/s.
-    pub fn rates(&self) -> (Bivector, Bivector) {
-        (self.left, self.right)
-    }
-
     /// Rotor and body angular velocity at time `t` in s. The angular velocity turns about the symmetry
     /// axis with `Ω_r`: `Ω_B(t) = exp(½Ω_r t) Ω_B(0) exp(−½Ω_r t)`.
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {

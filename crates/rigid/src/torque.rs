@@ -153,6 +153,16 @@ pub struct Phase {
     pub time: f64,
 }
 
+/// `I(Ω)` in principal axes.
+pub fn angular_momentum(moments: [f64; 3], omega: Bivector) -> Bivector {
+    Bivector([0, 1, 2].map(|k| moments[k] * omega.0[k]))
+}
+
+/// `I⁻¹(L)` in principal axes, for positive moments.
+pub fn angular_velocity(moments: [f64; 3], momentum: Bivector) -> Bivector {
+    Bivector([0, 1, 2].map(|k| momentum.0[k] / moments[k]))
+}
+
 /// `½ L·I⁻¹(L)`.
 pub fn kinetic(moments: [f64; 3], momentum: Bivector) -> f64 {
     let term = |k: usize| if momentum.0[k] == 0.0 { 0.0 } else { momentum.0[k] * momentum.0[k] / moments[k] };

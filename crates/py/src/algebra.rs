@@ -1,9 +1,10 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Array, Out, Rows, bad, filled, map_rows, numbers};
+use crate::signature::Algebra;
+use crate::arrays::{Array, Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill};
 use polhode_ga::batch::turn;
 use polhode_ga::functions::Function;
-use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::product::Grades;
 use polhode_ga::table::G3;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
 use pyo3::prelude::*;
@@ -16,29 +17,28 @@ fn check_rows(length: usize, size: usize, rows: usize) -> PyResult<()> {
     Err(bad(format!("an operand has {length} numbers, expected {size} or {}", rows * size)))
 }
 
-/// A product of rows `(n, K)`; a factor of one row meets every row of the other. Returns `(rows, M)` and
-/// the grades of the product as bits.
+/// Fills `out` with a product of rows of an algebra: `(n, K)` numbers of the grades given as bits. A factor
+/// of one row meets every row of the other.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn product<'py>(
     py: Python<'py>,
+    algebra: &Algebra,
     name: &str,
     a: Rows<'py>,
     a_grades: u16,
     b: Rows<'py>,
     b_grades: u16,
-    rows: usize,
-) -> PyResult<(Array<'py>, u16)> {
-    let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
-    if a_grades >= 16 || b_grades >= 16 {
-        return Err(bad("3-d space has grades 0 to 3"));
-    }
-    let plan = Plan::g3(product, Grades(a_grades), Grades(b_grades));
-    let (a, b) = (numbers(&a)?, numbers(&b)?);
+    mut out: RowsToFill<'py>,
+) -> PyResult<()> {
+    let plan = algebra.plan(name, a_grades, b_grades)?;
+    let (a, b, out) = (numbers(&a)?, numbers(&b)?, numbers_to_fill(&mut out)?);
     let (na, nb, nout) = plan.sizes;
     for (length, size) in [(a.len(), na), (b.len(), nb)] {
-        check_rows(length, size, rows)?;
+        check_rows(length, size, out.len() / nout)?;
     }
-    Ok((filled(py, [rows, nout], |out| plan.run(a, b, out))?, plan.grades.0))
+    py.detach(|| plan.run(a, b, out));
+    Ok(())
 }
 
 /// `inverse`, `exp`, `log` or `sqrt` of rows of eight components; also the grades of the values.
@@ -140,25 +140,26 @@ pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> 
     })
 }
 
-/// `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets every row
-/// of the other.
+/// Fills `out` with `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets
+/// every row of the other.
 #[pyfunction]
 pub(crate) fn rotor_apply<'py>(
     py: Python<'py>,
     rotors: Rows<'py>,
     values: Rows<'py>,
     grades: u16,
-    rows: usize,
-) -> Out<'py> {
+    mut out: RowsToFill<'py>,
+) -> PyResult<()> {
     if grades == 0 || grades >= 16 {
         return Err(bad("a value of 3-d space has some of the grades 0 to 3"));
     }
-    let (rotors, values) = (numbers(&rotors)?, numbers(&values)?);
+    let (rotors, values, out) = (numbers(&rotors)?, numbers(&values)?, numbers_to_fill(&mut out)?);
     let size = Grades(grades).indices(&G3).len();
     for (length, size) in [(rotors.len(), 4), (values.len(), size)] {
-        check_rows(length, size, rows)?;
+        check_rows(length, size, out.len() / size)?;
     }
-    filled(py, [rows, size], |out| turn(rotors, values, Grades(grades), out))
+    py.detach(|| turn(rotors, values, Grades(grades), out));
+    Ok(())
 }
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.

@@ -1,11 +1,14 @@
 //! Between NumPy arrays and fixed-size rows.
 
-use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// An array of float64 whose last axis holds the components, contiguous.
 pub(crate) type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
+
+/// An array to write to.
+pub(crate) type RowsToFill<'py> = PyReadwriteArrayDyn<'py, f64>;
 
 /// A new array of float64.
 pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -27,6 +30,14 @@ pub(crate) fn numbers<'a>(array: &'a Rows<'_>) -> PyResult<&'a [f64]> {
     Ok(array.as_slice()?)
 }
 
+/// The numbers of an array in C order, to be written.
+pub(crate) fn numbers_to_fill<'a>(array: &'a mut RowsToFill<'_>) -> PyResult<&'a mut [f64]> {
+    if !array.is_c_contiguous() {
+        return Err(bad("the array to fill is not C-contiguous"));
+    }
+    Ok(array.as_slice_mut()?)
+}
+
 /// A single row of N numbers.
 pub(crate) fn one<const N: usize>(row: &Rows<'_>) -> PyResult<[f64; N]> {
     let data = numbers(row)?;
@@ -45,22 +56,6 @@ pub(crate) fn table<'py, const N: usize>(
 ) -> Out<'py> {
     let shape = vec![rows.len(), N];
     PyArray1::from_vec(py, rows.flatten().collect()).reshape(shape)
-}
-
-/// A new array of shape (rows, size), filled while the GIL is released.
-///
-/// NumPy allocates it, which asks for huge pages where it is large: faulting in small ones costs several
-/// times the arithmetic of a product.
-pub(crate) fn filled<'py>(
-    py: Python<'py>,
-    [rows, size]: [usize; 2],
-    fill: impl FnOnce(&mut [f64]) + Send,
-) -> Out<'py> {
-    let array = PyArray2::zeros(py, [rows, size], false);
-    let mut target = array.readwrite();
-    let numbers = target.as_slice_mut()?;
-    py.detach(|| fill(numbers));
-    Ok(array.to_dyn().clone())
 }
 
 /// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.

@@ -6,7 +6,10 @@ mod algebra;
 mod arrays;
 mod bodies;
 mod motion;
+mod multivector;
+mod pool;
 mod scene;
+mod signature;
 
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
@@ -23,6 +26,13 @@ mod _native {
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
+
+    #[pymodule_export]
+    use crate::multivector::{Multivector, Rotor};
+    #[pymodule_export]
+    use crate::pool::{Buffer, buffer};
+    #[pymodule_export]
+    use crate::signature::{Algebra, g3_object};
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};

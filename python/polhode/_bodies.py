@@ -9,9 +9,9 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Array, as_components, as_float, as_floats
-from polhode._multivector import _BIVECTOR, Multivector
+from polhode._multivector import Multivector
 from polhode._rotor import Rotor
-from polhode._values import as_point, as_vectors, pure, vector
+from polhode._values import as_point, as_vectors, bivector, pure, vector
 
 
 class Inertia:
@@ -53,11 +53,11 @@ class Inertia:
 
     def __call__(self, B: Multivector) -> Multivector:
         """``I(B)``: the angular momentum of a rotation with angular velocity B, both in body axes."""
-        return Multivector._of(self._core.apply(pure(B, 2, "the plane of rotation")), _BIVECTOR)
+        return bivector(self._core.apply(pure(B, 2, "the plane of rotation")), copy=False)
 
     def inverse(self, L: Multivector) -> Multivector:
         """Return the angular velocity with angular momentum L; a ValueError if a principal moment is 0."""
-        return Multivector._of(self._core.inverse(pure(L, 2, "the angular momentum")), _BIVECTOR)
+        return bivector(self._core.inverse(pure(L, 2, "the angular momentum")), copy=False)
 
     @property
     def matrix(self) -> Array:

@@ -116,6 +116,6 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
     if wanted not in (np.float64, np.float32):
         raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
     try:
-        return given.astype(wanted)
+        return given.astype(wanted, copy=False)
     except (TypeError, OverflowError) as error:
         raise TypeError(f"{what} does not become {wanted}: {error}") from error

@@ -1,11 +1,11 @@
 //! The algebra over arrays: rows of components in, rows out.
 
 use crate::signature::Algebra;
-use crate::arrays::{Array, Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill};
+use crate::arrays::{Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill};
 use polhode_ga::batch::turn;
 use polhode_ga::functions::Function;
-use polhode_ga::product::Grades;
 use polhode_ga::table::G3;
+use polhode_ga::product::Grades;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
 use pyo3::prelude::*;
 
@@ -41,23 +41,14 @@ pub(crate) fn product<'py>(
     Ok(())
 }
 
-/// `inverse`, `exp`, `log` or `sqrt` of rows of eight components; also the grades of the values.
+/// `inverse`, `exp`, `log` or `sqrt` of rows of all components of an algebra.
 #[pyfunction]
-pub(crate) fn function<'py>(
-    py: Python<'py>,
-    name: &str,
-    m: Rows<'py>,
-    grades: u16,
-) -> PyResult<(Array<'py>, u16)> {
+pub(crate) fn function<'py>(py: Python<'py>, algebra: &Algebra, name: &str, m: Rows<'py>) -> Out<'py> {
     let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
-    let values = map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0))?;
-    Ok((values, f.grades(Grades(grades)).0))
-}
-
-/// Indices of the components of these grades among the eight.
-#[pyfunction]
-pub(crate) fn component_indices(grades: u16) -> Vec<usize> {
-    Grades(grades).indices(&G3)
+    if algebra.is_g3() {
+        return map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0));
+    }
+    Err(bad("not yet"))
 }
 
 /// Euclidean norms of the rows, without overflow on the way; the last axis has length 1.
@@ -128,6 +119,12 @@ pub(crate) fn rotor_to_matrix<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
 #[pyfunction]
 pub(crate) fn rotor_to_rotation_vector<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
     map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).to_rotation_vector().0))
+}
+
+/// Bivectors −Bθ/2 of rotors.
+#[pyfunction]
+pub(crate) fn rotor_log<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
+    map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).log().0))
 }
 
 /// Unit planes (3) and angles of rotors.

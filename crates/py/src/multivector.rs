@@ -401,11 +401,13 @@ impl Rotor {
     }
 }
 
-/// `R X ~R` of single values, other than rotors.
+/// `R X ~R` of single values.
 fn turned<'py>(rotor: &Bound<'py, Rotor>, x: &Bound<'py, PyAny>) -> Option<Object<'py>> {
     let rotor = rotor.as_super().get().single()?;
     match operand(x) {
-        Operand::Value(value, false) => Some(one(x.py(), value.turned(unit_rotor(rotor)))),
+        Operand::Value(value, unit) => {
+            Some(wrap(x.py(), Held::One(value.turned(unit_rotor(rotor))), unit))
+        }
         _ => None,
     }
 }

@@ -1,6 +1,7 @@
 //! The algebra of a signature: its basis, its products over arrays.
 
 use crate::arrays::bad;
+use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::table::{self, Signature};
 use pyo3::prelude::*;
@@ -45,6 +46,11 @@ impl Algebra {
         Ok(Arc::clone(plan))
     }
 
+    /// Whether it is the algebra of 3-d space.
+    pub fn is_g3(&self) -> bool {
+        self.table.signature() == table::G3.signature()
+    }
+
     /// A set of grades of this algebra.
     pub fn check(&self, grades: u16) -> PyResult<Grades> {
         let n = self.table.signature().generators();
@@ -86,6 +92,12 @@ impl Algebra {
     /// Indices of the components of these grades, as bits, among all.
     fn _indices(&self, grades: u16) -> PyResult<Vec<usize>> {
         Ok(self.check(grades)?.indices(&self.table))
+    }
+
+    /// The grades of `inverse`, `exp`, `log` or `sqrt` of values that hold these grades.
+    fn _grades_of_function(&self, name: &str, grades: u16) -> PyResult<u16> {
+        let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
+        Ok(f.grades(self.check(grades)?).0)
     }
 
     /// The grades of a product of values that hold these grades, and its number of components.

@@ -5,6 +5,7 @@
 
 use crate::product::{Grades, Plan, Term};
 use crate::rotor::Rotor;
+pub use crate::simd::Element;
 use crate::simd::{Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
 use crate::values::{Vector, geometric};
@@ -130,11 +131,11 @@ impl Plan {
     ///
     /// # Panics
     /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
-    pub fn run(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+    pub fn run<T: Element>(&self, a: &[T], b: &[T], out: &mut [T]) {
         self.run_on(Path::best(), a, b, out);
     }
 
-    fn run_on(&self, path: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
+    fn run_on<T: Element>(&self, path: Path, a: &[T], b: &[T], out: &mut [T]) {
         let (na, nb, nout) = self.sizes;
         if self.is_geometric {
             sweep(path, &Geometric(self), (a, na), (b, nb), (out, nout));
@@ -149,11 +150,11 @@ impl Plan {
 ///
 /// # Panics
 /// If there are no grades, or the numbers of rows do not fit together.
-pub fn turn(rotors: &[f64], values: &[f64], grades: Grades, out: &mut [f64]) {
+pub fn turn<T: Element>(rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
     turn_on(Path::best(), rotors, values, grades, out);
 }
 
-fn turn_on(path: Path, rotors: &[f64], values: &[f64], grades: Grades, out: &mut [f64]) {
+fn turn_on<T: Element>(path: Path, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
     let turn = Turn(grades);
     let size = turn.parts().map(|(_, width)| width).sum();
     sweep(path, &turn, (rotors, 4), (values, size), (out, size));
@@ -257,7 +258,7 @@ mod tests {
     /// A result that goes past the caches, wherever it begins in a cache line, is that of small pieces.
     #[test]
     fn streamed_results_are_the_same() {
-        let rows = STREAMED / 9 + 37;
+        let rows = STREAMED / 8 / 9 + 37;
         let (r, v) = (numbers(4 * rows, false), numbers(3 * rows, false));
         let piece = 1000;
         let mut expected = vec![0.0; 3 * rows];
@@ -273,6 +274,38 @@ mod tests {
                 let around = out[..offset].iter().chain(&out[offset + 3 * rows..]);
                 assert!(around.copied().all(|x| x == 0.5), "{path:?} {offset}");
             }
+        }
+    }
+
+    /// Rows of `f32` give the numbers of `f64` rounded once, few or many or streamed, on every path.
+    #[test]
+    fn single_precision_is_double_rounded() {
+        let streamed = STREAMED / 4 / 24 + 5;
+        let narrow = |x: &[f64]| x.iter().map(|&x| x as f32).collect::<Vec<f32>>();
+        let wide = |x: &[f32]| x.iter().map(|&x| x.into()).collect::<Vec<f64>>();
+        for (plan, rows) in [(Grades::ALL, streamed), (Grades::EVEN, 200), (Grades(0b0010), 200)]
+            .into_iter()
+            .flat_map(|(g, most)| {
+                let plan = Plan::g3(Product::Geometric, g, g);
+                ROWS[..10].iter().copied().chain([most]).map(move |rows| (plan, rows))
+            })
+        {
+            let (na, nb, nout) = plan.sizes;
+            let (a, b) = (narrow(&numbers(rows * na, true)), narrow(&numbers(rows * nb, false)));
+            let mut expected = vec![0.5; rows * nout];
+            plan.run(&wide(&a), &wide(&b), &mut expected);
+            for path in Path::available() {
+                let mut out = vec![0.5_f32; rows * nout + 1];
+                plan.run_on(path, &a, &b, &mut out[1..]);
+                assert_same(&wide(&out[1..]), &wide(&narrow(&expected)), &format!("{path:?} {rows}"));
+            }
+        }
+        for path in Path::available() {
+            let (r, x) = (narrow(&numbers(4, false)), narrow(&numbers(8 * 70, false)));
+            let (mut out, mut expected) = (vec![0.5_f32; 8 * 70], vec![0.5; 8 * 70]);
+            turn_on(path, &r, &x, Grades::ALL, &mut out);
+            turn(&wide(&r), &wide(&x), Grades::ALL, &mut expected);
+            assert_same(&wide(&out), &wide(&narrow(&expected)), &format!("{path:?}"));
         }
     }
 

@@ -4,6 +4,7 @@
 
 use polhode_ga::batch::{Element, turn};
 use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::threads::Threads;
 use std::time::Instant;
 
 const VECTOR: Grades = Grades(0b0010);
@@ -36,12 +37,14 @@ fn line<T: Element>(what: &str, rows: usize, read: usize, written: usize, work: 
 }
 
 /// A product of rows by rows, or by one row where `nb` is 1.
-fn product<T: Element>(what: &str, rows: usize, ga: Grades, gb: Grades, rows_b: usize) {
+fn product<T: Element>(what: &str, rows: usize, ga: Grades, gb: Grades, rows_b: usize, threads: Threads) {
     let plan = Plan::g3(Product::Geometric, ga, gb);
     let (na, nb, nout) = plan.sizes;
     let (a, b) = (numbers::<T>(rows * na), numbers::<T>(rows_b * nb));
     let mut out = numbers::<T>(rows * nout);
-    line::<T>(what, rows, na + if rows_b == 1 { 0 } else { nb }, nout, || plan.run(&a, &b, &mut out));
+    line::<T>(what, rows, na + if rows_b == 1 { 0 } else { nb }, nout, || {
+        plan.run_threads(threads, &a, &b, &mut out);
+    });
 }
 
 /// `R X ~R` for rows of vectors and rotors, one or many.
@@ -55,12 +58,14 @@ fn main() {
     let asked = std::env::args().nth(1).and_then(|rows| rows.parse().ok());
     for rows in asked.map_or(vec![1_000_000, 1_000], |rows| vec![rows]) {
         println!("{:<34}{:>11}{:>11}{:>9}", format!("{rows} rows"), "ours", "copy", "of copy");
-        product::<f64>("full * full", rows, Grades::ALL, Grades::ALL, rows);
-        product::<f32>("full * full, f32", rows, Grades::ALL, Grades::ALL, rows);
-        product::<f64>("full * one full", rows, Grades::ALL, Grades::ALL, 1);
-        product::<f64>("rotor * rotor", rows, Grades::EVEN, Grades::EVEN, rows);
-        product::<f64>("vector * vector", rows, VECTOR, VECTOR, rows);
-        product::<f64>("rotor * vector", rows, Grades::EVEN, VECTOR, rows);
+        product::<f64>("full * full", rows, Grades::ALL, Grades::ALL, rows, Threads::ONE);
+        let all = Threads::available();
+        product::<f64>("full * full, all threads", rows, Grades::ALL, Grades::ALL, rows, all);
+        product::<f32>("full * full, f32", rows, Grades::ALL, Grades::ALL, rows, Threads::ONE);
+        product::<f64>("full * one full", rows, Grades::ALL, Grades::ALL, 1, Threads::ONE);
+        product::<f64>("rotor * rotor", rows, Grades::EVEN, Grades::EVEN, rows, Threads::ONE);
+        product::<f64>("vector * vector", rows, VECTOR, VECTOR, rows, Threads::ONE);
+        product::<f64>("rotor * vector", rows, Grades::EVEN, VECTOR, rows, Threads::ONE);
         turning::<f64>("R v ~R", rows, rows);
         turning::<f32>("R v ~R, f32", rows, rows);
         turning::<f64>("one R, many v", rows, 1);

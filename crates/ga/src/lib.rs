@@ -15,7 +15,7 @@
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`values`] (`Vector`, `Bivector`, `Trivector`,
+//! keeps), [`batch`] (any product over rows of numbers), [`threads`], [`values`] (`Vector`, `Bivector`, `Trivector`,
 //! `Multivector`), [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`pauli`].
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
@@ -30,6 +30,7 @@ pub mod rotor;
 mod simd;
 mod sweep;
 pub mod table;
+pub mod threads;
 pub mod values;
 
 pub use functions::MathError;

@@ -64,7 +64,7 @@ impl Element for f32 {
 }
 
 /// A function of two rows. Both ways of computing it give the same numbers.
-pub(crate) trait Kernel {
+pub(crate) trait Kernel: Sync {
     /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
     const FAST_ROWS: bool = false;
 

@@ -5,6 +5,8 @@
 //! is memory: rows are asked for ahead of time, and results go past the caches.
 
 use crate::simd::{Element, Kernel, LANES, Lane, Path, in_line, to_next_line};
+use crate::threads::Threads;
+use std::ops::Range;
 
 /// Below so many rows, turning them into lanes does not pay.
 const FEW: usize = 8;
@@ -12,7 +14,11 @@ const FEW: usize = 8;
 /// From so many bytes on, factors and product together, the product goes past the caches.
 pub(crate) const STREAMED: usize = 16 << 20;
 
+/// A thread more pays from so many numbers for each on; they take three times as long as it takes to start.
+const SHARED: usize = 1 << 19;
+
 /// Rows of a factor: one for all, or one for each.
+#[derive(Clone, Copy)]
 struct Factor<'a, T> {
     data: &'a [T],
     size: usize,
@@ -24,6 +30,13 @@ impl<'a, T: Element> Factor<'a, T> {
         let one = data.len() == size;
         assert!(one || data.len() == total * size, "a factor has the wrong length");
         Factor { data, size, one }
+    }
+
+    /// Those rows alone.
+    fn piece(self, rows: Range<usize>) -> Factor<'a, T> {
+        let data =
+            if self.one { self.data } else { &self.data[rows.start * self.size..rows.end * self.size] };
+        Factor { data, ..self }
     }
 
     fn rows(&self, first: usize, count: usize) -> &[T] {
@@ -74,7 +87,7 @@ impl<T: Element> Stream<'_, T> {
 }
 
 /// Applies a kernel to the rows one by one.
-fn by_rows<T: Element, K: Kernel>(kernel: &K, a: &Factor<T>, b: &Factor<T>, (out, nout): (&mut [T], usize)) {
+fn by_rows<T: Element, K: Kernel>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, nout): (&mut [T], usize)) {
     let mut numbers = vec![0.0; a.size + b.size + nout];
     let (x, rest) = numbers.split_at_mut(a.size);
     let (y, z) = rest.split_at_mut(b.size);
@@ -94,6 +107,7 @@ fn by_rows<T: Element, K: Kernel>(kernel: &K, a: &Factor<T>, b: &Factor<T>, (out
 /// Applies a kernel to all rows of `(numbers, numbers in a row)`.
 pub(crate) fn sweep<T: Element, K: Kernel>(
     path: Path,
+    threads: Threads,
     kernel: &K,
     (a, na): (&[T], usize),
     (b, nb): (&[T], usize),
@@ -102,14 +116,29 @@ pub(crate) fn sweep<T: Element, K: Kernel>(
     let total = out.len() / nout;
     assert_eq!(out.len(), total * nout, "the result is not a whole number of rows");
     let (a, b) = (Factor::new(a, na, total), Factor::new(b, nb, total));
-    if total < FEW || K::FAST_ROWS && path.is_portable() {
-        return by_rows(kernel, &a, &b, (out, nout));
-    }
     let bytes = size_of_val(a.data) + size_of_val(b.data) + size_of_val(out);
     let streamed = !path.is_portable() && bytes >= STREAMED;
-    let mut lanes = vec![Lane::filled(0.0); na + nb + nout + if streamed { nout + 1 } else { 0 }];
-    let (a_lanes, rest) = lanes.split_at_mut(na);
-    let (b_lanes, rest) = rest.split_at_mut(nb);
+    threads.for_each_piece(SHARED / (na + nb + nout), nout, out, |rows, out| {
+        let (a, b) = (a.piece(rows.clone()), b.piece(rows));
+        sweep_piece(path, streamed, kernel, a, b, (out, nout));
+    });
+}
+
+fn sweep_piece<T: Element, K: Kernel>(
+    path: Path,
+    streamed: bool,
+    kernel: &K,
+    a: Factor<T>,
+    b: Factor<T>,
+    (out, nout): (&mut [T], usize),
+) {
+    let total = out.len() / nout;
+    if total < FEW || K::FAST_ROWS && path.is_portable() {
+        return by_rows(kernel, a, b, (out, nout));
+    }
+    let mut lanes = vec![Lane::filled(0.0); a.size + b.size + nout + if streamed { nout + 1 } else { 0 }];
+    let (a_lanes, rest) = lanes.split_at_mut(a.size);
+    let (b_lanes, rest) = rest.split_at_mut(b.size);
     let (out_lanes, buffer) = rest.split_at_mut(nout);
     let mut block = |first, count, out: &mut [Lane]| {
         a.load(path, first, count, a_lanes);

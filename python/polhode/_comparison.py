@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _coefficients
 from polhode._arrays import is_float
+from polhode._coefficients import common
+from polhode._generic.coefficients import of
 from polhode._parts import with_grades
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def equal(a: Multivector, b: Multivector) -> Any:
     same = left == right
     if isinstance(left, np.ndarray):
         return np.asarray(same, dtype=bool).all(axis=-1)[()]
-    return _coefficients.of(left).all(same)
+    return of(left).xp.all(same, axis=-1)
 
 
 def negated(same: Any) -> Any:
@@ -36,7 +37,7 @@ def close(a: Multivector, b: Multivector, rtol: float, atol: float) -> Any:
         raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
     left, right = _same_grades(a, b)
     if not isinstance(left, np.ndarray):
-        return _coefficients.of(left).close(left, right, rtol, atol)
+        return _close_foreign(of(left).xp, left, right, rtol, atol)
     if left.dtype == object:
         left, right = _as_floats(left), _as_floats(right)
     left, right = np.broadcast_arrays(left, right)
@@ -51,12 +52,22 @@ def close(a: Multivector, b: Multivector, rtol: float, atol: float) -> Any:
     return np.logical_or(near, equal(a, b))[()]
 
 
+def _close_foreign(xp: Any, left: Any, right: Any, rtol: float, atol: float) -> Any:
+    """Like `close` for arrays of another library, which may not say whether they are finite."""
+
+    def length(x: Any) -> Any:
+        return xp.sqrt(xp.sum(x * x, axis=-1))
+
+    size = xp.maximum(length(left), length(right))
+    return length(left - right) <= xp.maximum(rtol * size, xp.full_like(size, atol))
+
+
 def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
     mask = a._mask | b._mask
     left, right = with_grades(a, mask), with_grades(b, mask)
     if is_float(left) and is_float(right):
         return left, right
-    return _coefficients.common(left, right)  # type: ignore[return-value]
+    return common(left, right)  # type: ignore[return-value]
 
 
 def _as_floats(data: Any) -> Any:

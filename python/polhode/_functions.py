@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _coefficients, _native, _parts
+from polhode import _native, _parts
 from polhode._arrays import Array, is_float, mapped
+from polhode._coefficients import common
 from polhode._generic import functions as generic
-from polhode._generic import general
+from polhode._generic.coefficients import of
 from polhode._products import coerced
 
 if TYPE_CHECKING:
@@ -33,9 +34,9 @@ def divided(value: Multivector, other: Any) -> Multivector:
             raise ZeroDivisionError(
                 "division of a multivector by zero" + (f" at index {index}" if index else "")
             )
-    a, b = _coefficients.common(value._data, divisor._data)
+    a, b = common(value._data, divisor._data)
     with np.errstate(over="ignore", invalid="ignore"):
-        quotient = _coefficients.divided(a, b)
+        quotient = a / b if is_float(a) else of(a, b).divide(a, b)
     return _native.Multivector._of(quotient, value._mask, value.algebra)
 
 
@@ -50,7 +51,8 @@ def power(value: Multivector, n: Any) -> Multivector:
     base = value.inverse() if exponent < 0 else value
     exponent = abs(exponent)
     if exponent == 0:
-        one = _coefficients.of(value._data).ones_like(value._data[..., :1])
+        first = value._data[..., :1]
+        one = np.ones_like(first) if is_float(first) else of(first).zeros_like(first) + 1
         return _native.Multivector._of(one, 1, value.algebra)
     result: Multivector | None = None
     while True:
@@ -68,27 +70,37 @@ def norm_squared(value: Multivector) -> Any:
     if is_float(data):
         with np.errstate(over="ignore"):
             return (np.square(data) * signs).sum(axis=-1)[()]
-    return generic.weighted_squares(data, signs)
+    return value.scalar_product(~value)._data[..., 0]
 
 
 def norm(value: Multivector) -> Any:
     """``√abs⟨A ~A⟩``, of the batch shape."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
-        return generic.weighted_norm(data, signs)
-    if min(signs) > 0:
-        return mapped(_native.norm, data)[..., 0][()]
+        kind = of(data)
+        return generic.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
+    if min(signs) > 0 and len(signs) <= 8:
+        return mapped(_native.norm, _padded(data))[..., 0][()]
     # In units of the largest component, so that nothing overflows.
     unit = np.abs(data).max(axis=-1, keepdims=True)
     unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
     return (np.sqrt(np.abs((np.square(data / unit) * signs).sum(axis=-1))) * unit[..., 0])[()]
 
 
+def _padded(data: Array) -> Array:
+    """Return rows of eight: zeros follow."""
+    wide = np.zeros((*data.shape[:-1], 8), dtype=data.dtype)
+    wide[..., : data.shape[-1]] = data
+    return wide
+
+
 def normalized(value: Multivector) -> Multivector:
     """``A/|A|``, with an error for the first value that has no direction."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
-        return value._of(generic.normalized(data, signs), value._mask, value.algebra)
+        if min(signs) > 0:
+            return value._like(generic.normalized(of(data), data))
+        return value / coerced(norm(value), value)
     # Scaling by the largest component first keeps subnormal values accurate.
     largest = np.abs(data).max(axis=-1, keepdims=True)
     usable = np.isfinite(largest) & (largest > 0)
@@ -96,7 +108,7 @@ def normalized(value: Multivector) -> Multivector:
     size = np.sqrt(np.abs((np.square(scaled) * signs).sum(axis=-1, keepdims=True)))
     # Where squares cancel, a size below this is rounding.
     _require((usable & (size > 8 * np.finfo(data.dtype).eps))[..., 0], "has no direction (norm {})", value)
-    return value._of(scaled / size, value._mask, value.algebra)
+    return value._like(scaled / size)
 
 
 def _require(ok: Any, what: str, value: Multivector) -> None:
@@ -119,9 +131,9 @@ def _function(name: str, value: Multivector) -> Multivector:
 
         result = mapped(native, _parts.with_grades(value, algebra._all))
     elif algebra.signature == (3, 0, 0):
-        result, mask = getattr(generic, name)(data, value._mask)
+        result, mask = getattr(generic, name)(of(data), data, value._mask)
     else:
-        result, mask = general.function(name, algebra, data, value._mask)
+        raise TypeError("not yet")
     return _native.Multivector._of(result, mask, algebra)
 
 

@@ -130,6 +130,12 @@ class Multivector(_native.Multivector):
             )
         return float(self._data[0])
 
+    def _sympy_(self) -> Any:
+        """Tell SymPy that this is no expression, so that ``x*e1`` comes to this class."""
+        from sympy import SympifyError
+
+        raise SympifyError(type(self).__name__)
+
     def __repr__(self) -> str:
         return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
 

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _coefficients, _native
+from polhode import _native
 from polhode._arrays import Shape, is_float
+from polhode._coefficients import common
+from polhode._generic.coefficients import of
 from polhode._products import coerced, common_algebra
 
 if TYPE_CHECKING:
@@ -28,9 +30,9 @@ def with_grades(value: Multivector, mask: int) -> Any:
         full[..., held] = data
         return np.ascontiguousarray(full[..., wanted])
     place = {index: k for k, index in enumerate(held)}
-    coefficients = _coefficients.of(data)
-    zero = coefficients.zeros_like(data[..., 0])
-    return coefficients.stack([data[..., place[i]] if i in place else zero for i in wanted])
+    kind = of(data)
+    zero = kind.zeros_like(data[..., 0])
+    return kind.stack([data[..., place[i]] if i in place else zero for i in wanted])
 
 
 def held(value: Multivector) -> int:
@@ -50,7 +52,7 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
         return NotImplemented
     algebra = common_algebra(left, other)
     mask = left._mask | other._mask
-    a, b = _coefficients.common(with_grades(left, mask), with_grades(other, mask))
+    a, b = common(with_grades(left, mask), with_grades(other, mask))
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         return _native.Multivector._of(combine(a, b), mask, algebra)
 
@@ -63,7 +65,7 @@ def signed(value: Multivector, negative: Callable[[int], bool]) -> Multivector:
     if is_float(data):
         return value._like(np.where(np.array(signs) < 0, -data, data))
     parts = [data[..., k] if sign > 0 else -data[..., k] for k, sign in enumerate(signs)]
-    return value._like(_coefficients.of(data).stack(parts))
+    return value._like(of(data).stack(parts))
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
@@ -101,7 +103,7 @@ def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:
     if len(shapes) > 1:
         raise ValueError(f"stack needs values of one batch shape, got {_listed(shapes)}")
     axis = _batch_axis(axis, len(next(iter(shapes))) + 1)
-    return build(_coefficients.of(*parts).join(parts, axis))
+    return build(_library(parts).stack(parts, axis=axis))
 
 
 def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:
@@ -113,7 +115,12 @@ def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:
     axis = _batch_axis(axis, dimensions.pop())
     if len({shape[:axis] + shape[axis + 1 :] for shape in shapes}) > 1:
         raise ValueError(f"the batch shapes differ elsewhere than in axis {axis}: {_listed(shapes)}")
-    return build(_coefficients.of(*parts).concatenate(parts, axis))
+    return build(_library(parts).concat(parts, axis=axis))
+
+
+def _library(arrays: list[Any]) -> Any:
+    """Return the namespace that joins these arrays; NumPy's also for exact coefficients."""
+    return np if isinstance(arrays[0], np.ndarray) else of(*arrays).xp
 
 
 def _listed(shapes: Iterable[Shape]) -> str:
@@ -140,7 +147,7 @@ def _unified(values: Iterable[Multivector], name: str) -> tuple[list[Any], set[S
     for item in items:
         algebra = common_algebra(items[0], item)
         mask |= item._mask
-    parts = list(_coefficients.common(*(with_grades(item, mask) for item in items)))
+    parts = list(common(*(with_grades(item, mask) for item in items)))
     if all(isinstance(item, _native.Rotor) for item in items):
         return parts, {item.shape for item in items}, _native.Rotor._from_rows
     return parts, {item.shape for item in items}, lambda data: _native.Multivector._of(data, mask, algebra)

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _coefficients, _native
+from polhode import _native
 from polhode._arrays import Array, Shape, common_batch, is_float, new, rows
+from polhode._coefficients import scalars
 from polhode._generic import products as generic
+from polhode._generic.coefficients import of
 
 if TYPE_CHECKING:
     from polhode._multivector import Multivector
@@ -23,13 +25,15 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
         if out is not None:
             raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
         terms, _ = algebra._terms(name, left._mask, right._mask)
-        return left._of(generic.product(terms, size, a, b), mask, algebra)
+        kind = of(a, b)
+        result = generic.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
+        return _native.Multivector._of(result, mask, algebra)
     batch = common_batch(left.shape, right.shape)
     dtype = np.result_type(a, b)
     a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
     result = result_array((*batch, size), dtype, (a, b), out)
     _native.product(algebra, name, a, left._mask, b, right._mask, result)
-    return left._of(result, mask, algebra)
+    return _native.Multivector._of(result, mask, algebra)
 
 
 def result_array(shape: Shape, dtype: Any, operands: tuple[Array, ...], out: Any) -> Array:
@@ -59,7 +63,7 @@ def coerced(value: Any, like: Multivector | None = None) -> Multivector | None:
     """Return a multivector; a number or an array becomes scalars of the algebra of `like`; else None."""
     if isinstance(value, _native.Multivector):
         return value
-    data = _coefficients.scalars(value, like._data if like is not None else None)
+    data = scalars(value, like._data if like is not None else None)
     if data is None:
         return None
     return _native.Multivector._of(data, 1, like.algebra if like is not None else None)

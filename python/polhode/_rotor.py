@@ -10,7 +10,8 @@ from polhode import _functions, _native
 from polhode._arrays import Array, Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
 from polhode._coefficients import as_coefficients, common
 from polhode._extras import optional
-from polhode._generic import rotors as generic
+from polhode._generic.coefficients import of
+generic: Any = None
 from polhode._joined import joins
 from polhode._multivector import Multivector
 from polhode._products import coerced, common_algebra, result_array
@@ -36,11 +37,12 @@ def _computed(name: str, *operands: Any) -> Any:
     """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
     if all(map(is_float, operands)):
         return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
-    return generic.computed(name, *common(*operands))
+    kind = of(*operands)
+    return getattr(generic, name)(kind, *map(kind.asarray, operands))
 
 
 @joins(_native.Rotor)
-class Rotor(Multivector, _native.Rotor):
+class Rotor(_native.Rotor, Multivector):
     """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
 
     Active: ``R(X) = R X ~R`` for X of any grade; ``S*R`` turns by R first. Components
@@ -163,7 +165,7 @@ class Rotor(Multivector, _native.Rotor):
         if not (is_float(a) and is_float(b)):
             if out is not None:
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {value.dtype}")
-            return value._like(generic.apply(*common(a, b), value._mask))
+            return value._like(generic.apply(of(a, b), *common(a, b), value._mask))
         batch, dtype = common_batch(self.shape, value.shape), np.result_type(a, b)
         a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
         result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)

@@ -15,9 +15,9 @@
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`values`] (`Vector`, `Bivector`, `Trivector`,
-//! `Multivector`), [`graded`] (a value that carries its grades), [`rotor`] (rotations), [`functions`]
-//! (inverse, exp, log, square root), [`pauli`].
+//! keeps), [`batch`] (any product over rows of numbers), [`threads`], [`values`] (`Vector`, `Bivector`,
+//! `Trivector`, `Multivector`), [`graded`] (a value that carries its grades), [`rotor`] (rotations),
+//! [`functions`] (inverse, exp, log, square root), [`pauli`].
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
@@ -32,6 +32,7 @@ pub mod rotor;
 mod simd;
 mod sweep;
 pub mod table;
+pub mod threads;
 pub mod values;
 
 pub use functions::MathError;

@@ -1,10 +1,12 @@
 //! The algebra over arrays: rows of components in, rows out.
 
 use crate::signature::Algebra;
-use crate::arrays::{Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill};
-use polhode_ga::batch::turn;
+use crate::arrays::{Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill, threads};
+use numpy::PyArrayDyn;
+use polhode_ga::batch::{Element, turn_threads};
 use polhode_ga::functions::Function;
 use polhode_ga::table::G3;
+use polhode_ga::threads::Threads;
 use polhode_ga::product::Grades;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
 use pyo3::prelude::*;
@@ -18,26 +20,47 @@ fn check_rows(length: usize, size: usize, rows: usize) -> PyResult<()> {
 }
 
 /// Fills `out` with a product of rows of an algebra: `(n, K)` numbers of the grades given as bits. A factor
-/// of one row meets every row of the other.
+/// of one row meets every row of the other. All three hold float64, or float32.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn product<'py>(
     py: Python<'py>,
     algebra: &Algebra,
     name: &str,
-    a: Rows<'py>,
+    a: &Bound<'py, PyAny>,
     a_grades: u16,
-    b: Rows<'py>,
+    b: &Bound<'py, PyAny>,
     b_grades: u16,
-    mut out: RowsToFill<'py>,
+    out: &Bound<'py, PyAny>,
 ) -> PyResult<()> {
     let plan = algebra.plan(name, a_grades, b_grades)?;
-    let (a, b, out) = (numbers(&a)?, numbers(&b)?, numbers_to_fill(&mut out)?);
-    let (na, nb, nout) = plan.sizes;
-    for (length, size) in [(a.len(), na), (b.len(), nb)] {
-        check_rows(length, size, out.len() / nout)?;
+    if is_single(out) {
+        return fill::<f32>(py, plan.sizes, [a, b, out], |t, a, b, out| plan.run_threads(t, a, b, out));
     }
-    py.detach(|| plan.run(a, b, out));
+    fill::<f64>(py, plan.sizes, [a, b, out], |t, a, b, out| plan.run_threads(t, a, b, out))
+}
+
+/// Whether an array is of float32.
+fn is_single(array: &Bound<'_, PyAny>) -> bool {
+    array.cast::<PyArrayDyn<f32>>().is_ok()
+}
+
+/// Fills an array from the rows of two others.
+fn fill<T: Element + numpy::Element>(
+    py: Python<'_>,
+    (na, nb, nout): (usize, usize, usize),
+    [a, b, out]: [&Bound<'_, PyAny>; 3],
+    work: impl Fn(Threads, &[T], &[T], &mut [T]) + Sync,
+) -> PyResult<()> {
+    let (a, b): (Rows<'_, T>, Rows<'_, T>) = (a.extract()?, b.extract()?);
+    let mut out: RowsToFill<'_, T> = out.extract()?;
+    let (a, b, out) = (numbers(&a)?, numbers(&b)?, numbers_to_fill(&mut out)?);
+    let rows = out.len() / nout;
+    for (length, size) in [(a.len(), na), (b.len(), nb)] {
+        check_rows(length, size, rows)?;
+    }
+    let threads = threads(out.len())?;
+    py.detach(|| work(threads, a, b, out));
     Ok(())
 }
 
@@ -138,25 +161,25 @@ pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> 
 }
 
 /// Fills `out` with `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets
-/// every row of the other.
+/// every row of the other. All three hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_apply<'py>(
     py: Python<'py>,
-    rotors: Rows<'py>,
-    values: Rows<'py>,
+    rotors: &Bound<'py, PyAny>,
+    values: &Bound<'py, PyAny>,
     grades: u16,
-    mut out: RowsToFill<'py>,
+    out: &Bound<'py, PyAny>,
 ) -> PyResult<()> {
     if grades == 0 || grades >= 16 {
         return Err(bad("a value of 3-d space has some of the grades 0 to 3"));
     }
-    let (rotors, values, out) = (numbers(&rotors)?, numbers(&values)?, numbers_to_fill(&mut out)?);
-    let size = Grades(grades).indices(&G3).len();
-    for (length, size) in [(rotors.len(), 4), (values.len(), size)] {
-        check_rows(length, size, out.len() / size)?;
+    let grades = Grades(grades);
+    let size = grades.indices(&G3).len();
+    let (sizes, arrays) = ((4, size, size), [rotors, values, out]);
+    if is_single(out) {
+        return fill::<f32>(py, sizes, arrays, |t, r, v, out| turn_threads(t, r, v, grades, out));
     }
-    py.detach(|| turn(rotors, values, Grades(grades), out));
-    Ok(())
+    fill::<f64>(py, sizes, arrays, |t, r, v, out| turn_threads(t, r, v, grades, out))
 }
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.

@@ -1,14 +1,15 @@
 //! Between NumPy arrays and fixed-size rows.
 
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use polhode_ga::threads::Threads;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// An array of float64 whose last axis holds the components, contiguous.
-pub(crate) type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
+pub(crate) type Rows<'py, T = f64> = PyReadonlyArrayDyn<'py, T>;
 
 /// An array to write to.
-pub(crate) type RowsToFill<'py> = PyReadwriteArrayDyn<'py, f64>;
+pub(crate) type RowsToFill<'py, T = f64> = PyReadwriteArrayDyn<'py, T>;
 
 /// A new array of float64.
 pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -23,7 +24,7 @@ pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {
 
 /// The numbers of an array in C order. An array in any other order is refused: `as_slice` alone would
 /// also take one in Fortran order, and its rows for columns.
-pub(crate) fn numbers<'a>(array: &'a Rows<'_>) -> PyResult<&'a [f64]> {
+pub(crate) fn numbers<'a, T: Element>(array: &'a Rows<'_, T>) -> PyResult<&'a [T]> {
     if !array.is_c_contiguous() {
         return Err(bad("the array is not C-contiguous"));
     }
@@ -31,11 +32,29 @@ pub(crate) fn numbers<'a>(array: &'a Rows<'_>) -> PyResult<&'a [f64]> {
 }
 
 /// The numbers of an array in C order, to be written.
-pub(crate) fn numbers_to_fill<'a>(array: &'a mut RowsToFill<'_>) -> PyResult<&'a mut [f64]> {
+pub(crate) fn numbers_to_fill<'a, T: Element>(array: &'a mut RowsToFill<'_, T>) -> PyResult<&'a mut [T]> {
     if !array.is_c_contiguous() {
         return Err(bad("the array to fill is not C-contiguous"));
     }
     Ok(array.as_slice_mut()?)
+}
+
+/// Arrays of fewer numbers are not worth asking the system how many threads there are.
+const SHARED: usize = 1 << 16;
+
+/// How many threads may share an array of so many numbers: `POLHODE_NUM_THREADS`, or as many as run at a time.
+pub(crate) fn threads(numbers: usize) -> PyResult<Threads> {
+    if numbers < SHARED {
+        return Ok(Threads::ONE);
+    }
+    match std::env::var("POLHODE_NUM_THREADS") {
+        Err(std::env::VarError::NotPresent) => Ok(Threads::available()),
+        Err(error) => Err(bad(error)),
+        Ok(text) => match text.trim().parse() {
+            Ok(count) if count > 0 => Ok(Threads::new(count)),
+            _ => Err(bad(format!("POLHODE_NUM_THREADS must be a whole number from 1 on, got {text:?}"))),
+        },
+    }
 }
 
 /// A single row of N numbers.

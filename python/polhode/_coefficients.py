@@ -23,7 +23,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     libraries stay theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
     """
     if isinstance(values, _native.Multivector):
-        raise TypeError(f"{what} needs numbers, got a multivector; pass its .components")
+        raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
     if dtype is not None:
         return _converted(values, what, dtype)
     if is_float(values):
@@ -39,10 +39,9 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
             return kind.asarray(values)
     array = _as_array(values, what)
     if array.dtype == object and _is_exact(array, isinstance(values, np.ndarray)):
-        return of(array).asarray(array)
+        return _exact(array, what)
     if array.dtype.kind in "iu" and not _fits_floats(array):
-        exact = array.astype(object)
-        return of(exact).asarray(exact)
+        return _exact(array.astype(object), what)
     return as_floats(array, what)
 
 
@@ -75,6 +74,14 @@ def common(*arrays: Any) -> tuple[Any, ...]:
         return arrays
     kind = of(*arrays)
     return tuple(kind.asarray(array) for array in arrays)
+
+
+def _exact(array: Any, what: str) -> Any:
+    """Return an array of objects, each of them a number or an expression."""
+    try:
+        return of(array).asarray(array)
+    except TypeError as error:
+        raise TypeError(f"{what} must be real numbers or expressions: {error}") from None
 
 
 def _leaves(values: Any) -> Iterator[Any]:
@@ -111,8 +118,7 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
         return given.astype(dtype)
     wanted = np.dtype(dtype)
     if wanted == object:
-        exact = given.astype(object)
-        return of(exact).asarray(exact)
+        return _exact(given.astype(object), what)
     if wanted not in (np.float64, np.float32):
         raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
     try:

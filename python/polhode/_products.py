@@ -21,17 +21,23 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
     algebra = common_algebra(left, right)
     mask, size = algebra._result(name, left._mask, right._mask)
     a, b = left._data, right._data
+    rotors = name == "geometric" and isinstance(left, _native.Rotor) and isinstance(right, _native.Rotor)
     if not (is_float(a) and is_float(b)):
         if out is not None:
             raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
         terms, _ = algebra._terms(name, left._mask, right._mask)
         kind = of(a, b)
         result = generic.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
+        if rotors:
+            return _native.Rotor._from_rows(generic_rotors.from_components(kind, result))
         return _native.Multivector._of(result, mask, algebra)
     batch = common_batch(left.shape, right.shape)
     dtype = np.result_type(a, b)
     a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
     result = result_array((*batch, size), dtype, (a, b), out)
+    if rotors:
+        _native.rotor_compose(a, b, result)
+        return _native.Rotor._from_rows(result)
     _native.product(algebra, name, a, left._mask, b, right._mask, result)
     return _native.Multivector._of(result, mask, algebra)
 

@@ -15,7 +15,7 @@
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`threads`], [`values`] (`Vector`, `Bivector`,
+//! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`threads`], [`values`] (`Vector`, `Bivector`,
 //! `Trivector`, `Multivector`), [`graded`] (a value that carries its grades), [`rotor`] (rotations),
 //! [`functions`] (inverse, exp, log, square root), [`pauli`].
 //!
@@ -24,6 +24,7 @@
 
 pub mod batch;
 mod complex;
+pub mod compose;
 pub mod functions;
 pub mod graded;
 pub mod pauli;

@@ -4,6 +4,7 @@ use crate::signature::Algebra;
 use crate::arrays::{Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill, threads};
 use numpy::PyArrayDyn;
 use polhode_ga::batch::{Element, turn_threads};
+use polhode_ga::compose::compose;
 use polhode_ga::functions::Function;
 use polhode_ga::table::G3;
 use polhode_ga::threads::Threads;
@@ -180,6 +181,22 @@ pub(crate) fn rotor_apply<'py>(
         return fill::<f32>(py, sizes, arrays, |t, r, v, out| turn_threads(t, r, v, grades, out));
     }
     fill::<f64>(py, sizes, arrays, |t, r, v, out| turn_threads(t, r, v, grades, out))
+}
+
+/// Fills `out` with the products of rows of rotors (n, 4), of norm 1; one row of either meets every row of
+/// the other. All three hold float64, or float32.
+#[pyfunction]
+pub(crate) fn rotor_compose<'py>(
+    py: Python<'py>,
+    left: &Bound<'py, PyAny>,
+    right: &Bound<'py, PyAny>,
+    out: &Bound<'py, PyAny>,
+) -> PyResult<()> {
+    let (sizes, arrays) = ((4, 4, 4), [left, right, out]);
+    if is_single(out) {
+        return fill::<f32>(py, sizes, arrays, compose);
+    }
+    fill::<f64>(py, sizes, arrays, compose)
 }
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.

@@ -85,9 +85,9 @@ impl Multivector {
     }
 }
 
-/// The rotor that a single value of a Rotor's components is.
+/// The rotor of the four components that a single Rotor has.
 fn unit_rotor(value: &Graded) -> UnitRotor {
-    let [s, _, _, _, x, y, z, _] = value.full();
+    let &[s, x, y, z] = value.components() else { return UnitRotor::IDENTITY };
     UnitRotor::from_unit_components([s, x, y, z])
 }
 
@@ -107,12 +107,10 @@ fn product<'py>(
     let Some(a) = left.get().single() else { return fallback() };
     match operand(right) {
         Operand::Value(b, unit) => {
-            let value = a.product(product, &b);
             if unit && left.get().unit && product == Product::Geometric {
-                let [s, _, _, _, x, y, z, _] = value.full();
-                return one_rotor(py, UnitRotor::from_components([s, x, y, z]).map_err(bad)?);
+                return one_rotor(py, unit_rotor(a).compose(unit_rotor(&b)));
             }
-            one(py, value)
+            one(py, a.product(product, &b))
         }
         Operand::Number(x) => one(py, a.product(product, &scalar(x))),
         Operand::Other => fallback(),

@@ -49,7 +49,7 @@ class Central:
 
 
 def choose(d: Numeric, condition: Any, x: Central | float, y: Central | float) -> Central:
-    """x where the condition holds, else y; real numbers count as central."""
+    """Take x where the condition holds, else y; real numbers count as central."""
     x, y = (z if isinstance(z, Central) else Central(z, 0.0) for z in (x, y))
     return Central(d.where(condition, x.re, y.re), d.where(condition, x.im, y.im))
 

@@ -39,7 +39,7 @@ def log_row(m: Row) -> Row:
     """A logarithm: even for even elements, else the principal one."""
     zeta, w = split(m)
     if _is_even(m):
-        return _log_even(m)
+        return log_even(m)
     root = _simple_root(m, w)
     plus, minus = zeta + root, zeta - root
     if _vanishes(plus) or _vanishes(minus):
@@ -50,10 +50,10 @@ def log_row(m: Row) -> Row:
     return join(mean, m, quotient)
 
 
-def _log_even(m: Row) -> Row:
+def log_even(m: Row) -> Row:
     """``log|M| + B/|B| · atan2(|B|, s)``; of a number, whose plane is any, in e1e2."""
     s, b = m[0], m[4:7]
-    size = _length(b)
+    size = length(b)
     if is_zero(size) and is_zero(s):
         raise ValueError("no logarithm: the multivector is singular")
     plane = [0, 0, 1] if is_zero(size) else [divide(x, size) for x in b]
@@ -79,16 +79,16 @@ def _sqrt_even(m: Row) -> Row:
     Where s < 0 the sum may cancel; then ``|B|/2c + c B/|B|`` with ``c = √((|M| − s)/2)``.
     """
     s, b = m[0], m[4:7]
-    size = _length(b)
+    size = length(b)
     if is_zero(size):
         half = _sqrt(Central(s, 0))
         return [half.re, 0, 0, 0, 0, 0, half.im, 0]
-    length = sqrt(s * s + size * size)
+    norm = sqrt(s * s + size * size)
     if not is_symbolic(s) and s < 0:
         size = abs(size)
-        c = sqrt(divide(length - s, 2))
+        c = sqrt(divide(norm - s, 2))
         return [divide(size, 2 * c), 0, 0, 0, *(divide(c * x, size) for x in b), 0]
-    c = sqrt(divide(length + s, 2))
+    c = sqrt(divide(norm + s, 2))
     return [c, 0, 0, 0, *(divide(x, 2 * c) for x in b), 0]
 
 
@@ -109,8 +109,8 @@ def unit_row(m: Row) -> Row:
         raise ValueError("has no direction (norm 0)")
     if is_zero(square - 1):
         return m
-    length = sqrt(square)
-    return [divide(x, length) for x in m]
+    norm = sqrt(square)
+    return [divide(x, norm) for x in m]
 
 
 # --- central elements
@@ -175,7 +175,7 @@ def _single(components: Row) -> Any:
     return present[0] if len(present) == 1 else None
 
 
-def _length(b: Row) -> Any:
+def length(b: Row) -> Any:
     """``√Σb²``, or the only component that is not 0: its sign cancels where the length divides b."""
     single = _single(b)
     return sqrt(sum(x * x for x in b)) if single is None else single

@@ -43,7 +43,7 @@ def checked(x: Any, index: tuple[int, ...] = ()) -> Any:
     if isinstance(x, bool | np.bool_):
         pass  # as an index or a mask it is a mistake
     elif isinstance(x, Rational):
-        return Fraction(int(x.numerator), int(x.denominator)) if x.denominator != 1 else int(x)
+        return divide(int(x.numerator), int(x.denominator))
     elif isinstance(x, float | np.floating):
         return float(x)
     place = f" at index {index}" if index else ""
@@ -72,11 +72,11 @@ def _library(*elements: Any) -> Any:
 
 
 # The values that stay exact.
-_AT_ZERO = {"sin": 0, "cos": 1, "exp": 1, "sinh": 0, "cosh": 1}
+_AT_ZERO = {"sin": 0, "cos": 1, "exp": 1, "sinh": 0, "cosh": 1, "atan": 0}
 
 
 def call(name: str, x: Any) -> Any:
-    """``sin``, ``cos``, ``sinh``, ``cosh``, ``exp`` or ``log`` of an element."""
+    """``sin``, ``cos``, ``sinh``, ``cosh``, ``atan``, ``exp`` or ``log`` of an element."""
     if name in _AT_ZERO and not is_symbolic(x) and x == 0:
         return _AT_ZERO[name]
     if name == "log" and isinstance(x, Rational) and x == 1:
@@ -177,6 +177,10 @@ class Exact:
         for i, component in enumerate(components):
             stacked[..., i] = component
         return stacked
+
+    def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
+        """The same elements in another shape."""
+        return np.reshape(x, shape)
 
     def is_concrete(self, _: Array) -> bool:
         """Elements can always be looked at."""

@@ -61,6 +61,10 @@ class Numeric:
         """Broadcast the components together and lay them along a new last axis."""
         return self.xp.stack(list(self.xp.broadcast_arrays(*components)), axis=-1)
 
+    def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
+        """The same elements in another shape."""
+        return self.xp.reshape(x, shape)
+
     def is_concrete(self, x: Array) -> bool:
         """Whether values can be looked at: not while JAX traces, nor in a Dask graph."""
         library = type(x).__module__.partition(".")[0]
@@ -79,7 +83,7 @@ class Numeric:
     # --- elementwise
 
     def where(self, condition: Array, x: Any, y: Any) -> Array:
-        """x where the condition holds, else y; either may be a number."""
+        """Take x where the condition holds, else y; either may be a number."""
         return self.xp.where(condition, self._full(x), self._full(y))
 
     def _full(self, x: Any) -> Array:

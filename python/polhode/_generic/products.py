@@ -1,7 +1,7 @@
 """Products of multivectors as lists of terms, over arrays of any coefficients.
 
-A term ``(i, j, k, sign)`` says that component k of the result gathers ``sign · a_i · b_j``. Such a list serves
-every product of every algebra.
+A term ``(i, j, k, sign)`` says that component k of the result gathers ``sign · a_i · b_j``. Such a list
+serves every product of every algebra.
 """
 
 from __future__ import annotations

@@ -23,8 +23,8 @@ from polhode._generic.numeric import Numeric, squares
 Components = list[Any]
 
 # cosh √w and sinh √w / √w for |w| < 1: the first terms left out are 1/22! and 1/23!.
-_COSH = [1 / math.factorial(2 * k) for k in range(11)]
-_SINHC = [1 / math.factorial(2 * k + 1) for k in range(11)]
+COSH = [1 / math.factorial(2 * k) for k in range(11)]
+SINHC = [1 / math.factorial(2 * k + 1) for k in range(11)]
 # artanh(z)/z in u = z² for |u| < 1/16: the first term left out is 16⁻¹³/27 < 1e-17.
 _NEAR = 1 / 16
 _ARTANHC = [1 / (2 * k + 1) for k in range(13)]
@@ -63,8 +63,8 @@ def exp(d: Numeric, m: Components, mask: int) -> Components:
     root = central.sqrt(d, choose(d, small, 1.0, scaled)).times(scale)
     # The exponents are added first: e^(ζ ± √w) may exist where cosh √w does not.
     plus, minus = (central.exp(d, z).times(0.5) for z in (zeta + root, zeta - root))
-    c = choose(d, small, factor * series(d, _COSH, near), plus + minus)
-    q = choose(d, small, factor * series(d, _SINHC, near), (plus - minus).over(root, d.divide))
+    c = choose(d, small, factor * series(d, COSH, near), plus + minus)
+    q = choose(d, small, factor * series(d, SINHC, near), (plus - minus).over(root, d.divide))
     return join(c, m, q)
 
 
@@ -76,8 +76,8 @@ def cos_sinc(d: Numeric, b: Components) -> tuple[Any, Any]:
     small = square < 1
     near = d.where(small, -square, 0.0)
     size = scale * d.sqrt(d.where(small, 1.0, scaled))
-    cos = d.where(small, horner(_COSH, near), d.cos(size))
-    return cos, d.where(small, horner(_SINHC, near), d.sin(size) / size)
+    cos = d.where(small, horner(COSH, near), d.cos(size))
+    return cos, d.where(small, horner(SINHC, near), d.sin(size) / size)
 
 
 # --- log
@@ -86,7 +86,7 @@ def cos_sinc(d: Numeric, b: Components) -> tuple[Any, Any]:
 def log(d: Numeric, m: Components, mask: int) -> Components:
     """A logarithm; a ValueError where an eigenvalue is zero to rounding."""
     if not mask & ~EVEN:
-        return _log_even(d, m)
+        return log_even(d, m)
     scale = d.scale(m)
     m = [x / scale for x in m]
     zeta, w = split(m)
@@ -117,7 +117,7 @@ def log(d: Numeric, m: Components, mask: int) -> Components:
     return result
 
 
-def _log_even(d: Numeric, m: Components) -> Components:
+def log_even(d: Numeric, m: Components) -> Components:
     """``log|M| + B/|B| · atan2(|B|, s)``, and at ``−|s|``, where B tells no plane, ``π e1e2``.
 
     With t = |B|/s small it is ``B artan(t)/(t s)``, analytic also in B = 0, plus a half turn where s < 0.

@@ -16,7 +16,8 @@
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
 //! keeps), [`batch`] (any product over rows of numbers), [`values`] (`Vector`, `Bivector`, `Trivector`,
-//! `Multivector`), [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`pauli`].
+//! `Multivector`), [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`general`] (the same
+//! in any algebra; complements, join and meet), [`pauli`].
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
@@ -24,6 +25,7 @@
 pub mod batch;
 mod complex;
 pub mod functions;
+pub mod general;
 pub mod pauli;
 pub mod product;
 pub mod rotor;

@@ -10,6 +10,7 @@ import numpy as np
 from polhode import _native, _parts
 from polhode._arrays import Array, is_float, mapped
 from polhode._coefficients import common
+from polhode._generic import algebras as generic_algebras
 from polhode._generic import functions as generic
 from polhode._generic.coefficients import of
 from polhode._products import coerced
@@ -133,8 +134,23 @@ def _function(name: str, value: Multivector) -> Multivector:
     elif algebra.signature == (3, 0, 0):
         result, mask = getattr(generic, name)(of(data), data, value._mask)
     else:
-        raise TypeError("not yet")
+        result, mask = _generic_function(name, value)
     return _native.Multivector._of(result, mask, algebra)
+
+
+def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
+    """Return the inverse or the exponential of other coefficients in other algebras."""
+    algebra = value.algebra
+    if name not in ("inverse", "exp"):
+        raise TypeError(f"{name} in {algebra} needs floats, got {value.dtype}; convert with .astype(float)")
+    mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
+    terms, _ = algebra._terms("geometric", everything, everything)
+    full = _parts.with_grades(value, everything)
+    if name == "exp":
+        rows = generic_algebras.exp(of(full), terms, algebra._indices(value._mask), full)
+    else:
+        rows = generic_algebras.inverse(of(full), terms, algebra.dimension, full)
+    return of(rows).stack([rows[..., i] for i in algebra._indices(mask)]), mask
 
 
 def inverse(value: Multivector) -> Multivector:

@@ -10,6 +10,7 @@ from polhode import _native
 from polhode._arrays import Array, Shape, common_batch, is_float, new, rows
 from polhode._coefficients import scalars
 from polhode._generic import products as generic
+from polhode._generic import rotors as generic_rotors
 from polhode._generic.coefficients import of
 
 if TYPE_CHECKING:

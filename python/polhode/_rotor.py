@@ -10,8 +10,8 @@ from polhode import _functions, _native
 from polhode._arrays import Array, Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
 from polhode._coefficients import as_coefficients, common
 from polhode._extras import optional
+from polhode._generic import rotors as generic
 from polhode._generic.coefficients import of
-generic: Any = None
 from polhode._joined import joins
 from polhode._multivector import Multivector
 from polhode._products import coerced, common_algebra, result_array
@@ -97,7 +97,9 @@ class Rotor(_native.Rotor, Multivector):
         matrices = as_coefficients(m, "rotation matrix")
         if tuple(matrices.shape[-2:]) != (3, 3):
             raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
-        return Rotor._from_rows(_computed("from_matrix", matrices.reshape((*matrices.shape[:-2], 9))))
+        if is_float(matrices):
+            matrices = matrices.reshape((*matrices.shape[:-2], 9))
+        return Rotor._from_rows(_computed("from_matrix", matrices))
 
     @staticmethod
     def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
@@ -150,6 +152,9 @@ class Rotor(_native.Rotor, Multivector):
 
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
+        if not is_float(self._data):
+            plane, angle = generic.plane_angle(of(self._data), self._data)
+            return Multivector._of(plane, _BIVECTOR), angle
         pairs = _computed("plane_angle", self._data)
         return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
 

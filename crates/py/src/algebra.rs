@@ -1,7 +1,7 @@
 //! The algebra over arrays: rows of components in, rows out.
 
 use crate::signature::Algebra;
-use crate::arrays::{Out, Rows, RowsToFill, bad, map_rows, numbers, numbers_to_fill, threads};
+use crate::arrays::{Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, threads};
 use numpy::PyArrayDyn;
 use polhode_ga::batch::{Element, turn_threads};
 use polhode_ga::compose::compose;
@@ -72,7 +72,24 @@ pub(crate) fn function<'py>(py: Python<'py>, algebra: &Algebra, name: &str, m: R
     if algebra.is_g3() {
         return map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0));
     }
-    Err(bad("not yet"))
+    map_long_rows(py, [&m], |rows| algebra.calculus().apply(f, rows[0]))
+}
+
+/// The join or the meet of blades, rows of all components of an algebra.
+#[pyfunction]
+pub(crate) fn subspaces<'py>(
+    py: Python<'py>,
+    algebra: &Algebra,
+    name: &str,
+    a: Rows<'py>,
+    b: Rows<'py>,
+) -> Out<'py> {
+    let calculus = algebra.calculus();
+    match name {
+        "join" => map_long_rows(py, [&a, &b], |rows| calculus.join(rows[0], rows[1])),
+        "meet" => map_long_rows(py, [&a, &b], |rows| calculus.meet(rows[0], rows[1])),
+        _ => Err(bad(format!("unknown operation {name}"))),
+    }
 }
 
 /// Euclidean norms of the rows, without overflow on the way; the last axis has length 1.

@@ -117,3 +117,32 @@ pub(crate) fn map_rows<'py, const IN: usize, const OUT: usize, E: std::fmt::Disp
     out_shape.push(OUT);
     PyArray1::from_vec(py, out).reshape(out_shape)
 }
+
+/// Applies a function of rows of one length, from arrays of one shape, to all rows, which give rows of that
+/// length; an error names the batch index.
+pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
+    py: Python<'py>,
+    inputs: [&Rows<'py>; N],
+    f: impl Fn([&[f64]; N]) -> Result<Vec<f64>, E> + Sync,
+) -> Out<'py> {
+    let shape = inputs[0].shape();
+    let Some((&size, batch)) = shape.split_last() else { return Err(bad("expected rows of components")) };
+    if inputs.iter().any(|input| input.shape() != shape) || size == 0 {
+        return Err(bad("expected arrays of one shape"));
+    }
+    let mut data = [&[][..]; N];
+    for (slot, input) in data.iter_mut().zip(inputs) {
+        *slot = numbers(input)?;
+    }
+    let count = data[0].len() / size;
+    let result: Result<Vec<f64>, (usize, E)> = py.detach(|| {
+        let mut out = Vec::with_capacity(count * size);
+        for row in 0..count {
+            let rows = data.map(|numbers| &numbers[row * size..(row + 1) * size]);
+            out.extend(f(rows).map_err(|error| (row, error))?);
+        }
+        Ok(out)
+    });
+    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
+    PyArray1::from_vec(py, out).reshape(shape.to_vec())
+}

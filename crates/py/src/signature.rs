@@ -2,12 +2,13 @@
 
 use crate::arrays::bad;
 use polhode_ga::functions::Function;
+use polhode_ga::general::Calculus;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::table::{self, Signature};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 type Key = (Product, Grades, Grades);
 
@@ -16,6 +17,7 @@ type Key = (Product, Grades, Grades);
 pub(crate) struct Algebra {
     pub table: table::Algebra,
     plans: Mutex<HashMap<Key, Arc<Plan>>>,
+    calculus: OnceLock<Calculus>,
 }
 
 /// A term of a product: components of the left factor, the right factor and the product, and the sign.
@@ -46,6 +48,11 @@ impl Algebra {
         Ok(Arc::clone(plan))
     }
 
+    /// The functions of this algebra, whose tables are made once.
+    pub fn calculus(&self) -> &Calculus {
+        self.calculus.get_or_init(|| Calculus::new(&self.table))
+    }
+
     /// Whether it is the algebra of 3-d space.
     pub fn is_g3(&self) -> bool {
         self.table.signature() == table::G3.signature()
@@ -74,7 +81,7 @@ impl Algebra {
                 table::MAX_GENERATORS
             )));
         };
-        Ok(Algebra { table, plans: Mutex::new(HashMap::new()) })
+        Ok(Algebra { table, plans: Mutex::default(), calculus: OnceLock::new() })
     }
 
     /// How many generators square to +1, −1 and 0.
@@ -97,7 +104,20 @@ impl Algebra {
     /// The grades of `inverse`, `exp`, `log` or `sqrt` of values that hold these grades.
     fn _grades_of_function(&self, name: &str, grades: u16) -> PyResult<u16> {
         let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
-        Ok(f.grades(self.check(grades)?).0)
+        let grades = self.check(grades)?;
+        Ok(if self.is_g3() { f.grades(grades).0 } else { self.calculus().grades(f, grades).0 })
+    }
+
+    /// Where each basis element goes by the right complement, and with which sign.
+    fn _right_complement(&self) -> Vec<(usize, f64)> {
+        let size = self.table.blades().len();
+        let image = |i: usize| {
+            let mut element = vec![0.0; size];
+            element[i] = 1.0;
+            let complement = self.calculus().right_complement(&element);
+            complement.into_iter().enumerate().find(|(_, x)| *x != 0.0).unwrap_or((i, 0.0))
+        };
+        (0..size).map(image).collect()
     }
 
     /// The grades of a product of values that hold these grades, and its number of components.

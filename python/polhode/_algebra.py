@@ -129,6 +129,10 @@ class Algebra(_native.Algebra):
         """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0."""
         return _reverse_squares(self, mask)
 
+    def _complement(self, right: bool) -> list[tuple[int, float]]:
+        """Return where each basis element goes by the right or left complement, and with which sign."""
+        return _complement(self, right)
+
     def _inverse_of_I(self) -> Multivector:  # noqa: N802
         return _inverse_of_pseudoscalar(self)
 
@@ -179,6 +183,17 @@ def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np
     for a, _b, _out, sign in terms:
         signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
     return signs
+
+
+@functools.cache
+def _complement(algebra: Algebra, right: bool) -> list[tuple[int, float]]:
+    images = algebra._right_complement()
+    if right:
+        return images
+    inverse = [(0, 0.0)] * len(images)
+    for i, (place, sign) in enumerate(images):
+        inverse[place] = (i, sign)
+    return inverse
 
 
 @functools.cache

@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import as_floats, is_float
+from polhode._generic import pytrees
 from polhode._generic.coefficients import of
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
@@ -36,6 +37,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     if special:
         kind = of(values)
         if not kind.native:
+            tell_jax()
             return kind.asarray(values)
     array = _as_array(values, what)
     if array.dtype == object and _is_exact(array, isinstance(values, np.ndarray)):
@@ -43,6 +45,23 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     if array.dtype.kind in "iu" and not _fits_floats(array):
         return _exact(array.astype(object), what)
     return as_floats(array, what)
+
+
+def tell_jax() -> None:
+    """Make values pytrees of JAX, if JAX has been imported: they then pass through jit, grad and vmap."""
+    pytrees.register(
+        _native.Multivector,
+        lambda value: ((value._data,), (value._mask, value.algebra)),
+        lambda kind, leaves: _native.Multivector._of(next(iter(leaves)), *kind),
+    )
+    pytrees.register(
+        _native.Rotor,
+        lambda rotor: ((rotor._data,), None),
+        lambda _, leaves: _native.Rotor._from_rows(next(iter(leaves))),
+    )
+
+
+tell_jax()
 
 
 def scalars(value: Any, like: Any) -> Any:

@@ -75,7 +75,9 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
         """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
-        plane, angle = one_grade(B, 2, "the plane")._data, as_coefficients(theta, "angle")[..., None]
+        plane, angle = one_grade(B, 2, "the plane")._data, as_coefficients(theta, "angle")
+        if is_float(plane) and is_float(angle):
+            angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod

@@ -13,10 +13,10 @@ from polhode._motion import Trajectory as Trajectory
 from polhode._motion import describe_free as describe_free
 from polhode._motion import simulate as simulate
 from polhode._multivector import Multivector as Multivector
-from polhode._parts import concatenate as concatenate
-from polhode._parts import stack as stack
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
+from polhode._parts import concatenate as concatenate
+from polhode._parts import stack as stack
 from polhode._rotor import Rotor as Rotor
 from polhode._rotor import mean as mean
 from polhode._rotor import slerp as slerp

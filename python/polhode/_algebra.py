@@ -44,7 +44,7 @@ class Algebra(_native.Algebra):
 
     @property
     def basis_vectors(self) -> tuple[Multivector, ...]:
-        """The generators e1, e2, …"""
+        """The generators, e1 first."""
         return tuple(self.vector(row) for row in np.eye(self.dimension))
 
     @property
@@ -133,7 +133,7 @@ class Algebra(_native.Algebra):
         """Return where each basis element goes by the right or left complement, and with which sign."""
         return _complement(self, right)
 
-    def _inverse_of_I(self) -> Multivector:  # noqa: N802
+    def _inverse_of_I(self) -> Multivector:
         return _inverse_of_pseudoscalar(self)
 
 
@@ -152,8 +152,9 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
 
 @functools.cache
 def _algebra(p: int, q: int, r: int) -> Algebra:
-    made: Algebra = _native.g3() if (p, q, r) == (3, 0, 0) else _native.Algebra(p, q, r)
-    return made
+    if (p, q, r) == (3, 0, 0):
+        return _native.g3()
+    return _native.Algebra(p, q, r)  # type: ignore[return-value]
 
 
 @functools.cache

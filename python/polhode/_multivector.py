@@ -163,13 +163,13 @@ class Multivector(_native.Multivector):
     # --- sums and scaling, where they are not native
 
     def _add(self, other: Any) -> Multivector:
-        return _parts.linear(self, other, operator.add)
+        return _parts.linear(self, other, operator.add)  # type: ignore[no-any-return]
 
     def _subtract(self, other: Any) -> Multivector:
-        return _parts.linear(self, other, operator.sub)
+        return _parts.linear(self, other, operator.sub)  # type: ignore[no-any-return]
 
     def _subtract_from(self, other: Any) -> Multivector:
-        return _parts.linear(-self, other, operator.add)
+        return _parts.linear(-self, other, operator.add)  # type: ignore[no-any-return]
 
     def _negated(self) -> Multivector:
         return self._like(-self._data)

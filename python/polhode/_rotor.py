@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _functions, _native
-from polhode._arrays import Array, Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
+from polhode import _native
+from polhode._arrays import Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
 from polhode._coefficients import as_coefficients, common
 from polhode._extras import optional
 from polhode._generic import rotors as generic
@@ -172,7 +172,8 @@ class Rotor(_native.Rotor, Multivector):
         if not (is_float(a) and is_float(b)):
             if out is not None:
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {value.dtype}")
-            return value._like(generic.apply(of(a, b), *common(a, b), value._mask))
+            kind = of(a, b)
+            return value._like(generic.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
         batch, dtype = common_batch(self.shape, value.shape), np.result_type(a, b)
         a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
         result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)
@@ -185,7 +186,7 @@ class Rotor(_native.Rotor, Multivector):
 
     def inverse(self) -> Rotor:
         """``~R``."""
-        return ~self  # type: ignore[return-value]
+        return ~self
 
     def sqrt(self) -> Rotor:
         """Return the half-way rotor, whose square is R."""
@@ -201,7 +202,8 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
-        return (self.log() * as_coefficients(n, "the power of a rotor")).exp()  # type: ignore[return-value]
+        turn = self.log() * as_coefficients(n, "the power of a rotor")
+        return turn.exp()  # type: ignore[return-value]
 
 
 def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:

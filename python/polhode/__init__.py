@@ -5,6 +5,8 @@ from polhode._algebra import Algebra as Algebra
 from polhode._algebra import algebra as algebra
 from polhode._bodies import Body as Body
 from polhode._bodies import Inertia as Inertia
+from polhode._interchange import from_dict as from_dict
+from polhode._interchange import to_dict as to_dict
 from polhode._motion import Certificate as Certificate
 from polhode._motion import FreeMotion as FreeMotion
 from polhode._motion import State as State

@@ -203,7 +203,8 @@ class Rotor(_native.Rotor, Multivector):
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
         turn = self.log() * as_coefficients(n, "the power of a rotor")
-        return turn.exp()  # type: ignore[return-value]
+        power: Rotor = turn.exp()
+        return power
 
 
 def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:

@@ -14,11 +14,12 @@ from polhode._coefficients import as_coefficients
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 
-_KEYS = {"algebra", "grades", "rotor", "components"}
+_KEYS = {"algebra", "grades", "rotor", "shape", "dtype", "components"}
+_DTYPES = {"float64": np.float64, "float32": np.float32, "object": object}
 
 
 def to_dict(value: Multivector) -> dict[str, Any]:
-    """Return the signature, the grades, whether it is a rotor, and the components as nested lists.
+    """Return signature, grades, whether it is a rotor, batch shape, type and components as nested lists.
 
     All of them are what JSON has: fractions are text, ``"1/3"``. `from_dict` gives the value back, with
     every bit of it. A TypeError for symbolic coefficients; arrays of other libraries come back as floats.
@@ -30,6 +31,8 @@ def to_dict(value: Multivector) -> dict[str, Any]:
         "algebra": list(value.algebra.signature),
         "grades": list(value.grades),
         "rotor": isinstance(value, Rotor),
+        "shape": list(value.shape),
+        "dtype": data.dtype.name,
         "components": np.frompyfunc(_plain, 1, 1)(data).tolist() if data.dtype == object else data.tolist(),
     }
 
@@ -54,13 +57,13 @@ def from_dict(fields: Mapping[str, Any]) -> Multivector:
     if not grades or grades != sorted(set(grades)) or not set(grades) <= set(range(space.dimension + 1)):
         raise ValueError(f"grades must rise from 0 to at most {space.dimension}, got {grades}")
     mask = sum(1 << k for k in grades)
-    given = np.array(fields["components"], dtype=object)
-    is_exact = any(isinstance(x, str | int) for x in given.flat)
-    numbers = np.frompyfunc(_number, 1, 1)(given) if is_exact else given
-    data = as_coefficients(numbers, "a component", object if is_exact else float)
-    size = len(space._indices(mask))
-    if not data.shape or data.shape[-1] != size:
-        raise ValueError(f"grades {grades} have {size} components, got shape {data.shape}")
+    if fields["dtype"] not in _DTYPES:
+        raise ValueError(f"dtype must be one of {', '.join(_DTYPES)}, got {fields['dtype']!r}")
+    numbers = np.frompyfunc(_number, 1, 1)(np.array(fields["components"], dtype=object))
+    shape = (*fields["shape"], len(space._indices(mask)))
+    if numbers.size != np.prod(shape):
+        raise ValueError(f"grades {grades} and shape {fields['shape']} do not fit {numbers.size} components")
+    data = as_coefficients(numbers, "a component", _DTYPES[fields["dtype"]]).reshape(shape)
     if not fields["rotor"]:
         return Multivector._of(data, mask, space)
     if space is not algebra(3) or grades != [0, 2]:

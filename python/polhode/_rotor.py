@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _native
+from polhode import _generic, _native
 from polhode._arrays import Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
-from polhode._coefficients import as_coefficients, common
+from polhode._coefficients import as_coefficients, common, kind_of
 from polhode._extras import optional
-from polhode._generic import rotors as generic
-from polhode._generic.coefficients import of
 from polhode._joined import joins
 from polhode._multivector import Multivector
 from polhode._products import coerced, common_algebra, result_array
@@ -37,8 +35,8 @@ def _computed(name: str, *operands: Any) -> Any:
     """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
     if all(map(is_float, operands)):
         return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
-    kind = of(*operands)
-    return getattr(generic, name)(kind, *map(kind.asarray, operands))
+    kind = kind_of(*operands)
+    return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
 
 
 @joins(_native.Rotor)
@@ -155,7 +153,7 @@ class Rotor(_native.Rotor, Multivector):
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
         if not is_float(self._data):
-            plane, angle = generic.plane_angle(of(self._data), self._data)
+            plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
             return Multivector._of(plane, _BIVECTOR), angle
         pairs = _computed("plane_angle", self._data)
         return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
@@ -172,8 +170,8 @@ class Rotor(_native.Rotor, Multivector):
         if not (is_float(a) and is_float(b)):
             if out is not None:
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {value.dtype}")
-            kind = of(a, b)
-            return value._like(generic.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
+            kind = kind_of(a, b)
+            return value._like(_generic.rotors.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
         batch, dtype = common_batch(self.shape, value.shape), np.result_type(a, b)
         a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
         result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)

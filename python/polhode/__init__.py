@@ -3,6 +3,13 @@
 from polhode import torque as torque
 from polhode._bodies import Body as Body
 from polhode._bodies import Inertia as Inertia
+from polhode._geometry import axial as axial
+from polhode._geometry import from_axial as from_axial
+from polhode._geometry import split as split
+from polhode._interpolation import RotorSpline as RotorSpline
+from polhode._interpolation import mean as mean
+from polhode._interpolation import slerp as slerp
+from polhode._linear import LinearMap as LinearMap
 from polhode._motion import Certificate as Certificate
 from polhode._motion import FreeMotion as FreeMotion
 from polhode._motion import State as State
@@ -15,8 +22,6 @@ from polhode._multivector import scalar as scalar
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
 from polhode._rotor import Rotor as Rotor
-from polhode._rotor import mean as mean
-from polhode._rotor import slerp as slerp
 from polhode._scene import Scene as Scene
 from polhode._values import I as I
 from polhode._values import bivector as bivector

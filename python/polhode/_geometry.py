@@ -1,0 +1,61 @@
+"""Parts along and across, mirrors, axial vectors, and how far attitudes are apart."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._multivector import Multivector
+from polhode._values import as_bivectors, as_vectors, bivector, pure, vector
+
+if TYPE_CHECKING:
+    from polhode._rotor import Rotor
+
+
+def split(x: Multivector, blade: Multivector) -> tuple[Multivector, Multivector]:
+    """Return the parts of x in the subspace of `blade` and perpendicular to it: a∥ and a⊥ of eq. 1.7.
+
+    ``(x.project(blade), x.reject(blade))``; the two add to x, to its rounding.
+    """
+    if not isinstance(x, Multivector):
+        raise TypeError(f"split needs a multivector, got {type(x).__name__}; wrap arrays with ph.vector")
+    parallel = x.project(blade)
+    return parallel, x - parallel
+
+
+def reflected(X: Multivector, n: Multivector) -> Multivector:
+    """Return X in the mirror perpendicular to n; the body of `Multivector.reflect`.
+
+    For unit n, ``n∧(n⌋X)`` is the part of X that contains n, and the one that changes sign.
+    """
+    normal = vector(pure(n, 1, "the mirror's normal (that of a plane B is B.dual())")).normalized()
+    return X - 2 * normal.wedge(normal.left_contraction(X))
+
+
+def axial(B: Any) -> Multivector:
+    """Return the axial vectors ``B I⁻¹`` of bivectors, which are values or an array (..., 3).
+
+    ``axial(e1∧e2) = e3``, ``axial(a∧b) = a x b`` (handout eq. 1.20, 1.24). The components are the same.
+    """
+    return vector(as_bivectors(B, "the plane"))
+
+
+def from_axial(v: Any) -> Multivector:
+    """Return the bivectors ``I v`` of axial vectors, which are values or an array (..., 3).
+
+    The plane perpendicular to v, in its right-handed sense, as ``Ω = I ω`` (handout eq. 4.4).
+    """
+    return bivector(as_vectors(v, "the axial vector"))
+
+
+def distance(R: Rotor, S: Rotor) -> Any:
+    """Return the angle in [0, π] of the turn from one attitude to the other; the body of `Rotor.distance`.
+
+    Half of it has cosine and sine ``|⟨~R S⟩|`` and ``|⟨~R S⟩₂|``. The latter is also ``|⟨~R (S ∓ R)⟩₂|``,
+    since ``~R R`` is a scalar; and between close attitudes that difference has no rounding.
+    """
+    cosine = (~R).scalar_product(S).components[..., 0]
+    nearer = S * np.where(cosine < 0, -1.0, 1.0)
+    sine = (~R * (nearer - R)).grade(2).norm()
+    return (2 * np.arctan2(sine, np.abs(cosine)))[()]

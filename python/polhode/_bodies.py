@@ -72,7 +72,7 @@ class Inertia(LinearMap):
         Without L, return the map from momenta to velocities.
         """
         if L is None:
-            return super().inverse()
+            return LinearMap.from_function(self.inverse, grade=2)
         return Multivector._of(self._core.inverse(pure(L, 2, "the angular momentum")), _BIVECTOR)
 
     @property

@@ -30,7 +30,9 @@ def reflected(X: Multivector, n: Multivector) -> Multivector:
     For unit n, ``n∧(n⌋X)`` is the part of X that contains n, and the one that changes sign.
     """
     normal = vector(pure(n, 1, "the mirror's normal (that of a plane B is B.dual())")).normalized()
-    return X - 2 * normal.wedge(normal.left_contraction(X))
+    mirrored = X - 2 * normal.wedge(normal.left_contraction(X))
+    first, *others = [mirrored.grade(k) for k in X.grades]
+    return sum(others, start=first)
 
 
 def axial(B: Any) -> Multivector:
@@ -55,6 +57,8 @@ def distance(R: Rotor, S: Rotor) -> Any:
     Half of it has cosine and sine ``|⟨~R S⟩|`` and ``|⟨~R S⟩₂|``. The latter is also ``|⟨~R (S ∓ R)⟩₂|``,
     since ``~R R`` is a scalar; and between close attitudes that difference has no rounding.
     """
+    if not isinstance(S, type(R)):
+        raise TypeError(f"distance goes between rotors, got {type(S).__name__}")
     cosine = (~R).scalar_product(S).components[..., 0]
     nearer = S * np.where(cosine < 0, -1.0, 1.0)
     sine = (~R * (nearer - R)).grade(2).norm()

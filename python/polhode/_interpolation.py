@@ -56,8 +56,9 @@ class RotorSpline:
 
     Each rotor first takes the sign that is nearer to the one before it, so that the path goes the short
     way round and stays on one sheet of the double cover; it begins at ``rotors[0]``. At each end the first
-    two intervals share one cubic ("not a knot"); three rotors give a parabola, two a line, along which
-    the rate is not constant as that of `slerp` is. A steady turn is likewise met closely, not exactly.
+    two intervals share one cubic ("not a knot"); three rotors give a parabola, two a line, along which the
+    rate is not constant as that of `slerp` is. A steady turn is likewise met closely, not exactly. Where the
+    times are so uneven that the path could swing half a turn away from its rotors, a ValueError says so.
 
     >>> spline = RotorSpline(times, rotors)
     >>> spline(t), spline.omega_body(t)
@@ -70,13 +71,14 @@ class RotorSpline:
             raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {rotors!r}")
         knots = np.array(as_floats(times, "times"))
         if knots.shape != rotors.shape or not np.isfinite(knots).all():
-            raise ValueError(f"times must be {len(rotors)} finite numbers, one for each rotor, got {times!r}")
+            raise ValueError(f"times must be {len(rotors)} finite numbers, one for each rotor, got {knots}")
         if not (np.diff(knots) > 0).all():
             i = int(np.argmin(np.diff(knots) > 0))
             raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
         self._times = frozen(knots)
         self._values = frozen(_one_sheet(rotors.components))
         self._slopes = frozen(_spline_slopes(knots, self._values))
+        _require_near(knots, self._values, self._slopes)
 
     @property
     def times(self) -> Array:
@@ -125,19 +127,7 @@ class RotorSpline:
         p, q = step * self._slopes[k] - (b - a), step * self._slopes[k + 1] - (b - a)
         s = (1 - u) * a + u * b + u * (1 - u) * ((1 - u) * p - u * q)
         rate = (b - a + (1 - u) * (1 - 3 * u) * p + u * (3 * u - 2) * q) / step
-        small = np.linalg.norm(s, axis=-1) < _SMALLEST
-        if small.any():
-            i = int(np.ravel(k)[np.argmax(small)])
-            raise ValueError(
-                f"the rotors about times {self._times[i]:g} to {self._times[i + 1]:g} turn too far to and "
-                "fro for a smooth path; give more of them there"
-            )
         return s, rate
-
-
-# Neighbours on one sheet are at most a right angle apart, their chord at least √½ from 0. A spline that
-# comes this much nearer swings so wildly that its direction says nothing about the rotors it was given.
-_SMALLEST = 0.1
 
 
 def _one_sheet(components: Array) -> Array:
@@ -145,6 +135,26 @@ def _one_sheet(components: Array) -> Array:
     apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < 0
     signs = np.cumprod(np.where(apart, -1.0, 1.0))
     return np.concatenate([components[:1], signs[:, np.newaxis] * components[1:]])
+
+
+def _require_near(x: Array, y: Array, slopes: Array) -> None:
+    """Raise a ValueError if the spline may come near 0, where it would have no direction.
+
+    A cubic lies in the hull of its ends a, b and the points a third of the end slopes away from them. The
+    ends are √½ or more along the line to the middle of their chord; so must the other two be, but for some
+    room, and then so is every point between.
+    """
+    step = np.diff(x)[:, np.newaxis]
+    a, b = y[:-1], y[1:]
+    middle = (a + b) / np.linalg.norm(a + b, axis=-1, keepdims=True)
+    along = [np.sum(middle * c, axis=-1) for c in (a + step * slopes[:-1] / 3, b - step * slopes[1:] / 3)]
+    far = ~(np.minimum(*along) >= 0.1)
+    if far.any():
+        i = int(np.argmax(far))
+        raise ValueError(
+            f"from {x[i]:g} to {x[i + 1]:g} a smooth path would swing far from the rotors at both times; "
+            "give more of them there, at more even times"
+        )
 
 
 def _spline_slopes(x: Array, y: Array) -> Array:

@@ -219,6 +219,10 @@ class LinearMap:
             return NotImplemented
         return ((self.matrix == other.matrix) & (self.grade == other.grade)).all(axis=(-2, -1))[()]
 
+    def __ne__(self, other: object) -> Any:
+        equal = self.__eq__(other)
+        return equal if equal is NotImplemented else np.logical_not(equal)[()]
+
     def is_close(self, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
         """Whether ``|F − G| <= max(rtol · max(|F|, |G|), atol)``, |F|² the sum of the squared entries."""
         if not isinstance(other, LinearMap) or other.grade != self.grade:

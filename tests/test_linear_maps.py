@@ -123,6 +123,14 @@ def type_of(grade):
     return [lambda c: ph.scalar(c[0]), ph.vector, ph.bivector, lambda c: ph.trivector(c[0])][grade]
 
 
+def test_sums_and_products_follow_ieee():
+    F = ph.LinearMap.from_matrix(1e200 * np.eye(3))
+    assert same(F(1e200 * e1 + 0 * e2).components[0], np.inf)
+    assert F.determinant == np.inf
+    assert np.isnan(F(ph.vector([np.nan, 0, 0])).components).any()
+    assert same(F(ph.scalar(np.inf)), ph.scalar(np.inf))
+
+
 # --- from functions
 
 

@@ -121,12 +121,12 @@ class LinearMap:
         """Return F of the part of grade k."""
         components = X.grade(k).components
         if k == 0:
-            return scalar(components[..., 0] * np.ones(self.shape))
+            return scalar(components[..., 0]).wedge(np.ones(self.shape))
         if k == 1:
             return vector(_times(self.matrix, components))
         if k == 2:
             return bivector(_times(self.bivector_matrix, components))
-        return trivector(components[..., 0] * self.determinant)
+        return trivector(components[..., 0]).wedge(self.determinant)
 
     def _images(self) -> list[Multivector]:
         """Return the columns of the matrix, as vectors."""
@@ -248,5 +248,6 @@ def _checked(grade: int) -> int:
 
 def _times(matrix: Array, components: Array) -> Array:
     """Return the product of matrices and columns."""
-    product: Array = (matrix @ components[..., np.newaxis])[..., 0]
+    with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
+        product: Array = (matrix @ components[..., np.newaxis])[..., 0]
     return product

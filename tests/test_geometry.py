@@ -1,5 +1,7 @@
 """Parts, mirrors, axial vectors and distances between attitudes."""
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
@@ -84,10 +86,23 @@ def test_mirrors_by_hand():
     # The plane e1∧e2 as a mirror.
     assert same((e1 + 2 * e3).reflect((e1 ^ e2).dual()), e1 - 2 * e3)
     assert e1.reflect(ph.vector(np.eye(3))).shape == (3,)
-    with pytest.raises(TypeError, match=r"of a plane B is B\.dual.*must be a vector"):
+    with pytest.raises(TypeError, match=r"a vector; of a plane B it is B\.dual\(\); got e1∧e2"):
         e1.reflect(e1 ^ e2)
-    with pytest.raises(ValueError, match=r"index \(1,\) has no direction"):
+    with pytest.raises(ValueError, match=r"index \(1,\)"):
         e1.reflect(ph.vector([[1, 0, 0], [0, 0, 0]]))
+
+
+def test_mirrors_of_other_numbers_and_spaces():
+    n, a = (ph.vector([Fraction(x, 7) for x in c]) for c in ([1, 2, 2], [3, 0, -1]))
+    assert a.reflect(n).dtype == object
+    assert same(a.reflect(n), a - 2 * a.dot(n) / n.norm_squared() * n)
+    assert same(a.wedge(e1).reflect(n).reflect(n), a.wedge(e1))
+    spacetime = ph.algebra(1, 3)
+    t, x, _, _ = spacetime.basis_vectors
+    assert same((2 * t + x).reflect(t), x - 2 * t)
+    assert same((2 * t + x).reflect(x), 2 * t - x)
+    with pytest.raises(ValueError, match="inverse"):
+        x.reflect(t + x)
 
 
 # --- axial vectors
@@ -160,5 +175,9 @@ def test_distances_over_batches():
     assert apart[2, 1] == R[2, 0].distance(S[1])
     theirs = (~R[0, 0] * S[0]).to_scipy().magnitude()
     assert abs(apart[0, 0] - theirs) <= 16 * EPS * np.pi
+    single = R.astype(np.float32)
+    # Rounding of four components, each to half of 2⁻²³.
+    assert np.all(single.distance(R) <= 4 * 2.0**-23)
+    assert single.distance(R).dtype == np.float64
     with pytest.raises(TypeError, match="distance goes between rotors, got float"):
         R.distance(1.0)

@@ -131,6 +131,16 @@ def test_sums_and_products_follow_ieee():
     assert same(F(ph.scalar(np.inf)), ph.scalar(np.inf))
 
 
+def test_other_numbers_become_floats_and_other_spaces_are_refused():
+    F = random_map()
+    for dtype in (object, np.float32):
+        image = F((2 * e1 + I).astype(dtype))
+        assert image.dtype == np.float64
+        assert same(image, F(2 * e1 + I))
+    with pytest.raises(TypeError, match="of 3-d space"):
+        F(ph.algebra(1, 3).basis_vectors[0])
+
+
 # --- from functions
 
 

@@ -1,6 +1,8 @@
 """Polhode: geometric algebra of 3-d space, rotors and the motion of rigid bodies."""
 
 from polhode import torque as torque
+from polhode._algebra import Algebra as Algebra
+from polhode._algebra import algebra as algebra
 from polhode._bodies import Body as Body
 from polhode._bodies import Inertia as Inertia
 from polhode._geometry import axial as axial
@@ -18,9 +20,10 @@ from polhode._motion import Trajectory as Trajectory
 from polhode._motion import describe_free as describe_free
 from polhode._motion import simulate as simulate
 from polhode._multivector import Multivector as Multivector
-from polhode._multivector import scalar as scalar
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
+from polhode._parts import concatenate as concatenate
+from polhode._parts import stack as stack
 from polhode._rotor import Rotor as Rotor
 from polhode._scene import Scene as Scene
 from polhode._values import I as I
@@ -31,6 +34,7 @@ from polhode._values import e2 as e2
 from polhode._values import e3 as e3
 from polhode._values import from_pauli as from_pauli
 from polhode._values import multivector as multivector
+from polhode._values import scalar as scalar
 from polhode._values import to_pauli as to_pauli
 from polhode._values import trivector as trivector
 from polhode._values import vector as vector

@@ -11,7 +11,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, as_components, as_float, as_floats
 from polhode._linear import LinearMap
-from polhode._multivector import _BIVECTOR, Multivector
+from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_point, as_vectors, bivector, pure, vector
 
@@ -60,7 +60,7 @@ class Inertia(LinearMap):
 
     def __call__(self, B: Any) -> Multivector:
         """``I(B)``: the angular momentum of a rotation with angular velocity B, both in body axes."""
-        return Multivector._of(self._core.apply(pure(B, 2, "the plane of rotation")), _BIVECTOR)
+        return bivector(self._core.apply(pure(B, 2, "the plane of rotation")), copy=False)
 
     @overload
     def inverse(self) -> LinearMap: ...
@@ -73,7 +73,7 @@ class Inertia(LinearMap):
         """
         if L is None:
             return LinearMap.from_function(self.inverse, grade=2)
-        return Multivector._of(self._core.inverse(pure(L, 2, "the angular momentum")), _BIVECTOR)
+        return bivector(self._core.inverse(pure(L, 2, "the angular momentum")), copy=False)
 
     @property
     def grade(self) -> int:

@@ -52,7 +52,7 @@ def to_euler(R: Rotor, seq: str, degrees: bool) -> Array:
     k = 3 - i - j
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
     proper: Any = R if third == i else type(R).from_rotation_vector(np.pi / 2 * np.eye(3)[j]) * R
-    q = proper.to_quaternion(order="wxyz")
+    q = proper.astype(float).to_quaternion(order="wxyz")
     a, b, c, d = q[..., 0], q[..., 1 + i], q[..., 1 + j], sign * q[..., 1 + k]
     cosine, sine = np.hypot(a, b), np.hypot(c, d)
     half_sum, half_difference = np.arctan2(b, a), np.arctan2(d, c)

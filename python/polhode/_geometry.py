@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._multivector import Multivector
-from polhode._values import as_bivectors, as_vectors, bivector, pure, vector
+from polhode._values import as_bivectors, as_vectors, bivector, vector
 
 if TYPE_CHECKING:
     from polhode._rotor import Rotor
@@ -27,10 +27,12 @@ def split(x: Multivector, blade: Multivector) -> tuple[Multivector, Multivector]
 def reflected(X: Multivector, n: Multivector) -> Multivector:
     """Return X in the mirror perpendicular to n; the body of `Multivector.reflect`.
 
-    For unit n, ``n∧(n⌋X)`` is the part of X that contains n, and the one that changes sign.
+    ``n⁻¹∧(n⌋X)`` is the part of X that contains n, and the one that changes sign.
     """
-    normal = vector(pure(n, 1, "the mirror's normal (that of a plane B is B.dual())")).normalized()
-    mirrored = X - 2 * normal.wedge(normal.left_contraction(X))
+    if not isinstance(n, Multivector) or any(np.any(n.grade(k) != 0) for k in n.grades if k != 1):
+        raise TypeError(f"a mirror is given by its normal, a vector; of a plane B it is B.dual(); got {n!r}")
+    normal = n.grade(1)
+    mirrored = X - 2 * normal.inverse().wedge(normal.left_contraction(X))
     first, *others = [mirrored.grade(k) for k in X.grades]
     return sum(others, start=first)
 
@@ -59,7 +61,8 @@ def distance(R: Rotor, S: Rotor) -> Any:
     """
     if not isinstance(S, type(R)):
         raise TypeError(f"distance goes between rotors, got {type(S).__name__}")
-    cosine = (~R).scalar_product(S).components[..., 0]
-    nearer = S * np.where(cosine < 0, -1.0, 1.0)
-    sine = (~R * (nearer - R)).grade(2).norm()
+    one, other = R.astype(float), S.astype(float)
+    cosine = (~one).scalar_product(other).components[..., 0]
+    nearer = other * np.where(cosine < 0, -1.0, 1.0)
+    sine = (~one * (nearer - one)).grade(2).norm()
     return (2 * np.arctan2(sine, np.abs(cosine)))[()]

@@ -76,7 +76,7 @@ class RotorSpline:
             i = int(np.argmin(np.diff(knots) > 0))
             raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
         self._times = frozen(knots)
-        self._values = frozen(_one_sheet(rotors.components))
+        self._values = frozen(_one_sheet(rotors.astype(float).components))
         self._slopes = frozen(_spline_slopes(knots, self._values))
         _require_near(knots, self._values, self._slopes)
 

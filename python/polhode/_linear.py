@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from polhode._arrays import Array, Shape, as_floats, frozen
-from polhode._multivector import Multivector, scalar
-from polhode._values import bivector, e1, e2, e3, pure, trivector, vector
+from polhode._multivector import Multivector
+from polhode._values import bivector, e1, e2, e3, pure, scalar, trivector, vector
 
 _NAMES = {1: "vectors", 2: "bivectors"}
 
@@ -108,13 +108,15 @@ class LinearMap:
         return x.wedge(y).wedge(z).components[..., 0][()]
 
     def __call__(self, X: Any) -> Multivector:
-        """``F(X)``; batches broadcast."""
+        """``F(X)``, in float64; batches broadcast."""
         if not isinstance(X, Multivector):
             name = type(X).__name__
             raise TypeError(f"a linear map takes multivectors, got {name}; wrap arrays with ph.vector")
         if self.grade == 2:
             return bivector(_times(self.matrix, pure(X, 2, "the argument of a map of bivectors")))
-        first, *others = [self._part(X, k) for k in X.grades]
+        if X.algebra is not e1.algebra:
+            raise TypeError(f"a linear map takes values of 3-d space, got one of {X.algebra}")
+        first, *others = [self._part(X.astype(float), k) for k in X.grades]
         return sum(others, start=first)
 
     def _part(self, X: Multivector, k: int) -> Multivector:

@@ -127,6 +127,9 @@ def test_axial_vectors_of_arrays(shape):
     assert same(ph.from_axial(array), ph.bivector(array))
     assert ph.axial(array).grades == (1,)
     assert ph.from_axial(array).grades == (2,)
+    exact = ph.vector([Fraction(1, 3)] * 3)
+    assert ph.from_axial(exact).dtype == object
+    assert same(ph.axial(ph.from_axial(exact)), exact)
     with pytest.raises(TypeError, match="the plane must be a bivector"):
         ph.axial(e1)
     with pytest.raises(TypeError, match="the axial vector must be a vector"):

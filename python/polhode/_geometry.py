@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._multivector import Multivector
-from polhode._values import as_bivectors, as_vectors, bivector, vector
+from polhode._values import bivector, one_grade, vector
 
 if TYPE_CHECKING:
     from polhode._rotor import Rotor
@@ -42,7 +42,7 @@ def axial(B: Any) -> Multivector:
 
     ``axial(e1∧e2) = e3``, ``axial(a∧b) = a x b`` (handout eq. 1.20, 1.24). The components are the same.
     """
-    return vector(as_bivectors(B, "the plane"))
+    return one_grade(B, 2, "the plane").dual() if isinstance(B, Multivector) else vector(B)
 
 
 def from_axial(v: Any) -> Multivector:
@@ -50,7 +50,7 @@ def from_axial(v: Any) -> Multivector:
 
     The plane perpendicular to v, in its right-handed sense, as ``Ω = I ω`` (handout eq. 4.4).
     """
-    return bivector(as_vectors(v, "the axial vector"))
+    return one_grade(v, 1, "the axial vector").undual() if isinstance(v, Multivector) else bivector(v)
 
 
 def distance(R: Rotor, S: Rotor) -> Any:

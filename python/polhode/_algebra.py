@@ -44,7 +44,7 @@ class Algebra(_native.Algebra):
 
     @property
     def basis_vectors(self) -> tuple[Multivector, ...]:
-        """The generators e1, e2, …"""
+        """The generators, e1 first."""
         return tuple(self.vector(row) for row in np.eye(self.dimension))
 
     @property
@@ -129,7 +129,11 @@ class Algebra(_native.Algebra):
         """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0."""
         return _reverse_squares(self, mask)
 
-    def _inverse_of_I(self) -> Multivector:  # noqa: N802
+    def _complement(self, right: bool) -> list[tuple[int, float]]:
+        """Return where each basis element goes by the right or left complement, and with which sign."""
+        return _complement(self, right)
+
+    def _inverse_of_I(self) -> Multivector:
         return _inverse_of_pseudoscalar(self)
 
 
@@ -148,8 +152,9 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
 
 @functools.cache
 def _algebra(p: int, q: int, r: int) -> Algebra:
-    made: Algebra = _native.g3() if (p, q, r) == (3, 0, 0) else _native.Algebra(p, q, r)
-    return made
+    if (p, q, r) == (3, 0, 0):
+        return _native.g3()
+    return _native.Algebra(p, q, r)  # type: ignore[return-value]
 
 
 @functools.cache
@@ -179,6 +184,17 @@ def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np
     for a, _b, _out, sign in terms:
         signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
     return signs
+
+
+@functools.cache
+def _complement(algebra: Algebra, right: bool) -> list[tuple[int, float]]:
+    images = algebra._right_complement()
+    if right:
+        return images
+    inverse = [(0, 0.0)] * len(images)
+    for i, (place, sign) in enumerate(images):
+        inverse[place] = (i, sign)
+    return inverse
 
 
 @functools.cache

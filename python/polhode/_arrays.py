@@ -62,13 +62,14 @@ def mapped(f: Callable[[Array], Array], data: Any) -> Any:
     return result.astype(data.dtype, copy=False)
 
 
-def new(shape: Shape, dtype: Any) -> Any:
+def new(shape: Shape, dtype: Any) -> Array:
     """Return an array to be filled; a large one in memory that is used again when it is gone."""
     wanted = np.dtype(dtype)
     size = math.prod(shape)
     if size * wanted.itemsize < _LARGE:
         return np.empty(shape, wanted)
-    return np.frombuffer(_native.buffer(size * wanted.itemsize), wanted, size).reshape(shape)
+    memory = _native.buffer(size * wanted.itemsize)
+    return np.frombuffer(memory, wanted, size).reshape(shape)
 
 
 def frozen(array: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import as_floats, is_float
+from polhode._generic import pytrees
 from polhode._generic.coefficients import of
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
@@ -36,6 +37,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     if special:
         kind = of(values)
         if not kind.native:
+            tell_jax()
             return kind.asarray(values)
     array = _as_array(values, what)
     if array.dtype == object and _is_exact(array, isinstance(values, np.ndarray)):
@@ -45,9 +47,32 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     return as_floats(array, what)
 
 
+def namespace(array: Any) -> Any:
+    """Return the namespace of an array: NumPy's also for exact coefficients."""
+    kind = of(array)
+    return np if kind.exact else kind.xp  # type: ignore[union-attr]
+
+
+def tell_jax() -> None:
+    """Make values pytrees of JAX, if JAX has been imported: they then pass through jit, grad and vmap."""
+    pytrees.register(
+        _native.Multivector,
+        lambda value: ((value._data,), (value._mask, value.algebra)),
+        lambda kind, leaves: _native.Multivector._of(next(iter(leaves)), *kind),
+    )
+    pytrees.register(
+        _native.Rotor,
+        lambda rotor: ((rotor._data,), None),
+        lambda _, leaves: _native.Rotor._from_rows(next(iter(leaves))),
+    )
+
+
+tell_jax()
+
+
 def scalars(value: Any, like: Any) -> Any:
     """Return a number or an array as coefficients (…, 1) that go with those of `like`; else None."""
-    if isinstance(value, bool | np.bool_) or isinstance(value, list | tuple | str | bytes):
+    if isinstance(value, bool | np.bool_ | list | tuple | str | bytes):
         return None
     if type(value) in (int, float) and is_float(like):
         return as_floats(value, "scalar")[np.newaxis].astype(like.dtype)  # as a number in NumPy
@@ -117,7 +142,7 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
     if not isinstance(given, np.ndarray):
         return given.astype(dtype)
     wanted = np.dtype(dtype)
-    if wanted == object:
+    if wanted.kind == "O":
         return _exact(given.astype(object), what)
     if wanted not in (np.float64, np.float32):
         raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")

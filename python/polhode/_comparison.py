@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import is_float
-from polhode._coefficients import common
-from polhode._generic.coefficients import of
+from polhode._coefficients import common, namespace
 from polhode._parts import with_grades
 
 if TYPE_CHECKING:
@@ -20,10 +19,11 @@ def equal(a: Multivector, b: Multivector) -> Any:
     if a.algebra is not b.algebra:
         return False
     left, right = _same_grades(a, b)
-    same = left == right
+    same: Any = left == right
     if isinstance(left, np.ndarray):
-        return np.asarray(same, dtype=bool).all(axis=-1)[()]
-    return of(left).xp.all(same, axis=-1)
+        result: Any = np.asarray(same, dtype=bool).all(axis=-1)
+        return result[()]
+    return namespace(left).all(same, axis=-1)
 
 
 def negated(same: Any) -> Any:
@@ -37,7 +37,7 @@ def close(a: Multivector, b: Multivector, rtol: float, atol: float) -> Any:
         raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
     left, right = _same_grades(a, b)
     if not isinstance(left, np.ndarray):
-        return _close_foreign(of(left).xp, left, right, rtol, atol)
+        return _close_foreign(namespace(left), left, right, rtol, atol)
     if left.dtype == object:
         left, right = _as_floats(left), _as_floats(right)
     left, right = np.broadcast_arrays(left, right)
@@ -67,7 +67,7 @@ def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
     left, right = with_grades(a, mask), with_grades(b, mask)
     if is_float(left) and is_float(right):
         return left, right
-    return common(left, right)  # type: ignore[return-value]
+    return common(left, right)
 
 
 def _as_floats(data: Any) -> Any:

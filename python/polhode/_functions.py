@@ -25,7 +25,7 @@ def divided(value: Multivector, other: Any) -> Multivector:
     """``A/s``, and ``A/B = A B⁻¹``."""
     divisor = coerced(other, value)
     if divisor is None:
-        return NotImplemented
+        return NotImplemented  # type: ignore[no-any-return]
     if divisor._mask != 1:
         return value * divisor.inverse()
     if isinstance(divisor._data, np.ndarray):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _comparison, _format, _functions, _native, _parts
+from polhode import _comparison, _format, _functions, _native, _parts, _subspaces
 from polhode._arrays import Shape
 from polhode._coefficients import as_coefficients
 from polhode._joined import joins
@@ -163,13 +163,13 @@ class Multivector(_native.Multivector):
     # --- sums and scaling, where they are not native
 
     def _add(self, other: Any) -> Multivector:
-        return _parts.linear(self, other, operator.add)
+        return _parts.linear(self, other, operator.add)  # type: ignore[no-any-return]
 
     def _subtract(self, other: Any) -> Multivector:
-        return _parts.linear(self, other, operator.sub)
+        return _parts.linear(self, other, operator.sub)  # type: ignore[no-any-return]
 
     def _subtract_from(self, other: Any) -> Multivector:
-        return _parts.linear(-self, other, operator.add)
+        return _parts.linear(-self, other, operator.add)  # type: ignore[no-any-return]
 
     def _negated(self) -> Multivector:
         return self._like(-self._data)
@@ -232,6 +232,42 @@ class Multivector(_native.Multivector):
         """``A I``, the inverse of `dual`."""
         self.algebra._inverse_of_I()
         return self * self.algebra.I
+
+    def right_complement(self) -> Multivector:
+        """Return what is missing from the whole space: linear, ``E ∧ rc(E) = I`` for basis elements E.
+
+        Needs no metric, so that it serves where I has no inverse.
+        """
+        return _subspaces.complement(self, right=True)
+
+    def left_complement(self) -> Multivector:
+        """``lc(E) ∧ E = I`` for basis elements E: the inverse of `right_complement`."""
+        return _subspaces.complement(self, right=False)
+
+    # --- subspaces
+
+    def vee(self, other: Any) -> Multivector:
+        """``A∨B``, the regressive product: the wedge of complements, ``rc(A∨B) = rc(A) ∧ rc(B)``.
+
+        Of grade r + s − n: where two blades span the whole space, what they have in common.
+        """
+        return _subspaces.regressive(self, other)
+
+    def join(self, other: Multivector) -> Multivector:
+        """Return the unit blade of the smallest subspace that contains both blades.
+
+        Directions within 1e-10 of a subspace count as lying in it. Components are compared as lengths, the
+        basis vectors as orthonormal, whatever the metric. A ValueError for values that are no blades.
+        """
+        return _subspaces.joined(self, other, "join")
+
+    def meet(self, other: Multivector) -> Multivector:
+        """Return the unit blade of the subspace common to both blades; the scalar 1 where it is zero only.
+
+        Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``, so that
+        M is a positive multiple of ``A∨B`` where A and B span the whole space. Tolerance as for `join`.
+        """
+        return _subspaces.joined(self, other, "meet")
 
     # --- sizes
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Shape, is_float
-from polhode._coefficients import common
+from polhode._coefficients import common, namespace
 from polhode._generic.coefficients import of
 from polhode._products import coerced, common_algebra
 
@@ -103,7 +103,7 @@ def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:
     if len(shapes) > 1:
         raise ValueError(f"stack needs values of one batch shape, got {_listed(shapes)}")
     axis = _batch_axis(axis, len(next(iter(shapes))) + 1)
-    return build(_library(parts).stack(parts, axis=axis))
+    return build(namespace(parts[0]).stack(parts, axis=axis))
 
 
 def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:
@@ -115,12 +115,7 @@ def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:
     axis = _batch_axis(axis, dimensions.pop())
     if len({shape[:axis] + shape[axis + 1 :] for shape in shapes}) > 1:
         raise ValueError(f"the batch shapes differ elsewhere than in axis {axis}: {_listed(shapes)}")
-    return build(_library(parts).concat(parts, axis=axis))
-
-
-def _library(arrays: list[Any]) -> Any:
-    """Return the namespace that joins these arrays; NumPy's also for exact coefficients."""
-    return np if isinstance(arrays[0], np.ndarray) else of(*arrays).xp
+    return build(namespace(parts[0]).concat(parts, axis=axis))
 
 
 def _listed(shapes: Iterable[Shape]) -> str:
@@ -135,7 +130,9 @@ def _batch_axis(axis: int, count: int) -> int:
     return place % count
 
 
-def _unified(values: Iterable[Multivector], name: str) -> tuple[list[Any], set[Shape], Callable[[Any], Any]]:
+def _unified(
+    values: Iterable[Multivector], name: str
+) -> tuple[list[Any], set[Shape], Callable[[Any], Multivector]]:
     """Return components over the grades of all values, their batch shapes, and what builds the result."""
     items = list(values)
     for i, item in enumerate(items):

@@ -69,7 +69,7 @@ def common_algebra(left: Multivector, right: Multivector) -> Any:
 def coerced(value: Any, like: Multivector | None = None) -> Multivector | None:
     """Return a multivector; a number or an array becomes scalars of the algebra of `like`; else None."""
     if isinstance(value, _native.Multivector):
-        return value
+        return value  # type: ignore[return-value]
     data = scalars(value, like._data if like is not None else None)
     if data is None:
         return None

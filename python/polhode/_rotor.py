@@ -75,7 +75,9 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
         """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
-        plane, angle = one_grade(B, 2, "the plane")._data, as_coefficients(theta, "angle")[..., None]
+        plane, angle = one_grade(B, 2, "the plane")._data, as_coefficients(theta, "angle")
+        if is_float(plane) and is_float(angle):
+            angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod
@@ -215,7 +217,8 @@ class Rotor(_native.Rotor, Multivector):
         if not (is_float(a) and is_float(b)):
             if out is not None:
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {value.dtype}")
-            return value._like(generic.apply(of(a, b), *common(a, b), value._mask))
+            kind = of(a, b)
+            return value._like(generic.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
         batch, dtype = common_batch(self.shape, value.shape), np.result_type(a, b)
         a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
         result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)
@@ -228,7 +231,7 @@ class Rotor(_native.Rotor, Multivector):
 
     def inverse(self) -> Rotor:
         """``~R``."""
-        return ~self  # type: ignore[return-value]
+        return ~self
 
     def sqrt(self) -> Rotor:
         """Return the half-way rotor, whose square is R."""
@@ -244,7 +247,9 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
-        return (self.log() * as_coefficients(n, "the power of a rotor")).exp()  # type: ignore[return-value]
+        turn: Any = self.log() * as_coefficients(n, "the power of a rotor")
+        power: Rotor = turn.exp()
+        return power
 
 
 def _to_wxyz(order: str) -> list[int]:

@@ -65,7 +65,7 @@ def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
     value = coerced(M)
     if value is None:
         raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
-    numbers = mapped(_native.to_pauli, _of_3d(value, "to_pauli").astype(float)._with_grades(_ALL))
+    numbers: Array = mapped(_native.to_pauli, _of_3d(value, "to_pauli").astype(float)._with_grades(_ALL))
     return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
 
 

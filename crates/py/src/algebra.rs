@@ -1,14 +1,14 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::signature::Algebra;
 use crate::arrays::{Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, threads};
+use crate::signature::Algebra;
 use numpy::PyArrayDyn;
 use polhode_ga::batch::{Element, turn_threads};
 use polhode_ga::compose::compose;
 use polhode_ga::functions::Function;
+use polhode_ga::product::Grades;
 use polhode_ga::table::G3;
 use polhode_ga::threads::Threads;
-use polhode_ga::product::Grades;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
 use pyo3::prelude::*;
 

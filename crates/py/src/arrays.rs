@@ -1,6 +1,9 @@
 //! Between NumPy arrays and fixed-size rows.
 
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
 use polhode_ga::threads::Threads;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

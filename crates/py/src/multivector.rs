@@ -403,9 +403,7 @@ impl Rotor {
 fn turned<'py>(rotor: &Bound<'py, Rotor>, x: &Bound<'py, PyAny>) -> Option<Object<'py>> {
     let rotor = rotor.as_super().get().single()?;
     match operand(x) {
-        Operand::Value(value, unit) => {
-            Some(wrap(x.py(), Held::One(value.turned(unit_rotor(rotor))), unit))
-        }
+        Operand::Value(value, unit) => Some(wrap(x.py(), Held::One(value.turned(unit_rotor(rotor))), unit)),
         _ => None,
     }
 }

@@ -52,11 +52,7 @@ pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
 #[pymethods]
 impl Buffer {
     /// Lends the memory out, from the first cache line on.
-    unsafe fn __getbuffer__(
-        slf: Bound<'_, Self>,
-        view: *mut ffi::Py_buffer,
-        flags: c_int,
-    ) -> PyResult<()> {
+    unsafe fn __getbuffer__(slf: Bound<'_, Self>, view: *mut ffi::Py_buffer, flags: c_int) -> PyResult<()> {
         let buffer = slf.get();
         let memory = buffer.memory.as_ref().ok_or_else(|| PyBufferError::new_err("no memory"))?;
         let array = memory.bind(slf.py());

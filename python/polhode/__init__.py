@@ -8,6 +8,8 @@ from polhode._bodies import Inertia as Inertia
 from polhode._geometry import axial as axial
 from polhode._geometry import from_axial as from_axial
 from polhode._geometry import split as split
+from polhode._interchange import from_dict as from_dict
+from polhode._interchange import to_dict as to_dict
 from polhode._interpolation import RotorSpline as RotorSpline
 from polhode._interpolation import mean as mean
 from polhode._interpolation import slerp as slerp

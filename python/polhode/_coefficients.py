@@ -122,6 +122,8 @@ def _as_array(values: Any, what: str) -> Any:
         return np.asarray(values)
     except ValueError as error:
         raise TypeError(f"{what} must be an array of numbers; the rows have unequal lengths") from error
+    except TypeError as error:
+        raise TypeError(f"{what} must be real numbers: {error}") from error
 
 
 def _is_exact(array: Any, asked: bool) -> bool:

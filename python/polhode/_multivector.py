@@ -130,6 +130,9 @@ class Multivector(_native.Multivector):
             )
         return float(self._data[0])
 
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("a multivector does not become an array by itself; take its .components")
+
     def _sympy_(self) -> Any:
         """Tell SymPy that this is no expression, so that ``x*e1`` comes to this class."""
         from sympy import SympifyError

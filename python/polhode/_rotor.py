@@ -247,7 +247,7 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
-        turn: Any = self.log() * as_coefficients(n, "the power of a rotor")
+        turn = self.log() * as_coefficients(n, "the power of a rotor")
         power: Rotor = turn.exp()
         return power
 

@@ -49,7 +49,7 @@ mod tests {
     fn rotors(count: usize, phase: f64) -> Vec<f64> {
         let rotor = |i: usize| {
             let c = std::array::from_fn(|k| ((4 * i + k) as f64 + phase).sin());
-            let size = if i % 5 == 0 { 1.0 + 3e-8 } else { 1.0 };
+            let size = if i.is_multiple_of(5) { 1.0 + 3e-8 } else { 1.0 };
             Rotor::from_components(c).unwrap().components().map(|x| x * size)
         };
         (0..count).flat_map(rotor).collect()

@@ -5,8 +5,15 @@ from polhode._algebra import Algebra as Algebra
 from polhode._algebra import algebra as algebra
 from polhode._bodies import Body as Body
 from polhode._bodies import Inertia as Inertia
+from polhode._geometry import axial as axial
+from polhode._geometry import from_axial as from_axial
+from polhode._geometry import split as split
 from polhode._interchange import from_dict as from_dict
 from polhode._interchange import to_dict as to_dict
+from polhode._interpolation import RotorSpline as RotorSpline
+from polhode._interpolation import mean as mean
+from polhode._interpolation import slerp as slerp
+from polhode._linear import LinearMap as LinearMap
 from polhode._motion import Certificate as Certificate
 from polhode._motion import FreeMotion as FreeMotion
 from polhode._motion import State as State
@@ -20,8 +27,6 @@ from polhode._native import __version__ as __version__
 from polhode._parts import concatenate as concatenate
 from polhode._parts import stack as stack
 from polhode._rotor import Rotor as Rotor
-from polhode._rotor import mean as mean
-from polhode._rotor import slerp as slerp
 from polhode._scene import Scene as Scene
 from polhode._values import I as I
 from polhode._values import bivector as bivector

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from numbers import Number
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -84,7 +84,7 @@ def scalars(value: Any, like: Any) -> Any:
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
-    elif not isinstance(value, Number) and foreign_kind(value) is None:
+    elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
     return as_coefficients(value, "scalar")[..., None]
 

@@ -73,6 +73,8 @@ def norm_squared(value: Multivector) -> Any:
 
 def norm(value: Multivector) -> Any:
     """``√abs⟨A ~A⟩``, of the batch shape."""
+    if value._is_one:
+        return np.float64(value._norm_of_one())
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
         kind = kind_of(data)
@@ -120,6 +122,8 @@ def _require(ok: Any, what: str, value: Multivector) -> None:
 
 def _function(name: str, value: Multivector) -> Multivector:
     """Return a function of any value: native over floats, else by the generic formulas."""
+    if value._is_one:
+        return value._function_of_one(name)
     algebra, data = value.algebra, value._data
     if is_float(data):
         mask = algebra._grades_of_function(name, value._mask)
@@ -158,6 +162,8 @@ def inverse(value: Multivector) -> Multivector:
 def exp(value: Multivector) -> Multivector:
     """``exp A``; a rotor of a bivector of 3-d space."""
     result = _function("exp", value)
+    if value._is_one:
+        return result
     is_rotor = result._mask == _EVEN and value.algebra.signature == (3, 0, 0)
     if is_rotor and not value._held() & ~_BIVECTOR:
         return _native.Rotor._from_rows(result._data)

@@ -225,6 +225,8 @@ class Rotor(_native.Rotor, Multivector):
 
     def log(self) -> Multivector:
         """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
+        if self._is_one:
+            return self._log_of_one()
         return Multivector._of(_computed("log", self._data), _BIVECTOR)
 
     def inverse(self) -> Rotor:

@@ -37,7 +37,10 @@ def call(name, d, data, mask):
 def test_grades_are_those_of_the_core(name):
     for mask in MASKS:
         assert layout.indices(mask) == _native.component_indices(mask)
-        assert layout.grades_of(name, mask) == _native.function(name, np.ones((1, 8)) + 8 * np.eye(8)[0], mask)[1]
+        assert (
+            layout.grades_of(name, mask)
+            == _native.function(name, np.ones((1, 8)) + 8 * np.eye(8)[0], mask)[1]
+        )
 
 
 # --- floating-point arrays
@@ -69,7 +72,11 @@ def test_floats_are_those_of_the_core(name, floating):
         size = np.linalg.norm(full, axis=-1)
         condition = size**2 / np.abs(plus * minus) + 1
         cut = (np.minimum(plus.real, minus.real) < 0) & (np.abs(full[:, 1:4]).max(1) < 1e-6)
-        regular = (condition < 1e4) & ~cut if name in ("log", "sqrt", "inverse") and mask & 0b1010 else condition < 1e12
+        regular = (
+            (condition < 1e4) & ~cut
+            if name in ("log", "sqrt", "inverse") and mask & 0b1010
+            else condition < 1e12
+        )
         data, condition = data[regular], condition[regular]
         x = floating(data)
         got, grades = call(name, of(x), x, mask)
@@ -78,7 +85,9 @@ def test_floats_are_those_of_the_core(name, floating):
         assert type(got) is type(x)
         # Rounding ζ² − w leaves eps |M|² beside |λ+ λ−|, and exp magnifies rounding of its argument by |M|;
         # two dozen operations either way.
-        allowed = 48 * EPS * condition if name != "exp" else 48 * EPS * (1 + np.linalg.norm(data, axis=-1)) ** 2
+        allowed = (
+            48 * EPS * condition if name != "exp" else 48 * EPS * (1 + np.linalg.norm(data, axis=-1)) ** 2
+        )
         assert np.all(difference(got, expected) <= allowed * np.linalg.norm(expected, axis=-1) + 16 * EPS)
 
 
@@ -105,7 +114,7 @@ def test_sizes_at_the_ends_of_the_range(scale, floating):
         assert abs(float(functions.norm(d, x)) / scale - norm) <= 4 * EPS * norm
         assert difference(functions.normalized(d, x), part / norm) <= 8 * EPS
         for name, power in (("inverse", -1), ("sqrt", 0.5)):
-            got, grades = call(name, d, x, mask)
+            got, _ = call(name, d, x, mask)
             expected, _ = native(name, part, mask)
             assert difference(np.asarray(got) / scale**power, expected) <= 64 * EPS * np.linalg.norm(expected)
         log, _ = call("log", d, x, mask)
@@ -119,7 +128,9 @@ def test_exp_of_large_arguments(floating):
     x = floating(turn)
     assert abs(float(functions.norm(of(x), functions.exp(of(x), x, BIVECTOR)[0])) - 1) <= 4 * EPS
     null = floating(1e200 * np.array([1.0, 0, 0, 0, 0, 1.0]))  # e1 + e1e2: the series ends
-    assert np.array_equal(np.asarray(functions.exp(of(null), null, 0b0110)[0]), [1, 1e200, 0, 0, 0, 0, 1e200, 0])
+    assert np.array_equal(
+        np.asarray(functions.exp(of(null), null, 0b0110)[0]), [1, 1e200, 0, 0, 0, 0, 1e200, 0]
+    )
 
 
 def test_float32_is_as_accurate_as_it_can_be():
@@ -171,7 +182,10 @@ def test_what_has_no_value_is_an_error_with_the_index(name, mask, value, message
     one = floating(np.array(value))
     with pytest.raises(ValueError, match=f"^[^(]*{message}"):
         call(name, of(one), one, mask)
-    ones = np.tile(np.eye(8)[0][layout.indices(mask)] if mask & 1 else np.array([*[0.5] * (len(value) - 1), 0.7]), (2, 2, 1))
+    ones = np.tile(
+        np.eye(8)[0][layout.indices(mask)] if mask & 1 else np.array([*[0.5] * (len(value) - 1), 0.7]),
+        (2, 2, 1),
+    )
     ones[1, 0] = value
     batch = floating(ones)
     with pytest.raises(ValueError, match=rf"at index \(1, 0\): .*{message}"):
@@ -256,5 +270,7 @@ def test_multiprecision_numbers_keep_their_precision():
             root, root_grades = functions.sqrt(d, data, mask)
             square = multiplied(d, root, root_grades, root, root_grades)
             want = eight_of(data, mask)
-            assert all(abs(x - y) < tiny * 1000 for x, y in zip(eight_of(back, back_grades), want, strict=True))
+            assert all(
+                abs(x - y) < tiny * 1000 for x, y in zip(eight_of(back, back_grades), want, strict=True)
+            )
             assert all(abs(x - y) < tiny * 1000 for x, y in zip(square, want, strict=True))

@@ -89,7 +89,10 @@ def test_from_vectors_also_when_opposite(floating):
     core = _native.rotor_from_vectors(np.hstack([a, b]))
     assert np.all(difference(got[:20, ...], core[:20]) <= 16 * EPS)
     turned = np.asarray(rotors.apply(of(x), got, x, 0b0010))
-    units = [v / np.linalg.norm(v, axis=-1, keepdims=True) * np.linalg.norm(a, axis=-1, keepdims=True) for v in (b,)]
+    units = [
+        v / np.linalg.norm(v, axis=-1, keepdims=True) * np.linalg.norm(a, axis=-1, keepdims=True)
+        for v in (b,)
+    ]
     assert np.all(difference(turned, units[0]) <= 32 * EPS * np.linalg.norm(a, axis=-1))
 
 
@@ -166,4 +169,7 @@ def test_exact_rotors_are_near_those_of_the_core():
     assert np.all(difference(rotors.log(d, r), rotors.log(of(1.0), floats)) <= 16 * EPS)
     turns = rotors.to_rotation_vector(d, r)
     assert np.all(difference(turns, _native.rotor_to_rotation_vector(floats)) <= 16 * EPS)
-    assert np.all(difference(rotors.from_rotation_vector(d, turns), floats * np.where(floats[:, :1] < 0, -1, 1)) <= 16 * EPS)
+    assert np.all(
+        difference(rotors.from_rotation_vector(d, turns), floats * np.where(floats[:, :1] < 0, -1, 1))
+        <= 16 * EPS
+    )

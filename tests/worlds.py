@@ -1,4 +1,4 @@
-"""Kinds of coefficients to hold the generic algebra to, and products as lists of terms by an oracle of their own."""
+"""Kinds of coefficients to hold the generic algebra to, and products as lists of terms by an oracle."""
 
 from fractions import Fraction
 from functools import cache

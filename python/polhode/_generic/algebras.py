@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from polhode._generic.closed_forms import free_root
 from polhode._generic.coefficients import Coefficients
-from polhode._generic.exact import call, divide, is_symbolic, is_zero, sqrt
+from polhode._generic.exact import call, divide, is_symbolic, is_zero
 from polhode._generic.functions import by_rows, components, require_in_range
 from polhode._generic.numeric import Numeric
 from polhode._generic.products import Term, product
@@ -184,10 +185,10 @@ def _exp_row(terms: Sequence[Term], m: list[Any]) -> list[Any]:
     if is_zero(w):
         cosh, sinhc = 1, 1
     elif w.is_nonpositive if is_symbolic(w) else w < 0:
-        root = sqrt(-w)
+        root = free_root(-w)
         cosh, sinhc = call("cos", root), divide(call("sin", root), root)
     else:
-        root = sqrt(w)
+        root = free_root(w)
         cosh, sinhc = call("cosh", root), divide(call("sinh", root), root)
     factor = call("exp", s)
     return [factor * cosh, *(factor * sinhc * x for x in v[1:])]

@@ -100,7 +100,8 @@ def test_complex_numbers_are_refused():
 
 def test_sympy_and_jax_are_not_imported():
     code = (
-        "import sys; from fractions import Fraction as F; from polhode._generic import coefficients, functions;"
+        "import sys; from fractions import Fraction as F;"
+        "from polhode._generic import coefficients, functions;"
         "d = coefficients.of(F(1, 2)); functions.exp(d, d.asarray([0, 0, F(1, 2)]), 4);"
         "assert not {'sympy', 'jax', 'mpmath', 'array_api_compat'} & set(sys.modules)"
     )

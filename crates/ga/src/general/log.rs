@@ -29,8 +29,14 @@ pub const VERSOR_TOLERANCE: f64 = 1e-12;
 /// The most that the size of a logarithm may loosen its check.
 const MOST_LENIENT: f64 = 1e3;
 
+/// No logarithm is given that is less certain than this, relative to R.
+const MOST_TOLERANT: f64 = 1e-6;
+
 /// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// From this q on `U² = q` splits the ring into two numbers without loss.
+const SPLITS: f64 = 0.25;
 
 /// The series of g is summed within `|1 − c| <= NEAR`: 14 terms of ratio 1/16 at most.
 pub(super) const NEAR: f64 = 0.125;
@@ -122,11 +128,13 @@ impl Calculus {
         self.principal_log(r).filter(|log| self.is_log(log, r))
     }
 
-    /// Whether `exp(log) = R`.
+    /// Whether `exp(log) = R`. The rounding of a large R leaves its size, from `R~R = 1`, uncertain by
+    /// `ε|R|²`, which the halves of R that are not large feel.
     fn is_log(&self, log: &[f64], r: &[f64]) -> bool {
         let Ok(mut difference) = self.exp_bits(log) else { return false };
         add_scaled(&mut difference, r, -1.0);
-        norm(&difference) <= VERSOR_TOLERANCE * norm(r) * (1.0 + norm(log)).min(MOST_LENIENT)
+        let tolerance = VERSOR_TOLERANCE * (1.0 + norm(log)).min(MOST_LENIENT) + ROUNDING * norm(r);
+        norm(&difference) <= tolerance.min(MOST_TOLERANT) * norm(r)
     }
 
     fn principal_log(&self, r: &[f64]) -> Option<Vec<f64>> {
@@ -141,18 +149,33 @@ impl Calculus {
             y = 0.0;
         }
         unit.iter_mut().for_each(|x| *x = if y > 0.0 { *x / y } else { 0.0 });
-        let ring = Ring { q: self.scalar_product(&unit, &unit) };
+        let q = self.scalar_product(&unit, &unit);
+        if y == 0.0 {
+            return Some(scaled(&f, number_factor(r[0], self.scalar_product(&f, &f), &f)?));
+        }
+        let turned = self.product(&f, &unit);
+        let combine = |a: f64, b: f64| -> Vec<f64> {
+            let of = |bits| if grade(bits) == 2 { a * f[bits] + b * turned[bits] } else { 0.0 };
+            (0..f.len()).map(of).collect()
+        };
+        if q > SPLITS {
+            // The idempotents P = ½(1 ± U/√q) split C and F: in each half C is a number c, and
+            // F² = λP with `⟨F²⟩ = λ/2`.
+            let mut log = vec![0.0; r.len()];
+            for root in [q.sqrt(), -q.sqrt()] {
+                let half = combine(0.5, 0.5 / root);
+                let square = 2.0 * self.scalar_product(&half, &half);
+                add_scaled(&mut log, &half, number_factor(r[0] + y * root, square, &half)?);
+            }
+            return Some(log);
+        }
+        let ring = Ring { q };
         let square = self.product(&f, &f);
         let along_unit: f64 = square.iter().zip(&unit).map(|(a, b)| a * b).sum();
         let f_squared = Pair { x: square[0], y: along_unit };
         let turns = ring.radius(f_squared) > ROUNDING * norm(&f).powi(2);
-        let factor = log_over_sinh(ring, Pair { x: r[0], y }, turns.then_some(f_squared))?;
-        let turned = self.product(&f, &unit);
-        Some(
-            (0..r.len())
-                .map(|b| if grade(b) == 2 { factor.x * f[b] + factor.y * turned[b] } else { 0.0 })
-                .collect(),
-        )
+        let factor = ring_factor(ring, Pair { x: r[0], y }, turns.then_some(f_squared))?;
+        Some(combine(factor.x, factor.y))
     }
 
     /// Bivectors that commute with R, of square about −1, perpendicular to R's own.
@@ -193,17 +216,29 @@ impl Calculus {
     }
 }
 
+/// The factor κ with `B = F κ` where `C = cosh B` is a number c and `F² = sinh² B` the number `square`.
+fn number_factor(c: f64, square: f64, f: &[f64]) -> Option<f64> {
+    if square.abs() <= ROUNDING * norm(f).powi(2) {
+        return (c > 0.0).then_some(1.0);
+    }
+    let sinh = square.abs().sqrt();
+    if square < 0.0 {
+        return Some(sinh.atan2(c) / sinh);
+    }
+    (c > 0.0).then(|| sinh.asinh() / sinh)
+}
+
 /// The factor κ with `B = F κ`, for `C = cosh B` and, where it is more than rounding, `F² = sinh² B`.
 ///
 /// With a negative real part `1 + C` cancels. Where `−F²` has a root S, so that B turns only, `F/S` is a
 /// unit, and turning back by a quarter, `R' = −R F/S = S − C F/S`, leaves the rest: `κ = (π/2 + κ')/S`.
-fn log_over_sinh(ring: Ring, c: Pair, f_squared: Option<Pair>) -> Option<Pair> {
-    if c.x < 0.0 {
-        if let Some(s) = f_squared.and_then(|square| ring.sqrt(square.scale(-1.0))) {
-            let over = ring.inverse(s);
-            let rest = walk(ring, s, ring.mul(c.scale(-1.0), over))?;
-            return Some(rest.plus(over.scale(FRAC_PI_2)));
-        }
+fn ring_factor(ring: Ring, c: Pair, f_squared: Option<Pair>) -> Option<Pair> {
+    if c.x < 0.0
+        && let Some(s) = f_squared.and_then(|square| ring.sqrt(square.scale(-1.0)))
+    {
+        let over = ring.inverse(s);
+        let rest = walk(ring, s, ring.mul(c.scale(-1.0), over))?;
+        return Some(rest.plus(over.scale(FRAC_PI_2)));
     }
     walk(ring, c, Pair::ONE)
 }

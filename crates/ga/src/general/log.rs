@@ -17,7 +17,8 @@
 //!
 //! Every result is checked: `exp(log R)` must be R again.
 
-use super::pair::{Pair, Ring};
+use super::exp::unit_of_grade_4;
+use super::pair::{Pair, Ring, SPLITS};
 use super::{Calculus, add_scaled, grade, part, reverse, scaled};
 use crate::functions::MathError;
 use crate::values::{norm, scale_of};
@@ -34,9 +35,6 @@ const MOST_TOLERANT: f64 = 1e-6;
 
 /// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
-
-/// From this q on `U² = q` splits the ring into two numbers without loss.
-const SPLITS: f64 = 0.25;
 
 /// The series of g is summed within `|1 − c| <= NEAR`: 14 terms of ratio 1/16 at most.
 pub(super) const NEAR: f64 = 0.125;
@@ -142,40 +140,80 @@ impl Calculus {
             return self.log_by_roots(r);
         }
         let f = part(r, |k| k == 2);
-        let mut unit = part(r, |k| k == 4);
-        let mut y = norm(&unit);
-        // Rounding of a simple rotor, which would only disturb it near −1.
-        if y <= ROUNDING * norm(r) && self.null == 0 {
-            y = 0.0;
-        }
-        unit.iter_mut().for_each(|x| *x = if y > 0.0 { *x / y } else { 0.0 });
-        let q = self.scalar_product(&unit, &unit);
-        if y == 0.0 {
+        let Some((unit, y)) = self.unit_and_component(r, &f) else {
             return Some(scaled(&f, number_factor(r[0], self.scalar_product(&f, &f), &f)?));
-        }
-        let turned = self.product(&f, &unit);
-        let combine = |a: f64, b: f64| -> Vec<f64> {
-            let of = |bits| if grade(bits) == 2 { a * f[bits] + b * turned[bits] } else { 0.0 };
-            (0..f.len()).map(of).collect()
         };
+        let q = self.scalar_product(&unit, &unit);
         if q > SPLITS {
-            // The idempotents P = ½(1 ± U/√q) split C and F: in each half C is a number c, and
-            // F² = λP with `⟨F²⟩ = λ/2`.
+            // In each half C is a number c, and `F² = λP` with `⟨F²⟩ = λ/2`.
             let mut log = vec![0.0; r.len()];
             for root in [q.sqrt(), -q.sqrt()] {
-                let half = combine(0.5, 0.5 / root);
+                let half = self.half(&f, &unit, root);
                 let square = 2.0 * self.scalar_product(&half, &half);
                 add_scaled(&mut log, &half, number_factor(r[0] + y * root, square, &half)?);
             }
             return Some(log);
         }
         let ring = Ring { q };
-        let square = self.product(&f, &f);
-        let along_unit: f64 = square.iter().zip(&unit).map(|(a, b)| a * b).sum();
-        let f_squared = Pair { x: square[0], y: along_unit };
-        let turns = ring.radius(f_squared) > ROUNDING * norm(&f).powi(2);
-        let factor = ring_factor(ring, Pair { x: r[0], y }, turns.then_some(f_squared))?;
-        Some(combine(factor.x, factor.y))
+        if r[0] < 0.0
+            && let Some(plane) = self.unit_plane(ring, &f, &unit)
+        {
+            // Here 1 + C cancels. Turned back by a quarter in the unit plane, −R P, it does not.
+            let mut log = self.log_in_ring(&scaled(&self.product(r, &plane), -1.0))?;
+            add_scaled(&mut log, &plane, FRAC_PI_2);
+            return Some(log);
+        }
+        self.log_in_ring(r)
+    }
+
+    /// The unit U along the part Q of grade 4, and `Q = yU`; none where it is rounding, for a simple rotor.
+    /// As `F∧F = 2⟨R⟩Q`, either gives the direction: that with less rounding is taken.
+    fn unit_and_component(&self, r: &[f64], f: &[f64]) -> Option<(Vec<f64>, f64)> {
+        let length = norm(f).powi(2);
+        let (unit, size, rounding) = if length < r[0].abs() {
+            let (unit, size) = unit_of_grade_4(&self.product(f, f));
+            (unit, size, ROUNDING * length)
+        } else {
+            let (unit, size) = unit_of_grade_4(r);
+            (unit, size, ROUNDING * norm(r))
+        };
+        (size > rounding).then(|| {
+            let y = r.iter().zip(&unit).map(|(a, b)| a * b).sum();
+            (unit, y)
+        })
+    }
+
+    /// The logarithm of a rotor whose `1 + C` is not small, by the walk in the ring of its C.
+    fn log_in_ring(&self, r: &[f64]) -> Option<Vec<f64>> {
+        let f = part(r, |k| k == 2);
+        let (unit, y) = self.unit_and_component(r, &f).unwrap_or_else(|| (self.scalar(0.0), 0.0));
+        let ring = Ring { q: self.scalar_product(&unit, &unit) };
+        Some(self.times(&f, &unit, walk(ring, Pair { x: r[0], y })?))
+    }
+
+    /// `P = F/√(−F²)`, the bivector with `P² = −1` that is F times a pair; none where F does not turn
+    /// only, or `F²` is rounding. A Newton step, `P(3 + P²)/2`, makes it a unit to rounding.
+    fn unit_plane(&self, ring: Ring, f: &[f64], unit: &[f64]) -> Option<Vec<f64>> {
+        let square = self.square_in_ring(f, unit);
+        if ring.radius(square) <= ROUNDING * norm(f).powi(2) {
+            return None;
+        }
+        let plane = self.times(f, unit, ring.inverse(ring.sqrt(square.scale(-1.0))?));
+        let square = self.square_in_ring(&plane, unit);
+        Some(self.times(&plane, unit, square.plus(Pair { x: 3.0, y: 0.0 }).scale(0.5)))
+    }
+
+    /// `F²` of a bivector as a pair.
+    fn square_in_ring(&self, f: &[f64], unit: &[f64]) -> Pair {
+        let square = self.product(f, f);
+        Pair { x: square[0], y: square.iter().zip(unit).map(|(a, b)| a * b).sum() }
+    }
+
+    /// A bivector times a pair.
+    fn times(&self, f: &[f64], unit: &[f64], factor: Pair) -> Vec<f64> {
+        let mut out = part(&self.product(f, unit), |k| k == 2);
+        out.iter_mut().zip(f).for_each(|(o, f)| *o = factor.x * f + factor.y * *o);
+        out
     }
 
     /// Bivectors that commute with R, of square about −1, perpendicular to R's own.
@@ -228,35 +266,19 @@ fn number_factor(c: f64, square: f64, f: &[f64]) -> Option<f64> {
     (c > 0.0).then(|| sinh.asinh() / sinh)
 }
 
-/// The factor κ with `B = F κ`, for `C = cosh B` and, where it is more than rounding, `F² = sinh² B`.
-///
-/// With a negative real part `1 + C` cancels. Where `−F²` has a root S, so that B turns only, `F/S` is a
-/// unit, and turning back by a quarter, `R' = −R F/S = S − C F/S`, leaves the rest: `κ = (π/2 + κ')/S`.
-fn ring_factor(ring: Ring, c: Pair, f_squared: Option<Pair>) -> Option<Pair> {
-    if c.x < 0.0
-        && let Some(s) = f_squared.and_then(|square| ring.sqrt(square.scale(-1.0)))
-    {
-        let over = ring.inverse(s);
-        let rest = walk(ring, s, ring.mul(c.scale(-1.0), over))?;
-        return Some(rest.plus(over.scale(FRAC_PI_2)));
-    }
-    walk(ring, c, Pair::ONE)
-}
-
-/// Halves `C = cosh B` until it is near 1; returns `phi` times the factor with `B = F · factor`.
-fn walk(ring: Ring, mut c: Pair, mut phi: Pair) -> Option<Pair> {
+/// The factor κ with `B = F κ` for `C = cosh B`: halves until C is near 1.
+fn walk(ring: Ring, mut c: Pair) -> Option<Pair> {
     let one_minus = |c: Pair| Pair { x: 1.0 - c.x, y: -c.y };
-    let mut halvings = 0;
-    while ring.radius(one_minus(c)) > NEAR {
-        c = ring.sqrt(c.plus(Pair::ONE).scale(0.5))?;
-        // F/(2 cosh) of half the argument, which doubles again: the factors 2 cancel.
-        phi = ring.mul(phi, ring.inverse(c));
-        halvings += 1;
-        if halvings > MOST_HALVINGS {
-            return None;
+    let mut factor = Pair::ONE;
+    for _ in 0..=MOST_HALVINGS {
+        if ring.radius(one_minus(c)) <= NEAR {
+            return Some(ring.mul(factor, ring.series(&ARCOSH, one_minus(c).scale(0.5))));
         }
+        c = ring.sqrt(c.plus(Pair::ONE).scale(0.5))?;
+        // B = 2 · B/2, with sinh(B/2) = F / 2 cosh(B/2): the factors 2 cancel.
+        factor = ring.mul(factor, ring.inverse(c));
     }
-    Some(ring.mul(phi, ring.series(&ARCOSH, one_minus(c).scale(0.5))))
+    None
 }
 
 /// The coefficients tⱼ of g.

@@ -141,7 +141,7 @@ impl Calculus {
         }
         let f = part(r, |k| k == 2);
         let Some((unit, y)) = self.unit_and_component(r, &f) else {
-            return Some(scaled(&f, number_factor(r[0], self.scalar_product(&f, &f), &f)?));
+            return Some(scaled(&f, self.number_factor(r[0], &f, 1.0)?));
         };
         let q = self.scalar_product(&unit, &unit);
         if q > SPLITS {
@@ -149,8 +149,7 @@ impl Calculus {
             let mut log = vec![0.0; r.len()];
             for root in [q.sqrt(), -q.sqrt()] {
                 let half = self.half(&f, &unit, root);
-                let square = 2.0 * self.scalar_product(&half, &half);
-                add_scaled(&mut log, &half, number_factor(r[0] + y * root, square, &half)?);
+                add_scaled(&mut log, &half, self.number_factor(r[0] + y * root, &half, 2.0)?);
             }
             return Some(log);
         }
@@ -164,6 +163,21 @@ impl Calculus {
             return Some(log);
         }
         self.log_in_ring(r)
+    }
+
+    /// The factor κ with `B = F κ` where `C = cosh B` is a number c, and `F² = sinh² B` is `multiple · ⟨F²⟩`.
+    fn number_factor(&self, c: f64, f: &[f64], multiple: f64) -> Option<f64> {
+        let scale = scale_of(f);
+        let f = scaled(f, 1.0 / scale);
+        let square = multiple * self.scalar_product(&f, &f);
+        let sinh = square.abs().sqrt() * scale;
+        if square.abs() <= ROUNDING * norm(&f).powi(2) {
+            (c > 0.0).then_some(1.0)
+        } else if square < 0.0 {
+            Some(sinh.atan2(c) / sinh)
+        } else {
+            (c > 0.0).then(|| sinh.asinh() / sinh)
+        }
     }
 
     /// The unit U along the part Q of grade 4, and `Q = yU`; none where it is rounding, for a simple rotor.
@@ -252,18 +266,6 @@ impl Calculus {
             })
             .collect()
     }
-}
-
-/// The factor κ with `B = F κ` where `C = cosh B` is a number c and `F² = sinh² B` the number `square`.
-fn number_factor(c: f64, square: f64, f: &[f64]) -> Option<f64> {
-    if square.abs() <= ROUNDING * norm(f).powi(2) {
-        return (c > 0.0).then_some(1.0);
-    }
-    let sinh = square.abs().sqrt();
-    if square < 0.0 {
-        return Some(sinh.atan2(c) / sinh);
-    }
-    (c > 0.0).then(|| sinh.asinh() / sinh)
 }
 
 /// The factor κ with `B = F κ` for `C = cosh B`: halves until C is near 1.

@@ -20,7 +20,7 @@ const LARGE: f64 = 1.0;
 /// Below this part of a bivector its half counts as small.
 const SMALL_HALF: f64 = 0.25;
 
-/// Beyond this angle, in halvings, the rounding of the argument alone is a whole turn.
+/// Beyond this binary logarithm of an angle its rounding alone may be a turn.
 const MOST_HALVINGS: f64 = 52.0;
 
 /// Terms of `exp`: for a size of at most 1/2 the next is below 2⁻⁵³ of the sum.
@@ -52,7 +52,7 @@ impl Calculus {
         if self.generators <= 5 && (0..m.len()).all(|b| grade(b) == 2 || v[b] == 0.0) {
             return self.exp_of_bivector(s, &v);
         }
-        self.exp_by_squaring(s, &v)
+        Ok(times_exp(self.exp_by_squaring(&v)?, s))
     }
 
     /// For `V² = S` in the ring of pairs.
@@ -60,6 +60,8 @@ impl Calculus {
         let square = self.product(v, v);
         let (unit, y) = unit_of_grade_4(&square);
         let q = self.scalar_product(&unit, &unit);
+        let (ring, full) = (Ring { q }, Pair { x: square[0], y });
+        let halvings = halvings(0.5 * ring.radius(full).log2())?;
         let mut exp = vec![0.0; v.len()];
         if q > SPLITS {
             for root in [q.sqrt(), -q.sqrt()] {
@@ -71,14 +73,12 @@ impl Calculus {
             }
             return Ok(exp);
         }
-        let (c, phi) = cosh_sinhc_of_pair(Ring { q }, Pair { x: square[0], y })?;
+        let (c, phi) = cosh_sinhc_of_pair(ring, full, halvings);
         exp[0] = c.x;
         add_scaled(&mut exp, &unit, c.y);
         add_scaled(&mut exp, v, phi.x);
         add_scaled(&mut exp, &part(&self.product(v, &unit), |k| k == 2), phi.y);
-        let factor = s.exp();
-        exp.iter_mut().for_each(|x| *x *= factor);
-        Ok(exp)
+        Ok(times_exp(exp, s))
     }
 
     /// The half `P F` of a bivector, with the idempotent `P = ½(1 + U/root)`, `root² = U²`, for U of
@@ -94,14 +94,11 @@ impl Calculus {
         if norm(&half) < SMALL_HALF * norm(f) { halve(&half) } else { half }
     }
 
-    /// By the series of `exp(M/2ᵏ) − 1`; squaring `1 + E` as `2E + E²` keeps small parts exact.
-    fn exp_by_squaring(&self, s: f64, v: &[f64]) -> Result<Vec<f64>, MathError> {
+    /// By the series of `exp(V/2ᵏ) − 1`; squaring `1 + E` as `2E + E²` keeps small parts exact.
+    fn exp_by_squaring(&self, v: &[f64]) -> Result<Vec<f64>, MathError> {
         let size: f64 = v.iter().map(|x| x.abs()).sum();
-        let halvings = (size.log2() + 1.0).ceil().max(0.0);
-        if halvings.is_nan() || halvings > MOST_HALVINGS {
-            return Err(MathError::AngleTooLarge);
-        }
-        let small = scaled(v, (-halvings).exp2());
+        let halvings = halvings(size.log2())?;
+        let small = scaled(v, (-f64::from(halvings)).exp2());
         // Horner: E = V(1 + V/2(1 + V/3(1 + …))).
         let mut e = small.clone();
         for j in (2..=TERMS).rev() {
@@ -109,10 +106,7 @@ impl Calculus {
             e[0] += 1.0;
             e = self.product(&small, &e);
         }
-        let factor = s * (-halvings).exp2();
-        e.iter_mut().for_each(|x| *x *= factor.exp());
-        e[0] += factor.exp_m1();
-        for _ in 0..halvings as u32 {
+        for _ in 0..halvings {
             let square = self.product(&e, &e);
             e.iter_mut().zip(square).for_each(|(x, y)| *x = 2.0 * *x + y);
         }
@@ -144,21 +138,32 @@ fn cosh_sinhc(s: f64, w: f64, scale: f64) -> (f64, f64) {
     }
 }
 
-/// `cosh √S` and `sinh √S / √S` by series and doubling.
-fn cosh_sinhc_of_pair(ring: Ring, square: Pair) -> Result<(Pair, Pair), MathError> {
-    let halvings = (0.5 * ring.radius(square).log2() + 1.0).ceil().max(0.0);
-    if halvings.is_nan() || halvings > MOST_HALVINGS {
+/// How often to halve an argument of this binary logarithm to reach 1/2; an error beyond all certainty.
+fn halvings(log2: f64) -> Result<u32, MathError> {
+    if log2.is_nan() || log2 > MOST_HALVINGS {
         return Err(MathError::AngleTooLarge);
     }
-    let mut z = square.scale((-2.0 * halvings).exp2());
+    Ok((log2 + 1.0).ceil().max(0.0) as u32)
+}
+
+/// `e^s M`, where `e^s` may be out of range and the product in it.
+fn times_exp(mut m: Vec<f64>, s: f64) -> Vec<f64> {
+    let root = (0.5 * s).exp();
+    m.iter_mut().for_each(|x| *x = *x * root * root);
+    m
+}
+
+/// `cosh √S` and `sinh √S / √S` by series and doubling.
+fn cosh_sinhc_of_pair(ring: Ring, square: Pair, halvings: u32) -> (Pair, Pair) {
+    let mut z = square.scale((-2.0 * f64::from(halvings)).exp2());
     let (mut c, mut phi) = (ring.series(&COSH, z), ring.series(&SINHC, z));
-    for _ in 0..halvings as u32 {
+    for _ in 0..halvings {
         // cosh 2x = cosh² x + sinh² x, sinh 2x / 2x = cosh x · sinh x / x.
         let sinh_squared = ring.mul(z, ring.mul(phi, phi));
         (c, phi) = (ring.mul(c, c).plus(sinh_squared), ring.mul(c, phi));
         z = z.scale(4.0);
     }
-    Ok((c, phi))
+    (c, phi)
 }
 
 /// `1/(2j)!`, the series of `cosh √z`; for |z| <= 1/4 the next term is below 2⁻⁵³.

@@ -19,19 +19,20 @@
 
 use super::exp::unit_of_grade_4;
 use super::pair::{Pair, Ring, SPLITS};
-use super::{Calculus, add_scaled, grade, part, reverse, scaled};
+use super::roots::symmetric_eigen;
+use super::{Calculus, add_scaled, dot, grade, part, reverse, scaled};
 use crate::functions::MathError;
 use crate::values::{norm, scale_of};
 use std::f64::consts::FRAC_PI_2;
 
 /// How far `R~R` may be from a number, and `exp(log R)` from R per unit of `1 + |log R|`.
-pub const VERSOR_TOLERANCE: f64 = 1e-12;
+const VERSOR_TOLERANCE: f64 = 1e-12;
 
 /// The most that the size of a logarithm may loosen its check.
 const MOST_LENIENT: f64 = 1e3;
 
 /// No logarithm is given that is less certain than this, relative to R.
-const MOST_TOLERANT: f64 = 1e-6;
+const MOST_TOLERANT: f64 = 1e-8;
 
 /// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
@@ -53,8 +54,10 @@ impl Calculus {
     /// The logarithm `ln|M| + B`, B a bivector, of a positive number times an even versor; `exp(log M) = M`.
     /// `log 1 = 0`; `log(−1) = π E` with E the first basis plane of square −1.
     ///
-    /// With up to five generators it is found wherever there is one. With more, where the sum of the
-    /// angles of B over its planes is below π, and in some other cases; otherwise it is an error.
+    /// With up to five generators it is found wherever there is one, as far as rounding lets it be seen:
+    /// with two generators or more of either sign, a large boost may drown the rotation beside it. With
+    /// more generators, where the sum of the angles of B over its planes is below π, and in most other
+    /// cases. What is not found is an error.
     pub fn log(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let polar = self.polar(&self.read(m)?)?.ok_or(MathError::NoLogarithm)?;
         let mut log = polar.bivector;
@@ -110,7 +113,8 @@ impl Calculus {
 
     /// The bivector B with `exp B = R`.
     fn log_of_unit(&self, r: &[f64]) -> Result<Vec<f64>, MathError> {
-        let found = self.checked_log(r).or_else(|| {
+        let principal = self.principal_log(r).filter(|log| self.is_log(log, r));
+        let found = principal.or_else(|| {
             self.commuting_planes(r).into_iter().find_map(|plane| {
                 let y = scaled(&plane, FRAC_PI_2);
                 let rest = self.product(r, &self.exp_bits(&scaled(&y, -1.0)).ok()?);
@@ -122,10 +126,6 @@ impl Calculus {
         found.ok_or(MathError::NoBivectorLogarithm)
     }
 
-    fn checked_log(&self, r: &[f64]) -> Option<Vec<f64>> {
-        self.principal_log(r).filter(|log| self.is_log(log, r))
-    }
-
     /// Whether `exp(log) = R`. The rounding of a large R leaves its size, from `R~R = 1`, uncertain by
     /// `ε|R|²`, which the halves of R that are not large feel.
     fn is_log(&self, log: &[f64], r: &[f64]) -> bool {
@@ -135,6 +135,7 @@ impl Calculus {
         norm(&difference) <= tolerance.min(MOST_TOLERANT) * norm(r)
     }
 
+    /// The end of the walk, unchecked; none where it has no start.
     fn principal_log(&self, r: &[f64]) -> Option<Vec<f64>> {
         if self.generators > 5 {
             return self.log_by_roots(r);
@@ -192,7 +193,7 @@ impl Calculus {
             (unit, size, ROUNDING * norm(r))
         };
         (size > rounding).then(|| {
-            let y = r.iter().zip(&unit).map(|(a, b)| a * b).sum();
+            let y = dot(r, &unit);
             (unit, y)
         })
     }
@@ -220,7 +221,7 @@ impl Calculus {
     /// `F²` of a bivector as a pair.
     fn square_in_ring(&self, f: &[f64], unit: &[f64]) -> Pair {
         let square = self.product(f, f);
-        Pair { x: square[0], y: square.iter().zip(unit).map(|(a, b)| a * b).sum() }
+        Pair { x: square[0], y: dot(&square, unit) }
     }
 
     /// A bivector times a pair.
@@ -230,41 +231,39 @@ impl Calculus {
         out
     }
 
-    /// Bivectors that commute with R, of square about −1, perpendicular to R's own.
+    /// Bivectors that commute with R, of square about −1: R's own, and others perpendicular to it.
     ///
     /// The condition `YR = RY` is linear in Y; its solutions are the eigenvectors of eigenvalue 0 of the
     /// matrix of `|YR − RY|²`.
     fn commuting_planes(&self, r: &[f64]) -> Vec<Vec<f64>> {
         let basis: Vec<usize> = (0..r.len()).filter(|&b| grade(b) == 2).collect();
-        let commutators: Vec<Vec<f64>> = basis
-            .iter()
-            .map(|&b| {
-                let mut plane = vec![0.0; r.len()];
-                plane[b] = 1.0;
-                let mut difference = self.product(&plane, r);
-                add_scaled(&mut difference, &self.product(r, &plane), -1.0);
-                difference
-            })
-            .collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-        let gram = commutators.iter().map(|a| commutators.iter().map(|b| dot(a, b)).collect()).collect();
-        let (values, vectors) = super::roots::symmetric_eigen(gram);
-        let f = part(r, |k| k == 2);
-        let own = dot(&f, &f);
-        let bound = VERSOR_TOLERANCE * norm(r).powi(2);
-        let commuting = values.iter().zip(vectors).filter(|(value, _)| **value <= bound);
-        commuting
-            .filter_map(|(_, components)| {
+        let commutator = |&b: &usize| {
+            let mut plane = vec![0.0; r.len()];
+            plane[b] = 1.0;
+            let mut difference = self.product(&plane, r);
+            add_scaled(&mut difference, &self.product(r, &plane), -1.0);
+            difference
+        };
+        let commutators: Vec<Vec<f64>> = basis.iter().map(commutator).collect();
+        let row = |a: &Vec<f64>| commutators.iter().map(|b| dot(a, b)).collect();
+        let (values, vectors) = symmetric_eigen(commutators.iter().map(row).collect());
+        let own = part(r, |k| k == 2);
+        let bound = ROUNDING * norm(r).powi(2);
+        let others =
+            values.iter().zip(vectors).filter(|(value, _)| **value <= bound).map(|(_, components)| {
                 let mut y = vec![0.0; r.len()];
                 basis.iter().zip(components).for_each(|(&b, c)| y[b] = c);
-                if own > bound {
-                    let along = dot(&y, &f) / own;
-                    add_scaled(&mut y, &f, -along);
+                if dot(&own, &own) > bound {
+                    let along = dot(&y, &own) / dot(&own, &own);
+                    add_scaled(&mut y, &own, -along);
                 }
-                let square = self.scalar_product(&y, &y);
-                (square < -1e-3).then(|| scaled(&y, 1.0 / (-square).sqrt()))
-            })
-            .collect()
+                y
+            });
+        let turning = |y: Vec<f64>| {
+            let square = self.scalar_product(&y, &y);
+            (square < -1e-3 * dot(&y, &y)).then(|| scaled(&y, 1.0 / (-square).sqrt()))
+        };
+        std::iter::once(own.clone()).chain(others).filter_map(turning).collect()
     }
 }
 

@@ -127,3 +127,27 @@ fn whole_turns_have_logarithms_where_a_plane_is_left() {
         assert_eq!(space.calculus.log(&rotor), Err(MathError::NoBivectorLogarithm), "{rotor:?}");
     }
 }
+
+/// With six generators and more: small and moderate angles, whole turns, half turns in all planes.
+#[test]
+fn many_planes() {
+    let space = Space::new(6, 0, 0);
+    for angles in
+        [[0.1, 0.2, 0.3], [1.0, 1e-9, -2.0], [PI, 0.0, 0.0], [0.5 * PI, 0.5 * PI, 0.0], [1.5, 1.5, 1e-3]]
+    {
+        let planes: [&[usize]; 3] = [&[1, 2], &[3, 4], &[5, 6]];
+        let b = space.sum(&[0, 1, 2].map(|i| (angles[i], planes[i])));
+        let factors = [0, 1, 2].map(|i| space.sum(&[(angles[i].cos(), &[]), (angles[i].sin(), planes[i])]));
+        let rotor = space.product(&space.product(&factors[0], &factors[1]), &factors[2]);
+        assert!(
+            distance(&space.calculus.exp(&b).unwrap(), &rotor) <= 8.0 * EPS * (1.0 + norm(&b)),
+            "{angles:?}"
+        );
+        let log = space.calculus.log(&rotor).unwrap();
+        assert!(distance(&space.calculus.exp(&log).unwrap(), &rotor) <= 1e-12, "{angles:?}");
+    }
+    let boosts = Space::new(4, 4, 0);
+    let b = boosts.sum(&[(2.0, &[1, 5]), (-1.0, &[2, 6]), (0.5, &[3, 4]), (0.7, &[7, 8])]);
+    let log = boosts.calculus.log(&boosts.calculus.exp(&b).unwrap()).unwrap();
+    assert!(distance(&log, &b) <= 1e-12, "{}", distance(&log, &b));
+}

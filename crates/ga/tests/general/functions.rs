@@ -195,3 +195,28 @@ fn values_keep_to_their_grades() {
     assert_eq!(projective.grades(Function::Log, Grades(0b10101)), Grades(0b101));
     assert_eq!(projective.grades(Function::Inverse, Grades(0b10)), Grades(0b10));
 }
+
+/// A number added to M is a factor, however small: `exp(s + V) = e^s exp V`.
+#[test]
+fn scalars_become_factors() {
+    for (p, q, r) in [(3, 0, 0), (1, 3, 0), (3, 0, 1), (2, 2, 0), (4, 1, 0), (6, 0, 0)] {
+        let space = Space::new(p, q, r);
+        let general: Vec<f64> = (0..space.size()).map(|i| (7.3 * i as f64 + 1.0).sin()).collect();
+        for mut v in [general.clone(), space.of_grade(2, &general), space.of_grade(1, &general)] {
+            v[0] = 0.0;
+            let exp = space.calculus.exp(&v).unwrap();
+            for s in [-600.0, -50.0, 1.0, 300.0] {
+                v[0] = s;
+                let expected = scaled(&exp, f64::exp(s));
+                let error = distance(&space.calculus.exp(&v).unwrap(), &expected);
+                // The exponent of a boost is s added to a number, and rounded.
+                assert!(error <= (8.0 + s.abs()) * EPS * norm(&expected), "{p} {q} {r} {s}");
+            }
+        }
+    }
+    // Neither factor of e^(−720) e^(710) is in range with all its digits, the product is.
+    let spacetime = Space::new(1, 3, 0);
+    let exp =
+        spacetime.calculus.exp(&spacetime.sum(&[(-720.0, &[]), (710.0, &[1, 2]), (1.0, &[3, 4])])).unwrap();
+    assert!((exp[0] / (0.5 * f64::exp(-10.0) * f64::cos(1.0)) - 1.0).abs() <= 2.0 * EPS * 710.0, "{exp:?}");
+}

@@ -9,17 +9,24 @@
 //! This module holds all the unsafe code of the crate.
 #![allow(unsafe_code)]
 
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod squares;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+#[cfg(target_arch = "aarch64")]
+use neon::Registers;
 #[cfg(target_arch = "x86_64")]
 use x86::Registers;
 
 /// No registers by hand.
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 pub trait Registers {}
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 impl Registers for f32 {}
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 impl Registers for f64 {}
 
 /// Rows in a block: three operands of eight lanes stay in the first-level cache.
@@ -145,6 +152,8 @@ enum Level {
     Avx2,
     #[cfg(target_arch = "x86_64")]
     Avx512,
+    #[cfg(target_arch = "aarch64")]
+    Neon,
 }
 
 impl Path {
@@ -157,6 +166,8 @@ impl Path {
                 .then_some(Level::Avx2),
             #[cfg(target_arch = "x86_64")]
             std::is_x86_feature_detected!("avx512f").then_some(Level::Avx512),
+            #[cfg(target_arch = "aarch64")]
+            std::arch::is_aarch64_feature_detected!("neon").then_some(Level::Neon),
         ]
         .into_iter()
         .flatten()
@@ -171,6 +182,17 @@ impl Path {
     /// Whether rows are turned into lanes by hand.
     pub fn is_portable(self) -> bool {
         self.0 == Level::Portable
+    }
+
+    /// Whether it can write past the caches.
+    pub fn streams(self) -> bool {
+        match self.0 {
+            Level::Portable => false,
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 | Level::Avx512 => true,
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => false,
+        }
     }
 
     /// Applies a kernel to a block.
@@ -189,6 +211,9 @@ impl Path {
             // SAFETY: the instructions were detected.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::apply_avx512(kernel, a, b, out) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::apply_neon(kernel, a, b, out) },
         }
     }
 
@@ -204,6 +229,9 @@ impl Path {
             // SAFETY: the instructions were detected, and the numbers fit the lanes.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::gather_avx512(rows, lanes) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::gather_neon(rows, lanes) },
         };
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact(size).enumerate() {
@@ -224,6 +252,9 @@ impl Path {
             // SAFETY: the instructions were detected, and the numbers fit the lanes.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::scatter_avx512(lanes, rows) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::scatter_neon(lanes, rows) },
         };
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact_mut(size).enumerate() {
@@ -239,6 +270,8 @@ impl Path {
         assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
         match self.0 {
             Level::Portable => to.copy_from_slice(from),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => to.copy_from_slice(from),
             // SAFETY: the instructions were detected; lengths and alignment are as they must be.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 => unsafe { x86::stream_avx2(from, to) },

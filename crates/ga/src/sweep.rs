@@ -119,7 +119,7 @@ pub(crate) fn sweep<T: Element, const W: usize, K: Kernel<W>>(
     assert_eq!(out.len(), total * nout, "the result is not a whole number of rows");
     let (a, b) = (Factor::new(a, na, total), Factor::new(b, nb, total));
     let bytes = size_of_val(a.data) + size_of_val(b.data) + size_of_val(out);
-    let streamed = !path.is_portable() && bytes >= STREAMED;
+    let streamed = path.streams() && bytes >= STREAMED;
     threads.for_each_piece(SHARED / (na + nb + nout), nout, out, |rows, out| {
         let (a, b) = (a.piece(rows.clone()), b.piece(rows));
         sweep_piece(path, streamed, kernel, a, b, (out, nout));

@@ -86,8 +86,8 @@ class Row:
         """Around a peer's set-up and entry: whatever fails is a note, and its place in the table is empty."""
         try:
             yield
-        except ModuleNotFoundError as error:
-            self.notes[library] = f"{error.name} is not installed"
+        except ImportError as error:
+            self.notes[library] = f"not installed ({error})"
         except Exception as error:
             self.notes[library] = f"{type(error).__name__}: {error}".splitlines()[0]
 

@@ -32,7 +32,7 @@ def rows(_: np.random.Generator, pace: Pace) -> Iterator[Row]:
     for library, module in MODULES.items():
         with row.peer(library):
             if find_spec(module.partition(".")[0]) is None:
-                raise ModuleNotFoundError(name=module)
+                raise ModuleNotFoundError(f"No module named {module!r}")
             row.seconds[library] = min(_seconds(module) for _ in range(pace.rounds))
     yield row
 

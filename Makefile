@@ -44,10 +44,10 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest polhode._native
 
-# The peers stand in the same environment: with constraints.txt they agree on one NumPy. A peer that is missing is an
-# empty column, so benchmarks/run.py also runs after make setup alone.
+# The peers join the same environment, which holds polhode already: with constraints.txt all agree on one NumPy.
+# A peer that is missing is an empty column, so benchmarks/run.py also runs after make setup alone.
 .venv/.peers: .venv/.built
-	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --quiet --extras scipy,io,plot,progress,bench
+	$(BIN)/python -m pip install -q "polhode[bench]"
 	@touch $@
 
 bench: .venv/.peers

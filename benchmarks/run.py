@@ -63,7 +63,7 @@ def main() -> None:
     sections = {}
     for title, rows in SECTIONS.items():
         sections[title] = measured(rows(np.random.default_rng(SEED), pace), pace)
-        say(report.section(title, sections[title], all_cores))
+        say(report.section(title, sections[title], max(one, all_cores)))
     everything = [row for rows in sections.values() for row in rows]
     say(report.matrices(everything))
     page.append(f"## What was timed\n\n{report.spellings(everything)}\n")

@@ -284,7 +284,7 @@ def formula(rng: np.random.Generator, n: int) -> Row:
     values = {"R": R, "v": v, "a": a, "b": b, "c": c}
     with row.planned():
         names = {"f": ph.formula("R v ~R + (a∧b)·c"), **values}
-        row.enter("polhode", "f(R=R, v=v, a=a, b=b, c=c)", names, lambda x: x.components)
+        row.enter("polhode", "f(R=R, v=v, a=a, b=b, c=c)", names, lambda x: x.grade(1).components)
     arrays = [value.components for value in values.values()]
     with row.peer("numba"):
         import loops

@@ -1,8 +1,19 @@
 """Polhode: geometric algebra of 3-d space, rotors and the motion of rigid bodies."""
 
 from polhode import torque as torque
+from polhode._algebra import Algebra as Algebra
+from polhode._algebra import algebra as algebra
 from polhode._bodies import Body as Body
 from polhode._bodies import Inertia as Inertia
+from polhode._geometry import axial as axial
+from polhode._geometry import from_axial as from_axial
+from polhode._geometry import split as split
+from polhode._interchange import from_dict as from_dict
+from polhode._interchange import to_dict as to_dict
+from polhode._interpolation import RotorSpline as RotorSpline
+from polhode._interpolation import mean as mean
+from polhode._interpolation import slerp as slerp
+from polhode._linear import LinearMap as LinearMap
 from polhode._motion import Certificate as Certificate
 from polhode._motion import FreeMotion as FreeMotion
 from polhode._motion import State as State
@@ -11,12 +22,11 @@ from polhode._motion import Trajectory as Trajectory
 from polhode._motion import describe_free as describe_free
 from polhode._motion import simulate as simulate
 from polhode._multivector import Multivector as Multivector
-from polhode._multivector import scalar as scalar
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
+from polhode._parts import concatenate as concatenate
+from polhode._parts import stack as stack
 from polhode._rotor import Rotor as Rotor
-from polhode._rotor import mean as mean
-from polhode._rotor import slerp as slerp
 from polhode._scene import Scene as Scene
 from polhode._values import I as I
 from polhode._values import bivector as bivector
@@ -26,6 +36,7 @@ from polhode._values import e2 as e2
 from polhode._values import e3 as e3
 from polhode._values import from_pauli as from_pauli
 from polhode._values import multivector as multivector
+from polhode._values import scalar as scalar
 from polhode._values import to_pauli as to_pauli
 from polhode._values import trivector as trivector
 from polhode._values import vector as vector

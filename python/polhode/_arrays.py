@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import operator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from polhode import _native
+
 Array = npt.NDArray[np.float64]
 Shape = tuple[int, ...]
+
+_FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
+_LARGE = 1 << 20  # bytes; smaller ones the allocator keeps itself
 
 
 def as_floats(values: Any, what: str) -> Array:
@@ -42,6 +49,27 @@ def as_components(values: Any, size: int, what: str) -> Array:
     if array.ndim == 0 or array.shape[-1] != size:
         raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
     return frozen(np.array(array, order="C"))
+
+
+def is_float(data: Any) -> bool:
+    """Whether these are NumPy floats, which the compiled core takes."""
+    return isinstance(data, np.ndarray) and data.dtype in _FLOATS
+
+
+def mapped(f: Callable[[Array], Array], data: Any) -> Any:
+    """Return f of float64 rows; of float32 rows, computed in float64 and rounded."""
+    result = f(np.ascontiguousarray(data, dtype=np.float64))
+    return result.astype(data.dtype, copy=False)
+
+
+def new(shape: Shape, dtype: Any) -> Array:
+    """Return an array to be filled; a large one in memory that is used again when it is gone."""
+    wanted = np.dtype(dtype)
+    size = math.prod(shape)
+    if size * wanted.itemsize < _LARGE:
+        return np.empty(shape, wanted)
+    memory = _native.buffer(size * wanted.itemsize)
+    return np.frombuffer(memory, wanted, size).reshape(shape)
 
 
 def frozen(array: Array) -> Array:

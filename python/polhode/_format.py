@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from polhode._arrays import Array
+from collections.abc import Sequence
+from typing import Any
 
-BLADES = ("", "e1", "e2", "e3", "e2∧e3", "e3∧e1", "e1∧e2", "I")
+import numpy as np
 
 _DIGITS = 8
 _SHOWN = 6
 
 
-def one_value(components: Array, indices: list[int]) -> str:
-    """Return one value as a sum of its nonzero terms, to 8 significant digits."""
+def one_value(components: Any, blades: Sequence[str]) -> str:
+    """Return one value as a sum of its nonzero terms, floats to 8 significant digits."""
     text = ""
-    for x, index in zip(components, indices, strict=True):
-        if x == 0:
+    for x, blade in zip(components, blades, strict=True):
+        if _is_zero(x):
             continue
-        size = f"{abs(x):.{_DIGITS}g}"
-        blade = BLADES[index]
+        negative, size = _sign_and_size(x)
         term = blade if blade and size == "1" else f"{size} {blade}".rstrip()
-        negative = x < 0
         if text:
             text += f" - {term}" if negative else f" + {term}"
         else:
@@ -27,14 +26,33 @@ def one_value(components: Array, indices: list[int]) -> str:
     return text or "0"
 
 
-def value(name: str, data: Array, indices: list[int]) -> str:
+def _is_zero(x: Any) -> bool:
+    return bool(x == 0)
+
+
+def _sign_and_size(x: Any) -> tuple[bool, str]:
+    """Return whether a minus stands before it, and what follows; a sum is bracketed."""
+    if isinstance(x, float | np.floating):
+        return bool(x < 0), f"{abs(x):.{_DIGITS}g}"
+    text = str(x)
+    if " " in text:
+        return False, f"({text})"
+    return text.startswith("-"), text.removeprefix("-")
+
+
+def value(name: str, data: Any, blades: Sequence[str]) -> str:
     """Return the ``repr``: the value itself, or the first and last values of a batch."""
-    batch = data.shape[:-1]
+    batch = tuple(data.shape[:-1])
+    try:
+        array = np.asarray(data)
+    except Exception:  # traced or lazy arrays have no numbers to show; each library has its own error
+        basis = ", ".join(blade or "1" for blade in blades)
+        return f"{name} of shape {batch} over ({basis}):\n{data!r}"
     if not batch:
-        return one_value(data, indices)
-    flat = data.reshape(-1, data.shape[-1])
-    texts = [one_value(row, indices) for row in (flat if len(flat) <= _SHOWN else flat[: _SHOWN - 1])]
+        return one_value(array, blades)
+    flat = array.reshape(-1, array.shape[-1])
+    texts = [one_value(row, blades) for row in (flat if len(flat) <= _SHOWN else flat[: _SHOWN - 1])]
     if len(flat) > _SHOWN:
-        texts += ["…", one_value(flat[-1], indices)]
+        texts += ["…", one_value(flat[-1], blades)]
     lines = ",\n ".join(texts)
     return f"{name} of shape {batch}:\n[{lines}]"

@@ -13,7 +13,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, as_float, as_floats, frozen
 from polhode._bodies import Body, Inertia
-from polhode._multivector import _BIVECTOR, Multivector
+from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_bivectors, as_point, as_vectors, bivector, vector
 from polhode.torque import Torque
@@ -83,7 +83,7 @@ class FreeMotion:
         )
         return State(
             Rotor._from_rows(rotors.reshape(*times.shape, 4)),
-            Multivector._of(omegas.reshape(*times.shape, 3), _BIVECTOR),
+            bivector(omegas.reshape(*times.shape, 3), copy=False),
         )
 
     def describe(self) -> dict[str, Any]:
@@ -282,8 +282,8 @@ def simulate(
     return Trajectory(
         time=frozen(when.copy()),
         rotor=Rotor._from_rows(rotors),
-        omega_body=Multivector._of(omegas, _BIVECTOR),
-        momentum_space=Multivector._of(momenta, _BIVECTOR),
+        omega_body=bivector(omegas, copy=False),
+        momentum_space=bivector(momenta, copy=False),
         energy=frozen(energies),
         position=vector(place),
         velocity=vector(v + acceleration * t),

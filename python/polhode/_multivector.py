@@ -1,35 +1,37 @@
-"""The values of the algebra: multivectors with leading batch axes."""
+"""The type of all values of the algebra: multivectors with leading batch axes."""
 
 from __future__ import annotations
 
-import math
 import operator
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _format, _native
-from polhode._arrays import Array, Shape, as_floats, common_batch, frozen, rows
+from polhode import _comparison, _format, _functions, _native, _parts, _subspaces
+from polhode._arrays import Shape
+from polhode._coefficients import as_coefficients
+from polhode._joined import joins
+from polhode._products import coerced, common_algebra, product
 
 if TYPE_CHECKING:
-    from polhode._rotor import Rotor
-
-_SCALAR, _VECTOR, _BIVECTOR, _TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
-_EVEN, _ALL = 0b0101, 0b1111
-_GRADE_OF = np.array([0, 1, 1, 1, 2, 2, 2, 3])
-_INDICES = [_native.component_indices(mask) for mask in range(16)]
+    from polhode._algebra import Algebra
 
 
-class Multivector:
-    """An element of the geometric algebra of 3-d space, or an array of them. Immutable.
+@joins(_native.Multivector)
+class Multivector(_native.Multivector):
+    """An element of a geometric algebra, or an array of them. Immutable.
 
-    The basis is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``. Only the grades
-    present are stored: a vector has 3 components, a product of two vectors 4 (scalar and bivector).
-    Batch axes lead, components are the last axis, and batches broadcast as in NumPy.
+    The basis of 3-d space is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``; that of
+    other algebras see `algebra`. Only the grades present are stored: a vector has 3 components, a product
+    of two vectors 4 (scalar and bivector). Batch axes lead, components are the last axis, and batches
+    broadcast as in NumPy.
+
+    Coefficients are float64 or float32; whole numbers and fractions, kept exact; SymPy expressions; or
+    arrays of JAX or any other array-API library.
 
     ``A*B`` is the geometric product, ``A^B`` the wedge, ``A|B`` the dot (the lowest grade,
-    ``abs(r - s)``), ``~A`` the reverse. Numbers and NumPy arrays act as scalars, an array as a batch.
+    ``abs(r - s)``), ``~A`` the reverse. Numbers and arrays act as scalars, an array as a batch.
 
     Python binds ``^`` and ``|`` *looser* than ``+`` and ``*``: ``1 ^ e1 + e2`` means ``1 ^ (e1 + e2)``,
     and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than the product. Put
@@ -38,63 +40,62 @@ class Multivector:
     Made by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
     """
 
-    __slots__ = ("_data", "_mask")
+    __slots__ = ()
     __array_ufunc__ = None  # NumPy arrays leave mixed operations to this class
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
-
-    _data: Array
-    _mask: int
-
-    def __init__(self, *_: object) -> None:
-        raise TypeError(
-            f"{type(self).__name__} is not made directly; use ph.vector, ph.bivector, ph.multivector, "
-            "or one of the Rotor.from_… constructors"
-        )
-
-    @classmethod
-    def _of(cls, data: Array, mask: int) -> Multivector:
-        """Wrap an array (..., K) that nobody else writes to; K components of the grades in `mask`.
-
-        The kernels read rows, so the array is brought into C order if it is not.
-        """
-        self = object.__new__(cls)
-        object.__setattr__(self, "_data", frozen(np.ascontiguousarray(data)))
-        object.__setattr__(self, "_mask", mask)
-        return self
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"multivectors are immutable; cannot set {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (type(self), np.array(self._data), self._mask)
+        signature = self.algebra.signature
+        data = np.array(self._data) if isinstance(self._data, np.ndarray) else self._data
+        return _rebuild, (type(self), data, self._mask, signature)
+
+    def __copy__(self) -> Multivector:
+        return self
+
+    def __deepcopy__(self, _memo: object) -> Multivector:
+        return self
 
     # --- what it holds
 
     @property
     def grades(self) -> tuple[int, ...]:
         """The grades it may hold, e.g. ``(0, 2)``."""
-        return tuple(k for k in range(4) if self._mask >> k & 1)
+        return tuple(k for k in range(self._mask.bit_length()) if self._mask >> k & 1)
 
     @property
-    def components(self) -> Array:
+    def components(self) -> Any:
         """Components of the grades present, in basis order: shape ``(*shape, K)``, read-only."""
         return self._data
 
     @property
     def shape(self) -> Shape:
         """Shape of the batch; ``()`` for a single value."""
-        return self._data.shape[:-1]
+        return () if self._is_one else tuple(self._data.shape[:-1])
 
     @property
-    def dtype(self) -> np.dtype[np.float64]:
-        """The components' type, float64."""
+    def dtype(self) -> Any:
+        """The components' type: float64, float32, object (exact or symbolic), or that of another library."""
         return self._data.dtype
 
     def grade(self, k: int) -> Multivector:
-        """Return the part of grade k (0 to 3); zero if it holds none."""
-        if operator.index(k) not in range(4):
-            raise ValueError(f"3-d space has grades 0 to 3, got {k}")
-        return Multivector._of(self._with_grades(1 << k), 1 << k)
+        """Return the part of grade k; zero if it holds none."""
+        n = self.algebra.dimension
+        if operator.index(k) not in range(n + 1):
+            space = "3-d space" if n == 3 else str(self.algebra)
+            raise ValueError(f"{space} has grades 0 to {n}, got {k}")
+        return self._part(1 << k)
+
+    def astype(self, dtype: Any) -> Multivector:
+        """Return it with components of another type, such as ``np.float32`` or, from fractions, ``float``."""
+        data = as_coefficients(self._data, "a component", dtype)
+        return self._like(data)
+
+    def map(self, f: Callable[[Any], Any]) -> Multivector:
+        """Return it with each component changed by f, such as ``sympy.simplify``. Never a rotor."""
+        return _parts.mapped(self, f)
 
     def __bool__(self) -> bool:
         raise TypeError("a multivector is neither true nor false; compare it with == or is_close")
@@ -112,331 +113,253 @@ class Multivector:
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
             raise IndexError(f"{error} (batch shape {self.shape})") from None
-        return self._of(picked, self._mask)
+        return self._like(picked)
 
     def __iter__(self) -> Iterator[Multivector]:
         return (self[i] for i in range(len(self)))
 
+    def reshape(self, *shape: Any) -> Multivector:
+        """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
+        return _parts.reshaped(self, shape)
+
     def __float__(self) -> float:
-        if self._mask != _SCALAR or self.shape:
+        if self._mask != 1 or self.shape:
             raise TypeError(
                 f"only a single scalar becomes a float; this has grades {self.grades} and shape "
                 f"{self.shape}; take .grade(0) or .components"
             )
         return float(self._data[0])
 
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("a multivector does not become an array by itself; take its .components")
+
+    def _sympy_(self) -> Any:
+        """Tell SymPy that this is no expression, so that ``x*e1`` comes to this class."""
+        from sympy import SympifyError
+
+        raise SympifyError(type(self).__name__)
+
     def __repr__(self) -> str:
-        return _format.value(type(self).__name__, self._data, _INDICES[self._mask])
+        return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
 
-    # --- sums and scaling
+    # --- the values behind the methods
 
-    def _with_grades(self, mask: int) -> Array:
+    def _like(self, data: Any) -> Multivector:
+        """Return a value of the same kind and grades."""
+        return self._of(data, self._mask, self.algebra)
+
+    @staticmethod
+    def _restored(data: Any, mask: int, algebra: Algebra) -> Multivector:
+        return Multivector._of(data, mask, algebra)
+
+    def _part(self, mask: int) -> Multivector:
+        return self._of(self._with_grades(mask), mask, self.algebra)
+
+    def _with_grades(self, mask: int) -> Any:
         """Return the components of the grades in `mask`, zeros for those not held: a new array."""
-        if mask == self._mask:
-            return np.array(self._data)
-        full = np.zeros((*self.shape, 8))
-        full[..., _INDICES[self._mask]] = self._data
-        return np.ascontiguousarray(full[..., _INDICES[mask]])
+        return _parts.with_grades(self, mask)
 
     def _held(self) -> int:
         """Return the grades, as bits, in which some component is not zero."""
-        nonzero = (self._data != 0).reshape(-1, self._data.shape[-1]).any(axis=0)
-        return int(np.bitwise_or.reduce(1 << _GRADE_OF[_INDICES[self._mask]][nonzero], initial=0))
+        return _parts.held(self)
 
-    def _linear(self, other: Any, combine: Any) -> Any:
-        """Add or subtract, over the grades of both."""
-        other = _coerced(other)
-        if other is None:
-            return NotImplemented
-        mask = self._mask | other._mask
-        with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
-            return Multivector._of(combine(self._with_grades(mask), other._with_grades(mask)), mask)
+    # --- sums and scaling, where they are not native
 
-    def __add__(self, other: Any) -> Multivector:
-        return self._linear(other, np.add)  # type: ignore[no-any-return]
+    def _add(self, other: Any) -> Multivector:
+        return _parts.linear(self, other, operator.add)  # type: ignore[no-any-return]
 
-    def __radd__(self, other: Any) -> Multivector:
-        return self._linear(other, np.add)  # type: ignore[no-any-return]
+    def _subtract(self, other: Any) -> Multivector:
+        return _parts.linear(self, other, operator.sub)  # type: ignore[no-any-return]
 
-    def __sub__(self, other: Any) -> Multivector:
-        return self._linear(other, np.subtract)  # type: ignore[no-any-return]
+    def _subtract_from(self, other: Any) -> Multivector:
+        return _parts.linear(-self, other, operator.add)  # type: ignore[no-any-return]
 
-    def __rsub__(self, other: Any) -> Multivector:
-        return (-self)._linear(other, np.add)  # type: ignore[no-any-return]
-
-    def __neg__(self) -> Multivector:
-        return self._of(-self._data, self._mask)
+    def _negated(self) -> Multivector:
+        return self._like(-self._data)
 
     def __pos__(self) -> Multivector:
         return self
 
-    def __truediv__(self, other: Any) -> Multivector:
-        """``A/s``, and ``A/B = A B⁻¹``."""
-        divisor = _coerced(other)
-        if divisor is None:
-            return NotImplemented
-        if divisor._mask != _SCALAR:
-            return self * divisor.inverse()
-        if not divisor._data.all():
-            index = tuple(int(i) for i in np.argwhere(divisor._data[..., 0] == 0)[0])
-            raise ZeroDivisionError(
-                "division of a multivector by zero" + (f" at index {index}" if index else "")
-            )
-        with np.errstate(over="ignore", invalid="ignore"):
-            return Multivector._of(self._data / divisor._data, self._mask)
+    def _divide(self, other: Any) -> Multivector:
+        return _functions.divided(self, other)
 
     def __rtruediv__(self, other: Any) -> Multivector:
-        dividend = _coerced(other)
+        dividend = coerced(other, self)
         return NotImplemented if dividend is None else dividend * self.inverse()
 
-    # --- products
+    # --- products, where they are not native
 
     def _product(self, name: str, other: Any) -> Multivector:
-        right = _coerced(other)
+        right = coerced(other, self)
         if right is None:
             return NotImplemented  # type: ignore[no-any-return]
-        batch = common_batch(self.shape, right.shape)
-        left_rows, right_rows = rows(self._data, batch), rows(right._data, batch)
-        count = math.prod(batch)
-        data, mask = _native.product(name, left_rows, self._mask, right_rows, right._mask, count)
-        return Multivector._of(data.reshape(*batch, data.shape[-1]), mask)
+        return product(name, self, right)
 
-    def _named(self, name: str, other: Any) -> Multivector:
-        result = self._product(name, other)
-        if result is NotImplemented:
+    def _product_from(self, name: str, other: Any) -> Multivector:
+        left = coerced(other, self)
+        if left is None:
+            return NotImplemented  # type: ignore[no-any-return]
+        return product(name, left, self)
+
+    def _named(self, name: str, other: Any, out: Any) -> Multivector:
+        right = coerced(other, self)
+        if right is None:
             raise TypeError(f"{name} needs a multivector, a number or an array, got {type(other).__name__}")
-        return result
-
-    def __mul__(self, other: Any) -> Multivector:
-        return self._product("geometric", other)
-
-    def __rmul__(self, other: Any) -> Multivector:
-        left = _coerced(other)
-        return NotImplemented if left is None else left._product("geometric", self)
-
-    def __xor__(self, other: Any) -> Multivector:
-        """``A^B``, the wedge. Binds looser than ``+``: bracket it, or call `wedge`."""
-        return self._product("wedge", other)
-
-    def __rxor__(self, other: Any) -> Multivector:
-        left = _coerced(other)
-        return NotImplemented if left is None else left._product("wedge", self)
-
-    def __or__(self, other: Any) -> Multivector:
-        """``A|B``, the dot. Binds looser than ``+``: bracket it, or call `dot`."""
-        return self._product("dot", other)
-
-    def __ror__(self, other: Any) -> Multivector:
-        left = _coerced(other)
-        return NotImplemented if left is None else left._product("dot", self)
-
-    def wedge(self, other: Any) -> Multivector:
-        """``A∧B``, the highest grade r + s of the product (handout eq. 1.10)."""
-        return self._named("wedge", other)
-
-    def dot(self, other: Any) -> Multivector:
-        """``A·B``, the lowest grade abs(r − s) of the product, scalars included: ``3·a = 3a``."""
-        return self._named("dot", other)
-
-    def commutator(self, other: Any) -> Multivector:
-        """``A×B = ½(AB − BA)``; not the vector cross product, which is `cross`."""
-        return self._named("commutator", other)
-
-    def left_contraction(self, other: Any) -> Multivector:
-        """``A⌋B``, grade s − r; zero where r > s."""
-        return self._named("left_contraction", other)
-
-    def right_contraction(self, other: Any) -> Multivector:
-        """``A⌊B``, grade r − s; zero where r < s."""
-        return self._named("right_contraction", other)
-
-    def scalar_product(self, other: Any) -> Multivector:
-        """``⟨AB⟩``, grade 0."""
-        return self._named("scalar", other)
+        return product(name, self, right, out)
 
     def __pow__(self, n: Any) -> Multivector:
         """Integer powers, negative ones through the inverse."""
-        try:
-            exponent = operator.index(n)
-        except TypeError:
-            raise TypeError(
-                f"a multivector has integer powers, got {n!r}; write (n * A.log()).exp() for others"
-            ) from None
-        base = self.inverse() if exponent < 0 else self
-        exponent = abs(exponent)
-        if exponent == 0:
-            return scalar(np.ones(self.shape))
-        power: Multivector | None = None
-        while True:
-            if exponent & 1:
-                power = base if power is None else power * base
-            exponent >>= 1
-            if not exponent:
-                return power  # type: ignore[return-value]
-            base = base * base
+        return _functions.power(self, n)
 
     # --- involutions
 
-    def _signed(self, negative: tuple[int, ...]) -> Multivector:
-        grades = _GRADE_OF[_INDICES[self._mask]]
-        return self._of(np.where(np.isin(grades, negative), -self._data, self._data), self._mask)
-
-    def reverse(self) -> Multivector:
-        """``~A``: reverses the order of all products; grades 2 and 3 change sign (handout eq. 1.28)."""
-        return self._signed((2, 3))
-
-    def __invert__(self) -> Multivector:
-        return self.reverse()
+    def _reversed(self) -> Multivector:
+        return _parts.signed(self, lambda k: k % 4 in (2, 3))
 
     def grade_involution(self) -> Multivector:
         """Odd grades change sign."""
-        return Multivector._signed(self, (1, 3))
+        return _parts.signed(self, lambda k: k % 2 == 1)
 
     def clifford_conjugate(self) -> Multivector:
-        """Reverse and grade involution: grades 1 and 2 change sign."""
-        return self._signed((1, 2))
+        """Reverse and grade involution: grades 1 and 2, 5 and 6 change sign."""
+        return _parts.signed(self, lambda k: k % 4 in (1, 2))
 
     def dual(self) -> Multivector:
-        """``A I⁻¹``: the dual of a bivector is its axial vector, ``dual(e1∧e2) = e3``."""
-        return self * -_I
+        """``A I⁻¹``: the dual of a bivector of 3-d space is its axial vector, ``dual(e1∧e2) = e3``.
+
+        A TypeError where I has no inverse, as in Cl(3,0,1); `right_complement` takes its place there.
+        """
+        return self * self.algebra._inverse_of_I()
 
     def undual(self) -> Multivector:
         """``A I``, the inverse of `dual`."""
-        return self * _I
+        self.algebra._inverse_of_I()
+        return self * self.algebra.I
+
+    def right_complement(self) -> Multivector:
+        """Return what is missing from the whole space: linear, ``E ∧ rc(E) = I`` for basis elements E.
+
+        Needs no metric, so that it serves where I has no inverse.
+        """
+        return _subspaces.complement(self, right=True)
+
+    def left_complement(self) -> Multivector:
+        """``lc(E) ∧ E = I`` for basis elements E: the inverse of `right_complement`."""
+        return _subspaces.complement(self, right=False)
+
+    # --- subspaces
+
+    def vee(self, other: Any) -> Multivector:
+        """``A∨B``, the regressive product: the wedge of complements, ``rc(A∨B) = rc(A) ∧ rc(B)``.
+
+        Of grade r + s − n: where two blades span the whole space, what they have in common.
+        """
+        return _subspaces.regressive(self, other)
+
+    def join(self, other: Multivector) -> Multivector:
+        """Return the unit blade of the smallest subspace that contains both blades.
+
+        Directions within 1e-10 of a subspace count as lying in it. Components are compared as lengths, the
+        basis vectors as orthonormal, whatever the metric. A ValueError for values that are no blades.
+        """
+        return _subspaces.joined(self, other, "join")
+
+    def meet(self, other: Multivector) -> Multivector:
+        """Return the unit blade of the subspace common to both blades; the scalar 1 where it is zero only.
+
+        Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``, so that
+        M is a positive multiple of ``A∨B`` where A and B span the whole space. Tolerance as for `join`.
+        """
+        return _subspaces.joined(self, other, "meet")
 
     # --- sizes
 
     def norm_squared(self) -> Any:
-        """``⟨A ~A⟩``, the sum of the squared components (infinite beyond 1e308): of the batch shape."""
-        with np.errstate(over="ignore"):
-            return np.square(self._data).sum(axis=-1)[()]
+        """``⟨A ~A⟩``, in 3-d space the sum of the squared components: of the batch shape."""
+        return _functions.norm_squared(self)
 
     def norm(self) -> Any:
-        """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape."""
-        return _native.norm(self._with_grades(_ALL))[..., 0][()]
+        """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape.
+
+        Where squares may be negative, ``√abs⟨A ~A⟩``.
+        """
+        return _functions.norm(self)
 
     def normalized(self) -> Multivector:
         """``A/|A|``; zero and non-finite values are an error."""
-        # Scaling by the largest component first keeps subnormal values accurate.
-        largest = np.abs(self._data).max(axis=-1, keepdims=True)
-        _require(
-            np.isfinite(largest[..., 0]) & (largest[..., 0] > 0), "has no direction (norm {})", self.norm()
-        )
-        scaled = self._data / largest
-        return self._of(scaled / np.linalg.norm(scaled, axis=-1, keepdims=True), self._mask)
+        return _functions.normalized(self)
 
     # --- functions
 
-    def _function(self, name: str) -> Multivector:
-        full, mask = _native.function(name, self._with_grades(_ALL), self._mask)
-        return Multivector._of(full[..., _INDICES[mask]], mask)
-
     def inverse(self) -> Multivector:
         """``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``)."""
-        return self._function("inverse")
+        return _functions.inverse(self)
 
-    def exp(self) -> Multivector | Rotor:
-        """``exp A``; of a bivector it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
+    def exp(self) -> Multivector:
+        """``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
 
         A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
         """
-        result = self._function("exp")
-        if result._mask != _EVEN or self._held() & ~_BIVECTOR:
-            return result
-        from polhode._rotor import Rotor
-
-        return Rotor._of(result._data, _EVEN)
+        return _functions.exp(self)
 
     def log(self) -> Multivector:
         """Return a logarithm: ``exp(log A) = A``.
 
         Even elements (scalar and bivector) have an even one, so that ``log(−1) = π e1∧e2``; others the
-        principal one. A ValueError, with the batch index, where A is singular.
+        principal one. A ValueError, with the batch index, where A is singular. In other algebras: of
+        rotors and motors, times a positive number.
         """
-        return self._function("log")
+        return _functions.log(self)
 
     def sqrt(self) -> Multivector:
         """Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``."""
-        return self._function("sqrt")
+        return _functions.sqrt(self)
 
     # --- geometry
 
     def project(self, blade: Multivector) -> Multivector:
         """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹`` (a∥ of handout eq. 1.7)."""
-        if not isinstance(blade, Multivector) or blade._held().bit_count() > 1:
-            raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
-        unit = blade.normalized()  # so that nothing overflows
-        projected = self.left_contraction(unit) * unit.inverse()
-        return Multivector._of(projected._with_grades(self._mask), self._mask)
+        return _functions.projected(self, blade)
 
     def reject(self, blade: Multivector) -> Multivector:
         """Return the part perpendicular to the subspace of `blade`: A minus its projection."""
         return self - self.project(blade)
 
+    def reflect(self, n: Multivector) -> Multivector:
+        """Return the value in the mirror perpendicular to the vector n: ``−n a n⁻¹`` for a vector a.
+
+        ``n X̂ n⁻¹`` for any X, with X̂ its grade involution, so that mirrors respect ``∧``: scalars stay, I
+        changes sign. The mirror that is the plane of a bivector B has the normal ``B.dual()``.
+        """
+        from polhode._geometry import reflected
+
+        return reflected(self, n)
+
     # --- comparison
 
     def __eq__(self, other: object) -> Any:
         """Exact equality of all components: a bool, or an array of the batch shape."""
-        right = _coerced(other)
-        if right is None:
-            return NotImplemented
-        mask = self._mask | right._mask
-        return (self._with_grades(mask) == right._with_grades(mask)).all(axis=-1)[()]
+        right = coerced(other, self)
+        return NotImplemented if right is None else _comparison.equal(self, right)
 
     def __ne__(self, other: object) -> Any:
-        equal = self.__eq__(other)
-        return equal if equal is NotImplemented else np.logical_not(equal)[()]
+        right = coerced(other, self)
+        return NotImplemented if right is None else _comparison.negated(_comparison.equal(self, right))
 
     def is_close(self, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
-        """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape."""
-        right = _coerced(other)
+        """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape.
+
+        Sizes are those of the components, ``√Σ c²``.
+        """
+        right = coerced(other, self)
         if right is None:
             raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
-        if np.any(np.less(rtol, 0)) or np.any(np.less(atol, 0)):
-            raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
-        mask = self._mask | right._mask
-        a, b = np.broadcast_arrays(self._with_grades(mask), right._with_grades(mask))
-        # Measured in units of the largest component, so that nothing overflows.
-        unit = np.maximum(np.abs(a), np.abs(b)).max(axis=-1, keepdims=True)
-        unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
-        with np.errstate(invalid="ignore"):  # inf − inf and NaN are not close
-            a, b = a / unit, b / unit
-            distance = np.linalg.norm(a - b, axis=-1)
-            size = np.maximum(np.linalg.norm(a, axis=-1), np.linalg.norm(b, axis=-1))
-            close = np.isfinite(size) & (distance <= np.maximum(rtol * size, atol / unit[..., 0]))
-        return np.logical_or(close, self == right)[()]
+        common_algebra(self, right)
+        return _comparison.close(self, right, rtol, atol)
 
 
-def _rebuild(cls: type[Multivector], data: Array, mask: int) -> Multivector:
+def _rebuild(cls: type[Multivector], data: Any, mask: int, signature: tuple[int, int, int]) -> Multivector:
     """Restore a pickled value."""
-    return cls._of(data, mask)
+    from polhode._algebra import algebra
 
-
-def _coerced(value: Any) -> Multivector | None:
-    """Return a multivector; a number or numeric array becomes scalars; None for anything else."""
-    if isinstance(value, Multivector):
-        return value
-    if isinstance(value, bool):
-        return None
-    if isinstance(value, int | float) or (
-        isinstance(value, np.ndarray | np.number) and value.dtype.kind in "iuf"
-    ):
-        return scalar(value)
-    return None
-
-
-def _require(ok: Any, what: str, value: Any) -> None:
-    """Raise a ValueError that names the first batch index where `ok` is false, and the value there."""
-    if np.all(ok):
-        return
-    index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
-    place = f"the multivector at index {index}" if index else "the multivector"
-    raise ValueError(f"{place} {what.format(np.asarray(value)[index])}")
-
-
-def scalar(a: Any) -> Multivector:
-    """Scalars from numbers; an array of shape S is a batch of shape S."""
-    return Multivector._of(np.array(as_floats(a, "scalar"))[..., np.newaxis], _SCALAR)
-
-
-_I = Multivector._of(np.ones(1), _TRIVECTOR)
+    return cls._restored(data, mask, algebra(*signature))

@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _native
-from polhode._arrays import Array, Shape, as_components, as_floats, batch_shape, common_batch, joined, rows
+from polhode import _euler, _generic, _geometry, _native
+from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, rows
+from polhode._coefficients import as_coefficients, common, kind_of
 from polhode._extras import optional
-from polhode._multivector import (
-    _BIVECTOR,
-    _EVEN,
-    Multivector,
-    _coerced,
-)
-from polhode._values import pure
+from polhode._joined import joins
+from polhode._multivector import Multivector
+from polhode._products import coerced, common_algebra, result_array
+from polhode._values import one_grade
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
 QuaternionOrder = Literal["wxyz", "xyzw"]
 
+_BIVECTOR, _EVEN = 0b0100, 0b0101
 
-class Rotor(Multivector):
+
+def _components(values: Any, size: int, what: str) -> Any:
+    """Return coefficients of shape (..., size)."""
+    data = as_coefficients(values, what)
+    if not data.shape or data.shape[-1] != size:
+        raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}")
+    return data
+
+
+def _computed(name: str, *operands: Any) -> Any:
+    """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
+    if all(map(is_float, operands)):
+        return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
+    kind = kind_of(*operands)
+    return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
+
+
+@joins(_native.Rotor)
+class Rotor(_native.Rotor, Multivector):
     """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
 
     Active: ``R(X) = R X ~R`` for X of any grade; ``S*R`` turns by R first. Components
@@ -37,9 +53,12 @@ class Rotor(Multivector):
 
     # --- constructors
 
+    def _like(self, data: Any) -> Rotor:
+        return Rotor._from_rows(data)
+
     @staticmethod
-    def _from_rows(data: Array) -> Rotor:
-        return Rotor._of(data, _EVEN)  # type: ignore[return-value]
+    def _restored(data: Any, _mask: int, _algebra: Any) -> Rotor:
+        return Rotor._from_rows(data)
 
     @staticmethod
     def identity(shape: int | Shape = ()) -> Rotor:
@@ -49,13 +68,15 @@ class Rotor(Multivector):
     @staticmethod
     def from_components(c4: Any) -> Rotor:
         """From components (..., 4) over ``(1, e2e3, e3e1, e1e2)``, divided by their norm."""
-        return Rotor._from_rows(_native.rotor_from_components(as_components(c4, 4, "rotor")))
+        return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
 
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
         """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
-        angle = as_floats(theta, "angle")[..., np.newaxis]
-        return Rotor._from_rows(_native.rotor_from_plane_angle(joined(pure(B, 2, "the plane"), angle)))
+        plane, angle = one_grade(B, 2, "the plane")._data, as_coefficients(theta, "angle")
+        if is_float(plane) and is_float(angle):
+            angle = angle[..., np.newaxis]  # a column, beside the plane
+        return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
 
     @staticmethod
     def from_vectors(a: Multivector, b: Multivector) -> Rotor:
@@ -64,8 +85,8 @@ class Rotor(Multivector):
         For opposite directions the plane is not determined: one through a and the basis vector farthest
         from it is taken.
         """
-        pair = joined(pure(a, 1, "the first direction"), pure(b, 1, "the second direction"))
-        return Rotor._from_rows(_native.rotor_from_vectors(pair))
+        first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
+        return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
 
     @staticmethod
     def from_matrix(m: Any) -> Rotor:
@@ -73,24 +94,26 @@ class Rotor(Multivector):
 
         A ValueError for a reflection or anything farther off. The rotor's scalar part is >= 0.
         """
-        matrices = as_floats(m, "rotation matrix")
-        if matrices.shape[-2:] != (3, 3):
-            raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {matrices.shape}")
-        flat = np.ascontiguousarray(matrices).reshape(*matrices.shape[:-2], 9)
-        return Rotor._from_rows(_native.rotor_from_matrix(flat))
+        matrices = as_coefficients(m, "rotation matrix")
+        if tuple(matrices.shape[-2:]) != (3, 3):
+            raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
+        if is_float(matrices):
+            matrices = matrices.reshape((*matrices.shape[:-2], 9))
+        return Rotor._from_rows(_computed("from_matrix", matrices))
 
     @staticmethod
     def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
         """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
-        wxyz = as_components(q, 4, "quaternion")[..., _to_wxyz(order)]
-        return Rotor._from_rows(_native.rotor_from_quaternion(np.ascontiguousarray(wxyz)))
+        places = _to_wxyz(order)
+        given = _components(q, 4, "quaternion")
+        wxyz = common(*(given[..., k, None] for k in places))
+        return Rotor._from_rows(_computed("from_quaternion", *wxyz))
 
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
         """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
-        array = pure(v, 1, "a rotation vector") if isinstance(v, Multivector) else v
-        components = as_components(array, 3, "rotation vector")
-        return Rotor._from_rows(_native.rotor_from_rotation_vector(components))
+        array = one_grade(v, 1, "a rotation vector")._data if isinstance(v, Multivector) else v
+        return Rotor._from_rows(_computed("from_rotation_vector", _components(array, 3, "rotation vector")))
 
     @staticmethod
     def from_scipy(rot: Rotation) -> Rotor:
@@ -100,23 +123,49 @@ class Rotor(Multivector):
         return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
 
     @staticmethod
+    def from_numpy_quaternion(q: Any) -> Rotor:
+        """From quaternions of the package numpy-quaternion, one or an array (...), divided by their norm."""
+        quaternion = optional("quaternion", "quaternion", "from_numpy_quaternion")
+        array = np.asarray(q)
+        if array.dtype != np.dtype(quaternion.quaternion):
+            raise TypeError(f"from_numpy_quaternion needs an array of dtype quaternion, got {array.dtype}")
+        return Rotor.from_quaternion(quaternion.as_float_array(array), order="wxyz")
+
+    @staticmethod
+    def from_euler(seq: str, angles: Any, degrees: bool = False) -> Rotor:
+        """From Euler angles (..., n) about n = 1 to 3 axes, in radians; named as SciPy names them.
+
+        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
+        so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
+        For one axis a single angle needs no array.
+        """
+        total: Any = Rotor.identity()
+        for turn in _euler.rotation_vectors(seq, angles, degrees):
+            total = Rotor.from_rotation_vector(turn) * total
+        result: Rotor = total
+        return result
+
+    @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
         """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
         return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
 
     # --- converters
 
-    def to_matrix(self) -> Array:
+    def to_matrix(self) -> Any:
         """Rotation matrices (..., 3, 3) acting on columns."""
-        return _native.rotor_to_matrix(self._data).reshape(*self.shape, 3, 3)
+        return _computed("to_matrix", self._data).reshape((*self.shape, 3, 3))
 
-    def to_quaternion(self, *, order: QuaternionOrder) -> Array:
+    def to_quaternion(self, *, order: QuaternionOrder) -> Any:
         """Quaternions (..., 4), Hamilton's and active; the order must be said."""
-        return _native.rotor_to_quaternion(self._data)[..., np.argsort(_to_wxyz(order))]
+        if _to_wxyz(order)[0] == 0:
+            return _computed("to_quaternion", self._data)
+        wxyz = _computed("to_quaternion", self._data)
+        return wxyz[..., np.argsort(_to_wxyz(order))]
 
-    def to_rotation_vector(self) -> Array:
+    def to_rotation_vector(self) -> Any:
         """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
-        return _native.rotor_to_rotation_vector(self._data)
+        return _computed("to_rotation_vector", self._data)
 
     def to_scipy(self) -> Rotation:
         """Return a ``scipy.spatial.transform.Rotation``."""
@@ -124,52 +173,63 @@ class Rotor(Multivector):
         rotation: Rotation = transform.Rotation.from_quat(self.to_quaternion(order="xyzw"))
         return rotation
 
+    def to_numpy_quaternion(self) -> Any:
+        """Return an array (...) of dtype quaternion, of the package numpy-quaternion."""
+        quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
+        return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
+
+    def to_euler(self, seq: str, degrees: bool = False) -> Array:
+        """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
+
+        The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same
+        ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
+        difference of the others is determined: the third angle is then 0, and the three angles give the
+        attitude as ever, so nothing is lost and nothing is warned of.
+        """
+        return _euler.to_euler(self, seq, degrees)
+
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
-        pairs = _native.rotor_plane_angle(self._data)
+        if not is_float(self._data):
+            plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
+            return Multivector._of(plane, _BIVECTOR), angle
+        pairs = _computed("plane_angle", self._data)
         return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
+
+    def distance(self, other: Rotor) -> Any:
+        """Return the angle in [0, π] of the turn from this attitude to the other, whatever their signs.
+
+        A float, or an array of the batch shape; accurate however close the attitudes are.
+        """
+        return _geometry.distance(self, other)
 
     # --- action and algebra
 
-    def apply(self, X: Any) -> Multivector:
-        """``R X ~R``: turns a value of any grade (handout eq. 2.4, 2.6); scalars and trivectors stay."""
-        value = _coerced(X)
+    def _turn(self, X: Any, out: Any = None) -> Multivector:
+        """``R X ~R``, where it is not native."""
+        value = coerced(X, self)
         if value is None:
             raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
-        if isinstance(value, Rotor):
-            return self * value * ~self
-        batch = common_batch(self.shape, value.shape)
-        turned = _native.rotor_apply(
-            rows(self._data, batch), rows(value._data, batch), value._mask, math.prod(batch)
-        )
-        return Multivector._of(turned.reshape(*batch, turned.shape[-1]), value._mask)
-
-    def __call__(self, X: Any) -> Multivector:
-        return self.apply(X)
-
-    def __mul__(self, other: Any) -> Multivector:
-        """``S*R`` is the rotor that turns by R first; with anything else, the geometric product."""
-        product = super().__mul__(other)
-        return Rotor.from_components(product._data) if isinstance(other, Rotor) else product
+        common_algebra(self, value)
+        a, b = self._data, value._data
+        if not (is_float(a) and is_float(b)):
+            if out is not None:
+                raise TypeError(f"out needs operands of floats, got {self.dtype} and {value.dtype}")
+            kind = kind_of(a, b)
+            return value._like(_generic.rotors.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
+        batch, dtype = common_batch(self.shape, value.shape), np.result_type(a, b)
+        a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
+        result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)
+        _native.rotor_apply(a, b, value._mask, result)
+        return value._like(result)
 
     def log(self) -> Multivector:
         """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
-        return super().log().grade(2)
-
-    def reverse(self) -> Rotor:
-        """``~R``, the turn back."""
-        return super().reverse()  # type: ignore[return-value]
-
-    def __invert__(self) -> Rotor:
-        return self.reverse()
-
-    def __neg__(self) -> Rotor:
-        """Return the other rotor of the same rotation."""
-        return super().__neg__()  # type: ignore[return-value]
+        return Multivector._of(_computed("log", self._data), _BIVECTOR)
 
     def inverse(self) -> Rotor:
         """``~R``."""
-        return self.reverse()
+        return ~self
 
     def sqrt(self) -> Rotor:
         """Return the half-way rotor, whose square is R."""
@@ -185,41 +245,9 @@ class Rotor(Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
-        return (self.log() * as_floats(n, "the power of a rotor")).exp()  # type: ignore[return-value]
-
-
-def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
-    """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
-
-    The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
-    or −S.
-    """
-    for value in (R, S):
-        if not isinstance(value, Rotor):
-            raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
-    step = (~R * S)._data
-    shorter = Rotor._from_rows(np.where(step[..., :1] < 0, -step, step))
-    path: Rotor = R * shorter**t
-    return path
-
-
-def mean(R: Rotor, weights: Any = None) -> Rotor:
-    """Return the mean attitude of a batch (n,), whatever the signs: the Q that minimises ``Σ w |R − Q|²``.
-
-    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
-    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
-    ValueError where no attitude is closer than all others, as for half turns about three axes.
-    """
-    if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
-        raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
-    w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
-    if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
-        raise ValueError(f"weights must be {R.shape[0]} finite numbers >= 0, not all 0, got {w.tolist()}")
-    values, vectors = np.linalg.eigh((w[:, np.newaxis] * R._data).T @ R._data)
-    if values[3] - values[2] <= 8 * np.finfo(float).eps * values[3]:
-        raise ValueError("the rotors have no mean: two attitudes are equally close to all of them")
-    best = vectors[:, 3]
-    return Rotor.from_components(-best if best[0] < 0 else best)
+        turn = self.log() * as_coefficients(n, "the power of a rotor")
+        power: Rotor = turn.exp()
+        return power
 
 
 def _to_wxyz(order: str) -> list[int]:

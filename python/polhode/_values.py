@@ -1,4 +1,4 @@
-"""Values from numbers, and numbers from values: the constructors of the algebra, and its Pauli matrices."""
+"""Values of 3-d space from numbers, and numbers from values: constructors, and the Pauli matrices."""
 
 from __future__ import annotations
 
@@ -7,51 +7,65 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_components, as_floats
-from polhode._multivector import (
-    _ALL,
-    _BIVECTOR,
-    _TRIVECTOR,
-    _VECTOR,
-    Multivector,
-    _coerced,
-)
+from polhode._algebra import algebra
+from polhode._arrays import Array, as_components, mapped
+from polhode._coefficients import as_coefficients
+from polhode._multivector import Multivector
+from polhode._parts import with_grades
+from polhode._products import coerced
 
+_G3 = algebra(3)
 _KINDS = ("scalar", "vector", "bivector", "trivector")
+_ALL = 0b1111
 
 
-def vector(xyz: Any) -> Multivector:
-    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3)."""
-    return Multivector._of(as_components(xyz, 3, "vector"), _VECTOR)
+def scalar(a: Any, *, dtype: Any = None) -> Multivector:
+    """Scalars from numbers; an array of shape S is a batch of shape S."""
+    return _G3.scalar(a, dtype=dtype)
 
 
-def bivector(c3: Any) -> Multivector:
-    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector."""
-    return Multivector._of(as_components(c3, 3, "bivector"), _BIVECTOR)
+def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
+
+    Real numbers become float64, float32 stays; fractions, SymPy expressions, integers beyond 2⁵³ and
+    arrays of objects stay exact; arrays of JAX and others stay theirs. `dtype` converts (``np.float32``,
+    ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of a NumPy array.
+    """
+    return _G3.vector(xyz, dtype=dtype, copy=copy)
 
 
-def trivector(b: Any) -> Multivector:
+def bivector(c3: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector.
+
+    `dtype` and `copy` as in `vector`.
+    """
+    return _G3.bivector(c3, dtype=dtype, copy=copy)
+
+
+def trivector(b: Any, *, dtype: Any = None) -> Multivector:
     """Trivectors ``b I`` from numbers; an array of shape S is a batch of shape S."""
-    return Multivector._of(np.array(as_floats(b, "trivector"))[..., np.newaxis], _TRIVECTOR)
+    return _G3._single(b, "trivector", 3, dtype)
 
 
-def multivector(c8: Any) -> Multivector:
-    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``."""
-    return Multivector._of(as_components(c8, 8, "multivector"), _ALL)
+def multivector(c8: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``.
+
+    `dtype` and `copy` as in `vector`.
+    """
+    return _G3.multivector(c8, dtype=dtype, copy=copy)
 
 
 def cross(a: Multivector, b: Multivector) -> Multivector:
     """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
-    left, right = vector(pure(a, 1, "the left factor")), vector(pure(b, 1, "the right factor"))
-    return left.wedge(right).dual()
+    return one_grade(a, 1, "the left factor").wedge(one_grade(b, 1, "the right factor")).dual()
 
 
 def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
     """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
-    value = _coerced(M)
+    value = coerced(M)
     if value is None:
         raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
-    numbers = _native.to_pauli(value._with_grades(_ALL))
+    numbers: Array = mapped(_native.to_pauli, _of_3d(value, "to_pauli").astype(float)._with_grades(_ALL))
     return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
 
 
@@ -64,15 +78,29 @@ def from_pauli(matrices: Any) -> Multivector:
     return Multivector._of(_native.from_pauli(numbers), _ALL)
 
 
-def pure(value: Any, grade: int, what: str) -> Array:
-    """Return the components of a value of one grade; the others must be absent or exactly zero."""
+def one_grade(value: Any, grade: int, what: str) -> Multivector:
+    """Return a value of 3-d space as one of a single grade; the others must be absent or exactly zero."""
     if not isinstance(value, Multivector):
         raise TypeError(
             f"{what} must be a {_KINDS[grade]}, got {type(value).__name__}; see ph.{_KINDS[grade]}"
         )
+    _of_3d(value, what)
+    if value._mask == 1 << grade:
+        return value
     if value._held() & ~(1 << grade):
         raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which holds other grades")
-    return value._data if value._mask == 1 << grade else value._with_grades(1 << grade)
+    return Multivector._of(with_grades(value, 1 << grade), 1 << grade)
+
+
+def pure(value: Any, grade: int, what: str) -> Array:
+    """Return the components of a value of one grade, as float64."""
+    return as_coefficients(one_grade(value, grade, what)._data, what, float)  # type: ignore[no-any-return]
+
+
+def _of_3d(value: Multivector, what: str) -> Multivector:
+    if value.algebra is not _G3:
+        raise TypeError(f"{what} must be a value of 3-d space, got one of {value.algebra}")
+    return value
 
 
 def as_vectors(values: Any, what: str) -> Array:

@@ -5,8 +5,10 @@
 
 use crate::product::{Grades, Plan, Term};
 use crate::rotor::Rotor;
+pub use crate::simd::Element;
 use crate::simd::{Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
+use crate::threads::Threads;
 use crate::values::{Vector, geometric};
 
 impl Kernel for Plan {
@@ -130,16 +132,24 @@ impl Plan {
     ///
     /// # Panics
     /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
-    pub fn run(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
-        self.run_on(Path::best(), a, b, out);
+    pub fn run<T: Element>(&self, a: &[T], b: &[T], out: &mut [T]) {
+        self.run_threads(Threads::ONE, a, b, out);
     }
 
-    fn run_on(&self, path: Path, a: &[f64], b: &[f64], out: &mut [f64]) {
+    /// [`Plan::run`] by several threads, where there are enough rows for it to pay.
+    ///
+    /// # Panics
+    /// As [`Plan::run`].
+    pub fn run_threads<T: Element>(&self, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
+        self.run_on(Path::best(), threads, a, b, out);
+    }
+
+    fn run_on<T: Element>(&self, path: Path, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
         let (na, nb, nout) = self.sizes;
         if self.is_geometric {
-            sweep(path, &Geometric(self), (a, na), (b, nb), (out, nout));
+            sweep(path, threads, &Geometric(self), (a, na), (b, nb), (out, nout));
         } else {
-            sweep(path, self, (a, na), (b, nb), (out, nout));
+            sweep(path, threads, self, (a, na), (b, nb), (out, nout));
         }
     }
 }
@@ -149,14 +159,29 @@ impl Plan {
 ///
 /// # Panics
 /// If there are no grades, or the numbers of rows do not fit together.
-pub fn turn(rotors: &[f64], values: &[f64], grades: Grades, out: &mut [f64]) {
-    turn_on(Path::best(), rotors, values, grades, out);
+pub fn turn<T: Element>(rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
+    turn_threads(Threads::ONE, rotors, values, grades, out);
 }
 
-fn turn_on(path: Path, rotors: &[f64], values: &[f64], grades: Grades, out: &mut [f64]) {
+/// [`turn`] by several threads, where there are enough rows for it to pay.
+///
+/// # Panics
+/// As [`turn`].
+pub fn turn_threads<T: Element>(threads: Threads, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
+    turn_on(Path::best(), threads, rotors, values, grades, out);
+}
+
+fn turn_on<T: Element>(
+    path: Path,
+    threads: Threads,
+    rotors: &[T],
+    values: &[T],
+    grades: Grades,
+    out: &mut [T],
+) {
     let turn = Turn(grades);
     let size = turn.parts().map(|(_, width)| width).sum();
-    sweep(path, &turn, (rotors, 4), (values, size), (out, size));
+    sweep(path, threads, &turn, (rotors, 4), (values, size), (out, size));
 }
 
 #[cfg(test)]
@@ -222,11 +247,11 @@ mod tests {
                         let what = format!("{path:?} {:?} {product:?} {rows}", algebra.signature());
                         let mut out = vec![0.5; rows * plan.sizes.2];
                         let length = out.len();
-                        plan.run_on(path, &a[..rows * size], &b[..rows * size], &mut out);
+                        plan.run_on(path, Threads::ONE, &a[..rows * size], &b[..rows * size], &mut out);
                         assert_same(&out, &each[..length], &what);
-                        plan.run_on(path, &a[..size], &b[..rows * size], &mut out);
+                        plan.run_on(path, Threads::ONE, &a[..size], &b[..rows * size], &mut out);
                         assert_same(&out, &one_a[..length], &what);
-                        plan.run_on(path, &a[..rows * size], &b[..size], &mut out);
+                        plan.run_on(path, Threads::ONE, &a[..rows * size], &b[..size], &mut out);
                         assert_same(&out, &one_b[..length], &what);
                     }
                 }
@@ -248,7 +273,7 @@ mod tests {
             }
             for path in Path::available() {
                 let mut out = vec![0.5; rows * nout];
-                plan.run_on(path, &a, &b, &mut out);
+                plan.run_on(path, Threads::ONE, &a, &b, &mut out);
                 assert_same(&out, &expected, &format!("{path:?} {ga:?} {gb:?}"));
             }
         }
@@ -257,7 +282,7 @@ mod tests {
     /// A result that goes past the caches, wherever it begins in a cache line, is that of small pieces.
     #[test]
     fn streamed_results_are_the_same() {
-        let rows = STREAMED / 9 + 37;
+        let rows = STREAMED / 8 / 9 + 37;
         let (r, v) = (numbers(4 * rows, false), numbers(3 * rows, false));
         let piece = 1000;
         let mut expected = vec![0.0; 3 * rows];
@@ -268,11 +293,61 @@ mod tests {
         for path in Path::available() {
             for offset in 0..8 {
                 let mut out = vec![0.5; 3 * rows + 9];
-                turn_on(path, &r, &v, Grades(0b0010), &mut out[offset..offset + 3 * rows]);
+                turn_on(path, Threads::ONE, &r, &v, Grades(0b0010), &mut out[offset..offset + 3 * rows]);
                 assert_same(&out[offset..offset + 3 * rows], &expected, &format!("{path:?} {offset}"));
                 let around = out[..offset].iter().chain(&out[offset + 3 * rows..]);
                 assert!(around.copied().all(|x| x == 0.5), "{path:?} {offset}");
             }
+        }
+    }
+
+    /// Any number of threads gives the same bits, of one row against many both ways, streamed or not.
+    #[test]
+    fn threads_change_nothing() {
+        let plan = Plan::g3(Product::Geometric, Grades::ALL, Grades::EVEN);
+        for rows in [60_000, 200_001] {
+            let (a, b) = (numbers(rows * 8, true), numbers(rows * 4, false));
+            for (a, b) in [(&a[..], &b[..]), (&a[..8], &b[..]), (&a[..], &b[..4])] {
+                let mut expected = vec![0.5; rows * 8];
+                plan.run(a, b, &mut expected);
+                for threads in [2, 3, 7] {
+                    let mut out = vec![0.5; rows * 8];
+                    plan.run_threads(Threads::new(threads), a, b, &mut out);
+                    assert_same(&out, &expected, &format!("{threads} threads, {rows} rows"));
+                }
+            }
+        }
+    }
+
+    /// Rows of `f32` give the numbers of `f64` rounded once, few or many or streamed, on every path.
+    #[test]
+    fn single_precision_is_double_rounded() {
+        let streamed = STREAMED / 4 / 24 + 5;
+        let narrow = |x: &[f64]| x.iter().map(|&x| x as f32).collect::<Vec<f32>>();
+        let wide = |x: &[f32]| x.iter().map(|&x| x.into()).collect::<Vec<f64>>();
+        for (plan, rows) in [(Grades::ALL, streamed), (Grades::EVEN, 200), (Grades(0b0010), 200)]
+            .into_iter()
+            .flat_map(|(g, most)| {
+                let plan = Plan::g3(Product::Geometric, g, g);
+                ROWS[..10].iter().copied().chain([most]).map(move |rows| (plan, rows))
+            })
+        {
+            let (na, nb, nout) = plan.sizes;
+            let (a, b) = (narrow(&numbers(rows * na, true)), narrow(&numbers(rows * nb, false)));
+            let mut expected = vec![0.5; rows * nout];
+            plan.run(&wide(&a), &wide(&b), &mut expected);
+            for path in Path::available() {
+                let mut out = vec![0.5_f32; rows * nout + 1];
+                plan.run_on(path, Threads::ONE, &a, &b, &mut out[1..]);
+                assert_same(&wide(&out[1..]), &wide(&narrow(&expected)), &format!("{path:?} {rows}"));
+            }
+        }
+        for path in Path::available() {
+            let (r, x) = (narrow(&numbers(4, false)), narrow(&numbers(8 * 70, false)));
+            let (mut out, mut expected) = (vec![0.5_f32; 8 * 70], vec![0.5; 8 * 70]);
+            turn_on(path, Threads::ONE, &r, &x, Grades::ALL, &mut out);
+            turn(&wide(&r), &wide(&x), Grades::ALL, &mut expected);
+            assert_same(&wide(&out), &wide(&narrow(&expected)), &format!("{path:?}"));
         }
     }
 
@@ -307,7 +382,7 @@ mod tests {
                 }
                 for path in Path::available() {
                     let mut out = vec![f64::NAN; rows * size];
-                    turn_on(path, &r[..4 * many_r], &x[..size * many_x], grades, &mut out);
+                    turn_on(path, Threads::ONE, &r[..4 * many_r], &x[..size * many_x], grades, &mut out);
                     assert_same(&out, &expected, &format!("{path:?} {grades:?} {many_r} {many_x}"));
                 }
             }

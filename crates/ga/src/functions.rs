@@ -44,6 +44,29 @@ pub enum MathError {
     NoLogarithm,
     /// No square root: the two eigenvalues' roots cancel.
     NoSquareRoot,
+    /// No inverse: the condition number of multiplication by the multivector is beyond rounding.
+    IllConditioned {
+        /// Its reciprocal.
+        reciprocal_condition: f64,
+    },
+    /// No number times an even versor.
+    NotVersor {
+        /// The larger of its odd part and what in `M~M` is no number, relative to `|M|` and `|M|²`.
+        deviation: f64,
+    },
+    /// No bivector has this versor as its exponential, or none was found.
+    NoBivectorLogarithm,
+    /// An angle so large that its rounding is more than a turn.
+    AngleTooLarge,
+    /// A metric with null generators has no `I⁻¹`.
+    DegenerateMetric,
+    /// Zero stands for no subspace.
+    NoSubspace,
+    /// No wedge product of vectors.
+    NotBlade {
+        /// The part that no blade accounts for, relative to `|M|`.
+        deviation: f64,
+    },
     /// The result is beyond the range of floating point.
     Overflow,
 }
@@ -75,6 +98,30 @@ impl fmt::Display for MathError {
             ),
             MathError::NoLogarithm => write!(f, "no logarithm: the multivector is singular to rounding"),
             MathError::NoSquareRoot => write!(f, "no square root: the multivector is singular to rounding"),
+            MathError::IllConditioned { reciprocal_condition } => write!(
+                f,
+                "no inverse: singular to rounding (reciprocal condition {reciprocal_condition:.1e})"
+            ),
+            MathError::NotVersor { deviation } => write!(
+                f,
+                "no even versor (a product of an even number of vectors): M ~M is no number, or M not even \
+                 (relative deviation {deviation:.1e}); logarithm and square root are known for versors only"
+            ),
+            MathError::NoBivectorLogarithm => {
+                write!(f, "no logarithm: no bivector was found that has this versor as its exponential")
+            }
+            MathError::AngleTooLarge => {
+                write!(f, "an angle beyond 2^52, whose rounding is a turn; reduce it first")
+            }
+            MathError::DegenerateMetric => write!(
+                f,
+                "no dual: a generator squares to zero, so the pseudoscalar has no inverse; take the complement"
+            ),
+            MathError::NoSubspace => write!(f, "zero stands for no subspace; give a nonzero blade"),
+            MathError::NotBlade { deviation } => write!(
+                f,
+                "not a blade (a wedge product of vectors): a part of {deviation:.1e} of it remains; give one grade, factored"
+            ),
             MathError::Overflow => write!(
                 f,
                 "the result is beyond the range of floating point (1.8e308); scale the argument down"

@@ -15,23 +15,30 @@
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`values`] (`Vector`, `Bivector`, `Trivector`,
-//! `Multivector`), [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`pauli`].
+//! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`threads`], [`values`]
+//! (`Vector`, `Bivector`, `Trivector`, `Multivector`), [`graded`] (a value that carries its grades),
+//! [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`general`] (the same in any
+//! algebra; complements, join and meet), [`pauli`].
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
 
 pub mod batch;
 mod complex;
+pub mod compose;
 pub mod functions;
+pub mod general;
+pub mod graded;
 pub mod pauli;
 pub mod product;
 pub mod rotor;
 mod simd;
 mod sweep;
 pub mod table;
+pub mod threads;
 pub mod values;
 
 pub use functions::MathError;
+pub use graded::Graded;
 pub use rotor::Rotor;
 pub use values::{Bivector, Multivector, Trivector, Vector};

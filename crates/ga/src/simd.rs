@@ -10,6 +10,16 @@
 
 #[cfg(target_arch = "x86_64")]
 mod x86;
+#[cfg(target_arch = "x86_64")]
+use x86::Registers;
+
+/// No registers by hand.
+#[cfg(not(target_arch = "x86_64"))]
+pub trait Registers {}
+#[cfg(not(target_arch = "x86_64"))]
+impl Registers for f32 {}
+#[cfg(not(target_arch = "x86_64"))]
+impl Registers for f64 {}
 
 /// Rows in a block: three operands of eight lanes stay in the first-level cache.
 pub(crate) const LANES: usize = 64;
@@ -25,16 +35,36 @@ impl Lane {
         Lane([x; LANES])
     }
 
-    /// The numbers of lanes, one lane after the other.
-    pub fn flat(lanes: &mut [Lane]) -> &mut [f64] {
+    /// Room for as many numbers as the lanes hold.
+    pub fn flat<T: Element>(lanes: &mut [Lane]) -> &mut [T] {
         let count = lanes.len() * LANES;
-        // SAFETY: a lane is an array of `LANES` numbers and nothing else.
+        // SAFETY: a lane is an array of `LANES` numbers and nothing else; a `T` is no larger, and any bits
+        // are one.
         unsafe { std::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), count) }
     }
 }
 
+/// What rows are made of: `f64`, or `f32`, which is widened as it is read and rounded as it is written.
+/// The arithmetic between is that of `f64`.
+pub trait Element: Copy + Send + Sync + Into<f64> + Registers {
+    /// The nearest of its numbers.
+    fn nearest(x: f64) -> Self;
+}
+
+impl Element for f64 {
+    fn nearest(x: f64) -> f64 {
+        x
+    }
+}
+
+impl Element for f32 {
+    fn nearest(x: f64) -> f32 {
+        x as f32
+    }
+}
+
 /// A function of two rows. Both ways of computing it give the same numbers.
-pub(crate) trait Kernel {
+pub(crate) trait Kernel: Sync {
     /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
     const FAST_ROWS: bool = false;
 
@@ -99,7 +129,7 @@ impl Path {
 
     /// Turns at most [`LANES`] rows of `lanes.len()` numbers into lanes. Places beyond the rows keep what
     /// they held.
-    pub fn gather(self, rows: &[f64], lanes: &mut [Lane]) {
+    pub fn gather<T: Element>(self, rows: &[T], lanes: &mut [Lane]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * LANES);
         let done = match self.0 {
             Level::Portable => 0,
@@ -113,13 +143,13 @@ impl Path {
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact(size).enumerate() {
             for (lane, &x) in lanes.iter_mut().zip(values) {
-                lane.0[done + row] = x;
+                lane.0[done + row] = x.into();
             }
         }
     }
 
     /// Turns lanes into rows: the inverse of [`Path::gather`].
-    pub fn scatter(self, lanes: &[Lane], rows: &mut [f64]) {
+    pub fn scatter<T: Element>(self, lanes: &[Lane], rows: &mut [T]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * LANES);
         let done = match self.0 {
             Level::Portable => 0,
@@ -133,15 +163,15 @@ impl Path {
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact_mut(size).enumerate() {
             for (x, lane) in values.iter_mut().zip(lanes) {
-                *x = lane.0[done + row];
+                *x = T::nearest(lane.0[done + row]);
             }
         }
     }
 
     /// Copies whole cache lines past the caches, where the path can: faster for what would be driven out
     /// of them before it is read. [`Path::fence`] completes it.
-    pub fn stream(self, from: &[f64], to: &mut [f64]) {
-        assert!(from.len() == to.len() && to.len().is_multiple_of(8) && to_next_line(to) == 0);
+    pub fn stream<T: Element>(self, from: &[T], to: &mut [T]) {
+        assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
         match self.0 {
             Level::Portable => to.copy_from_slice(from),
             // SAFETY: the instructions were detected; lengths and alignment are as they must be.
@@ -160,22 +190,25 @@ impl Path {
     }
 }
 
-/// How many numbers stand before the next cache line begins, 0 to 7.
-pub(crate) fn to_next_line(numbers: &[f64]) -> usize {
-    (numbers.as_ptr().addr() / 8).wrapping_neg() % 8
+/// Numbers in a cache line.
+pub(crate) const fn in_line<T>() -> usize {
+    64 / size_of::<T>()
+}
+
+/// How many numbers stand before the next cache line begins.
+pub(crate) fn to_next_line<T>(numbers: &[T]) -> usize {
+    (numbers.as_ptr().addr() / size_of::<T>()).wrapping_neg() % in_line::<T>()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Numbers of rows around the widths of the registers, and every number of components.
-    #[test]
-    fn lanes_hold_the_rows_and_give_them_back() {
+    fn round_trip<T: Element + PartialEq + std::fmt::Debug>() {
         for path in Path::available() {
             for size in (1..=20).chain([32, 64]) {
                 for rows in (0..20).chain([31, 32, 33, 56, 57, 63, LANES]) {
-                    let numbers: Vec<f64> = (0..rows * size).map(|i| i as f64).collect();
+                    let numbers: Vec<T> = (0..rows * size).map(|i| T::nearest(i as f64)).collect();
                     let mut lanes = vec![Lane::filled(-1.0); size];
                     path.gather(&numbers, &mut lanes);
                     for (k, lane) in lanes.iter().enumerate() {
@@ -184,7 +217,7 @@ mod tests {
                             assert_eq!(x, expected, "{path:?}, {rows} rows of {size}");
                         }
                     }
-                    let mut back = vec![f64::NAN; rows * size];
+                    let mut back = vec![T::nearest(f64::NAN); rows * size];
                     path.scatter(&lanes, &mut back);
                     assert_eq!(back, numbers, "{path:?}, {rows} rows of {size}");
                 }
@@ -192,16 +225,28 @@ mod tests {
         }
     }
 
+    /// Numbers of rows around the widths of the registers, and every number of components.
     #[test]
-    fn streams_copy() {
-        let numbers: Vec<f64> = (0..100).map(f64::from).collect();
+    fn lanes_hold_the_rows_and_give_them_back() {
+        round_trip::<f64>();
+        round_trip::<f32>();
+    }
+
+    fn streamed<T: Element + PartialEq + std::fmt::Debug>() {
+        let numbers: Vec<T> = (0..100).map(|i| T::nearest(f64::from(i))).collect();
         for path in Path::available() {
-            let mut to = vec![0.0; 100];
+            let mut to = vec![T::nearest(0.0); 100];
             let first = to_next_line(&to);
             path.stream(&numbers[1..81], &mut to[first..first + 80]);
             path.fence();
             assert_eq!(to[first..first + 80], numbers[1..81]);
-            assert!(to[..first].iter().chain(&to[first + 80..]).all(|&x| x == 0.0));
+            assert!(to[..first].iter().chain(&to[first + 80..]).all(|&x| x.into() == 0.0));
         }
+    }
+
+    #[test]
+    fn streams_copy() {
+        streamed::<f64>();
+        streamed::<f32>();
     }
 }

@@ -4,29 +4,42 @@
 //! contiguous; the kernel works on the lanes; the block is turned back. Beyond the caches all that counts
 //! is memory: rows are asked for ahead of time, and results go past the caches.
 
-use crate::simd::{Kernel, LANES, Lane, Path, to_next_line};
+use crate::simd::{Element, Kernel, LANES, Lane, Path, in_line, to_next_line};
+use crate::threads::Threads;
+use std::ops::Range;
 
 /// Below so many rows, turning them into lanes does not pay.
 const FEW: usize = 8;
 
-/// From so many numbers on, factors and product together, the product goes past the caches: 16 MiB.
-pub(crate) const STREAMED: usize = 1 << 21;
+/// From so many bytes on, factors and product together, the product goes past the caches.
+pub(crate) const STREAMED: usize = 16 << 20;
+
+/// A thread more pays from so many numbers for each on; they take three times as long as it takes to start.
+const SHARED: usize = 1 << 19;
 
 /// Rows of a factor: one for all, or one for each.
-struct Factor<'a> {
-    data: &'a [f64],
+#[derive(Clone, Copy)]
+struct Factor<'a, T> {
+    data: &'a [T],
     size: usize,
     one: bool,
 }
 
-impl<'a> Factor<'a> {
-    fn new(data: &'a [f64], size: usize, total: usize) -> Factor<'a> {
+impl<'a, T: Element> Factor<'a, T> {
+    fn new(data: &'a [T], size: usize, total: usize) -> Factor<'a, T> {
         let one = data.len() == size;
         assert!(one || data.len() == total * size, "a factor has the wrong length");
         Factor { data, size, one }
     }
 
-    fn rows(&self, first: usize, count: usize) -> &[f64] {
+    /// Those rows alone.
+    fn piece(self, rows: Range<usize>) -> Factor<'a, T> {
+        let data =
+            if self.one { self.data } else { &self.data[rows.start * self.size..rows.end * self.size] };
+        Factor { data, ..self }
+    }
+
+    fn rows(&self, first: usize, count: usize) -> &[T] {
         if self.one { self.data } else { &self.data[first * self.size..(first + count) * self.size] }
     }
 
@@ -36,7 +49,7 @@ impl<'a> Factor<'a> {
             path.gather(self.rows(first, count), lanes);
         } else if first == 0 {
             for (lane, &x) in lanes.iter_mut().zip(self.data) {
-                *lane = Lane::filled(x);
+                *lane = Lane::filled(x.into());
             }
         }
     }
@@ -44,22 +57,22 @@ impl<'a> Factor<'a> {
 
 /// Rows written one block after the other past the caches, where only whole cache lines are fast. What
 /// does not fill a line waits in the buffer for the next block.
-struct Stream<'a> {
+struct Stream<'a, T> {
     path: Path,
-    out: &'a mut [f64],
+    out: &'a mut [T],
     written: usize,
-    buffer: &'a mut [f64],
+    buffer: &'a mut [T],
     waiting: usize,
 }
 
-impl Stream<'_> {
+impl<T: Element> Stream<'_, T> {
     fn write(&mut self, lanes: &[Lane], count: usize) {
         let filled = self.waiting + count * lanes.len();
         self.path.scatter(lanes, &mut self.buffer[self.waiting..filled]);
         let out = &mut self.out[self.written..self.written + filled];
         // Before the first line, and in it only.
         let head = to_next_line(out).min(filled);
-        let tail = (filled - head) % 8;
+        let tail = (filled - head) % in_line::<T>();
         out[..head].copy_from_slice(&self.buffer[..head]);
         self.path.stream(&self.buffer[head..filled - tail], &mut out[head..filled - tail]);
         self.buffer.copy_within(filled - tail..filled, 0);
@@ -73,27 +86,59 @@ impl Stream<'_> {
     }
 }
 
+/// Applies a kernel to the rows one by one.
+fn by_rows<T: Element, K: Kernel>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, nout): (&mut [T], usize)) {
+    let mut numbers = vec![0.0; a.size + b.size + nout];
+    let (x, rest) = numbers.split_at_mut(a.size);
+    let (y, z) = rest.split_at_mut(b.size);
+    for (row, out) in out.chunks_exact_mut(nout).enumerate() {
+        for (wide, rows) in [(&mut *x, a.rows(row, 1)), (&mut *y, b.rows(row, 1))] {
+            for (wide, &number) in wide.iter_mut().zip(rows) {
+                *wide = number.into();
+            }
+        }
+        kernel.row(x, y, z);
+        for (number, &wide) in out.iter_mut().zip(&*z) {
+            *number = T::nearest(wide);
+        }
+    }
+}
+
 /// Applies a kernel to all rows of `(numbers, numbers in a row)`.
-pub(crate) fn sweep<K: Kernel>(
+pub(crate) fn sweep<T: Element, K: Kernel>(
     path: Path,
+    threads: Threads,
     kernel: &K,
-    (a, na): (&[f64], usize),
-    (b, nb): (&[f64], usize),
-    (out, nout): (&mut [f64], usize),
+    (a, na): (&[T], usize),
+    (b, nb): (&[T], usize),
+    (out, nout): (&mut [T], usize),
 ) {
     let total = out.len() / nout;
     assert_eq!(out.len(), total * nout, "the result is not a whole number of rows");
     let (a, b) = (Factor::new(a, na, total), Factor::new(b, nb, total));
+    let bytes = size_of_val(a.data) + size_of_val(b.data) + size_of_val(out);
+    let streamed = !path.is_portable() && bytes >= STREAMED;
+    threads.for_each_piece(SHARED / (na + nb + nout), nout, out, |rows, out| {
+        let (a, b) = (a.piece(rows.clone()), b.piece(rows));
+        sweep_piece(path, streamed, kernel, a, b, (out, nout));
+    });
+}
+
+fn sweep_piece<T: Element, K: Kernel>(
+    path: Path,
+    streamed: bool,
+    kernel: &K,
+    a: Factor<T>,
+    b: Factor<T>,
+    (out, nout): (&mut [T], usize),
+) {
+    let total = out.len() / nout;
     if total < FEW || K::FAST_ROWS && path.is_portable() {
-        for (row, out) in out.chunks_exact_mut(nout).enumerate() {
-            kernel.row(a.rows(row, 1), b.rows(row, 1), out);
-        }
-        return;
+        return by_rows(kernel, a, b, (out, nout));
     }
-    let streamed = !path.is_portable() && a.data.len() + b.data.len() + out.len() >= STREAMED;
-    let mut lanes = vec![Lane::filled(0.0); na + nb + nout + if streamed { nout + 1 } else { 0 }];
-    let (a_lanes, rest) = lanes.split_at_mut(na);
-    let (b_lanes, rest) = rest.split_at_mut(nb);
+    let mut lanes = vec![Lane::filled(0.0); a.size + b.size + nout + if streamed { nout + 1 } else { 0 }];
+    let (a_lanes, rest) = lanes.split_at_mut(a.size);
+    let (b_lanes, rest) = rest.split_at_mut(b.size);
     let (out_lanes, buffer) = rest.split_at_mut(nout);
     let mut block = |first, count, out: &mut [Lane]| {
         a.load(path, first, count, a_lanes);

@@ -1,10 +1,14 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Array, Out, Rows, bad, filled, map_rows, numbers};
-use polhode_ga::batch::turn;
+use crate::arrays::{Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, threads};
+use crate::signature::Algebra;
+use numpy::PyArrayDyn;
+use polhode_ga::batch::{Element, turn_threads};
+use polhode_ga::compose::compose;
 use polhode_ga::functions::Function;
-use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::product::Grades;
 use polhode_ga::table::G3;
+use polhode_ga::threads::Threads;
 use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
 use pyo3::prelude::*;
 
@@ -16,48 +20,76 @@ fn check_rows(length: usize, size: usize, rows: usize) -> PyResult<()> {
     Err(bad(format!("an operand has {length} numbers, expected {size} or {}", rows * size)))
 }
 
-/// A product of rows `(n, K)`; a factor of one row meets every row of the other. Returns `(rows, M)` and
-/// the grades of the product as bits.
+/// Fills `out` with a product of rows of an algebra: `(n, K)` numbers of the grades given as bits. A factor
+/// of one row meets every row of the other. All three hold float64, or float32.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn product<'py>(
     py: Python<'py>,
+    algebra: &Algebra,
     name: &str,
-    a: Rows<'py>,
+    a: &Bound<'py, PyAny>,
     a_grades: u16,
-    b: Rows<'py>,
+    b: &Bound<'py, PyAny>,
     b_grades: u16,
-    rows: usize,
-) -> PyResult<(Array<'py>, u16)> {
-    let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
-    if a_grades >= 16 || b_grades >= 16 {
-        return Err(bad("3-d space has grades 0 to 3"));
+    out: &Bound<'py, PyAny>,
+) -> PyResult<()> {
+    let plan = algebra.plan(name, a_grades, b_grades)?;
+    if is_single(out) {
+        return fill::<f32>(py, plan.sizes, [a, b, out], |t, a, b, out| plan.run_threads(t, a, b, out));
     }
-    let plan = Plan::g3(product, Grades(a_grades), Grades(b_grades));
-    let (a, b) = (numbers(&a)?, numbers(&b)?);
-    let (na, nb, nout) = plan.sizes;
+    fill::<f64>(py, plan.sizes, [a, b, out], |t, a, b, out| plan.run_threads(t, a, b, out))
+}
+
+/// Whether an array is of float32.
+fn is_single(array: &Bound<'_, PyAny>) -> bool {
+    array.cast::<PyArrayDyn<f32>>().is_ok()
+}
+
+/// Fills an array from the rows of two others.
+fn fill<T: Element + numpy::Element>(
+    py: Python<'_>,
+    (na, nb, nout): (usize, usize, usize),
+    [a, b, out]: [&Bound<'_, PyAny>; 3],
+    work: impl Fn(Threads, &[T], &[T], &mut [T]) + Sync,
+) -> PyResult<()> {
+    let (a, b): (Rows<'_, T>, Rows<'_, T>) = (a.extract()?, b.extract()?);
+    let mut out: RowsToFill<'_, T> = out.extract()?;
+    let (a, b, out) = (numbers(&a)?, numbers(&b)?, numbers_to_fill(&mut out)?);
+    let rows = out.len() / nout;
     for (length, size) in [(a.len(), na), (b.len(), nb)] {
         check_rows(length, size, rows)?;
     }
-    Ok((filled(py, [rows, nout], |out| plan.run(a, b, out))?, plan.grades.0))
+    let threads = threads(out.len())?;
+    py.detach(|| work(threads, a, b, out));
+    Ok(())
 }
 
-/// `inverse`, `exp`, `log` or `sqrt` of rows of eight components; also the grades of the values.
+/// `inverse`, `exp`, `log` or `sqrt` of rows of all components of an algebra.
 #[pyfunction]
-pub(crate) fn function<'py>(
-    py: Python<'py>,
-    name: &str,
-    m: Rows<'py>,
-    grades: u16,
-) -> PyResult<(Array<'py>, u16)> {
+pub(crate) fn function<'py>(py: Python<'py>, algebra: &Algebra, name: &str, m: Rows<'py>) -> Out<'py> {
     let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
-    let values = map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0))?;
-    Ok((values, f.grades(Grades(grades)).0))
+    if algebra.is_g3() {
+        return map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0));
+    }
+    map_long_rows(py, [&m], |rows| algebra.calculus().apply(f, rows[0]))
 }
 
-/// Indices of the components of these grades among the eight.
+/// The join or the meet of blades, rows of all components of an algebra.
 #[pyfunction]
-pub(crate) fn component_indices(grades: u16) -> Vec<usize> {
-    Grades(grades).indices(&G3)
+pub(crate) fn subspaces<'py>(
+    py: Python<'py>,
+    algebra: &Algebra,
+    name: &str,
+    a: Rows<'py>,
+    b: Rows<'py>,
+) -> Out<'py> {
+    let calculus = algebra.calculus();
+    match name {
+        "join" => map_long_rows(py, [&a, &b], |rows| calculus.join(rows[0], rows[1])),
+        "meet" => map_long_rows(py, [&a, &b], |rows| calculus.meet(rows[0], rows[1])),
+        _ => Err(bad(format!("unknown operation {name}"))),
+    }
 }
 
 /// Euclidean norms of the rows, without overflow on the way; the last axis has length 1.
@@ -130,6 +162,12 @@ pub(crate) fn rotor_to_rotation_vector<'py>(py: Python<'py>, r: Rows<'py>) -> Ou
     map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).to_rotation_vector().0))
 }
 
+/// Bivectors −Bθ/2 of rotors.
+#[pyfunction]
+pub(crate) fn rotor_log<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
+    map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).log().0))
+}
+
 /// Unit planes (3) and angles of rotors.
 #[pyfunction]
 pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
@@ -140,25 +178,42 @@ pub(crate) fn rotor_plane_angle<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> 
     })
 }
 
-/// `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets every row
-/// of the other.
+/// Fills `out` with `R X ~R` for rows of rotors (n, 4) and of values of these grades; one row of either meets
+/// every row of the other. All three hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_apply<'py>(
     py: Python<'py>,
-    rotors: Rows<'py>,
-    values: Rows<'py>,
+    rotors: &Bound<'py, PyAny>,
+    values: &Bound<'py, PyAny>,
     grades: u16,
-    rows: usize,
-) -> Out<'py> {
+    out: &Bound<'py, PyAny>,
+) -> PyResult<()> {
     if grades == 0 || grades >= 16 {
         return Err(bad("a value of 3-d space has some of the grades 0 to 3"));
     }
-    let (rotors, values) = (numbers(&rotors)?, numbers(&values)?);
-    let size = Grades(grades).indices(&G3).len();
-    for (length, size) in [(rotors.len(), 4), (values.len(), size)] {
-        check_rows(length, size, rows)?;
+    let grades = Grades(grades);
+    let size = grades.indices(&G3).len();
+    let (sizes, arrays) = ((4, size, size), [rotors, values, out]);
+    if is_single(out) {
+        return fill::<f32>(py, sizes, arrays, |t, r, v, out| turn_threads(t, r, v, grades, out));
     }
-    filled(py, [rows, size], |out| turn(rotors, values, Grades(grades), out))
+    fill::<f64>(py, sizes, arrays, |t, r, v, out| turn_threads(t, r, v, grades, out))
+}
+
+/// Fills `out` with the products of rows of rotors (n, 4), of norm 1; one row of either meets every row of
+/// the other. All three hold float64, or float32.
+#[pyfunction]
+pub(crate) fn rotor_compose<'py>(
+    py: Python<'py>,
+    left: &Bound<'py, PyAny>,
+    right: &Bound<'py, PyAny>,
+    out: &Bound<'py, PyAny>,
+) -> PyResult<()> {
+    let (sizes, arrays) = ((4, 4, 4), [left, right, out]);
+    if is_single(out) {
+        return fill::<f32>(py, sizes, arrays, compose);
+    }
+    fill::<f64>(py, sizes, arrays, compose)
 }
 
 /// 2×2 complex matrices, eight numbers a row, of multivectors.

@@ -1,11 +1,18 @@
 //! Between NumPy arrays and fixed-size rows.
 
-use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
+use polhode_ga::threads::Threads;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// An array of float64 whose last axis holds the components, contiguous.
-pub(crate) type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
+pub(crate) type Rows<'py, T = f64> = PyReadonlyArrayDyn<'py, T>;
+
+/// An array to write to.
+pub(crate) type RowsToFill<'py, T = f64> = PyReadwriteArrayDyn<'py, T>;
 
 /// A new array of float64.
 pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -20,11 +27,37 @@ pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {
 
 /// The numbers of an array in C order. An array in any other order is refused: `as_slice` alone would
 /// also take one in Fortran order, and its rows for columns.
-pub(crate) fn numbers<'a>(array: &'a Rows<'_>) -> PyResult<&'a [f64]> {
+pub(crate) fn numbers<'a, T: Element>(array: &'a Rows<'_, T>) -> PyResult<&'a [T]> {
     if !array.is_c_contiguous() {
         return Err(bad("the array is not C-contiguous"));
     }
     Ok(array.as_slice()?)
+}
+
+/// The numbers of an array in C order, to be written.
+pub(crate) fn numbers_to_fill<'a, T: Element>(array: &'a mut RowsToFill<'_, T>) -> PyResult<&'a mut [T]> {
+    if !array.is_c_contiguous() {
+        return Err(bad("the array to fill is not C-contiguous"));
+    }
+    Ok(array.as_slice_mut()?)
+}
+
+/// Arrays of fewer numbers are not worth asking the system how many threads there are.
+const SHARED: usize = 1 << 16;
+
+/// How many threads may share an array of so many numbers: `POLHODE_NUM_THREADS`, or as many as run at a time.
+pub(crate) fn threads(numbers: usize) -> PyResult<Threads> {
+    if numbers < SHARED {
+        return Ok(Threads::ONE);
+    }
+    match std::env::var("POLHODE_NUM_THREADS") {
+        Err(std::env::VarError::NotPresent) => Ok(Threads::available()),
+        Err(error) => Err(bad(error)),
+        Ok(text) => match text.trim().parse() {
+            Ok(count) if count > 0 => Ok(Threads::new(count)),
+            _ => Err(bad(format!("POLHODE_NUM_THREADS must be a whole number from 1 on, got {text:?}"))),
+        },
+    }
 }
 
 /// A single row of N numbers.
@@ -45,22 +78,6 @@ pub(crate) fn table<'py, const N: usize>(
 ) -> Out<'py> {
     let shape = vec![rows.len(), N];
     PyArray1::from_vec(py, rows.flatten().collect()).reshape(shape)
-}
-
-/// A new array of shape (rows, size), filled while the GIL is released.
-///
-/// NumPy allocates it, which asks for huge pages where it is large: faulting in small ones costs several
-/// times the arithmetic of a product.
-pub(crate) fn filled<'py>(
-    py: Python<'py>,
-    [rows, size]: [usize; 2],
-    fill: impl FnOnce(&mut [f64]) + Send,
-) -> Out<'py> {
-    let array = PyArray2::zeros(py, [rows, size], false);
-    let mut target = array.readwrite();
-    let numbers = target.as_slice_mut()?;
-    py.detach(|| fill(numbers));
-    Ok(array.to_dyn().clone())
 }
 
 /// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.
@@ -102,4 +119,33 @@ pub(crate) fn map_rows<'py, const IN: usize, const OUT: usize, E: std::fmt::Disp
     let mut out_shape = batch.to_vec();
     out_shape.push(OUT);
     PyArray1::from_vec(py, out).reshape(out_shape)
+}
+
+/// Applies a function of rows of one length, from arrays of one shape, to all rows, which give rows of that
+/// length; an error names the batch index.
+pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
+    py: Python<'py>,
+    inputs: [&Rows<'py>; N],
+    f: impl Fn([&[f64]; N]) -> Result<Vec<f64>, E> + Sync,
+) -> Out<'py> {
+    let shape = inputs[0].shape();
+    let Some((&size, batch)) = shape.split_last() else { return Err(bad("expected rows of components")) };
+    if inputs.iter().any(|input| input.shape() != shape) || size == 0 {
+        return Err(bad("expected arrays of one shape"));
+    }
+    let mut data = [&[][..]; N];
+    for (slot, input) in data.iter_mut().zip(inputs) {
+        *slot = numbers(input)?;
+    }
+    let count = data[0].len() / size;
+    let result: Result<Vec<f64>, (usize, E)> = py.detach(|| {
+        let mut out = Vec::with_capacity(count * size);
+        for row in 0..count {
+            let rows = data.map(|numbers| &numbers[row * size..(row + 1) * size]);
+            out.extend(f(rows).map_err(|error| (row, error))?);
+        }
+        Ok(out)
+    });
+    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
+    PyArray1::from_vec(py, out).reshape(shape.to_vec())
 }

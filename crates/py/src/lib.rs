@@ -6,23 +6,33 @@ mod algebra;
 mod arrays;
 mod bodies;
 mod motion;
+mod multivector;
+mod pool;
 mod scene;
+mod signature;
 
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
 mod _native {
     #[pymodule_export]
     use crate::algebra::{
-        component_indices, from_pauli, function, norm, product, rotor_apply, rotor_from_components,
+        from_pauli, function, norm, product, rotor_apply, rotor_compose, rotor_from_components,
         rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion, rotor_from_rotation_vector,
-        rotor_from_vectors, rotor_plane_angle, rotor_to_matrix, rotor_to_quaternion,
-        rotor_to_rotation_vector, to_pauli,
+        rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_to_matrix, rotor_to_quaternion,
+        rotor_to_rotation_vector, subspaces, to_pauli,
     };
 
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
+
+    #[pymodule_export]
+    use crate::multivector::{Multivector, Rotor};
+    #[pymodule_export]
+    use crate::pool::{Buffer, buffer};
+    #[pymodule_export]
+    use crate::signature::{Algebra, g3_object};
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};

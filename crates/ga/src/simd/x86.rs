@@ -1,6 +1,6 @@
 //! The paths of x86-64. `gather` and `scatter` return how many rows they did; the rest is left to others.
 
-use super::{Kernel, LANES, Lane};
+use super::{Element, Kernel, LANES, Lane};
 use std::arch::x86_64::*;
 
 #[target_feature(enable = "avx2")]
@@ -16,10 +16,67 @@ pub(super) fn apply_avx512<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &
 /// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own
 /// prefetching stops.
 #[inline(always)]
-fn prefetch(from: *const f64) {
+fn prefetch<T>(from: *const T) {
     // SAFETY: a hint; it reads nothing, so that the address may be any.
-    unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_add(512).cast()) };
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_byte_add(4096).cast()) };
 }
+
+/// Numbers of a row as registers of `f64`, and back.
+///
+/// # Safety
+/// As many numbers as a register holds are within one object, and the machine has its instructions.
+pub trait Registers {
+    /// Four numbers.
+    #[doc(hidden)]
+    unsafe fn load_4(from: *const Self) -> __m256d;
+    #[doc(hidden)]
+    unsafe fn store_4(to: *mut Self, x: __m256d);
+    /// Eight numbers.
+    #[doc(hidden)]
+    unsafe fn load_8(from: *const Self) -> __m512d;
+    #[doc(hidden)]
+    unsafe fn store_8(to: *mut Self, x: __m512d);
+}
+
+/// Registers by one expression each way, of the pointer and the register.
+macro_rules! registers {
+    ($type:ty, $p:ident, $x:ident, $load_4:expr, $store_4:expr, $load_8:expr, $store_8:expr) => {
+        impl Registers for $type {
+            #[inline(always)]
+            unsafe fn load_4($p: *const Self) -> __m256d {
+                // SAFETY: as the trait demands.
+                unsafe { $load_4 }
+            }
+            #[inline(always)]
+            unsafe fn store_4($p: *mut Self, $x: __m256d) {
+                // SAFETY: as the trait demands.
+                unsafe { $store_4 }
+            }
+            #[inline(always)]
+            unsafe fn load_8($p: *const Self) -> __m512d {
+                // SAFETY: as the trait demands.
+                unsafe { $load_8 }
+            }
+            #[inline(always)]
+            unsafe fn store_8($p: *mut Self, $x: __m512d) {
+                // SAFETY: as the trait demands.
+                unsafe { $store_8 }
+            }
+        }
+    };
+}
+
+registers!(f64, p, x, _mm256_loadu_pd(p), _mm256_storeu_pd(p, x), _mm512_loadu_pd(p), _mm512_storeu_pd(p, x));
+
+registers!(
+    f32,
+    p,
+    x,
+    _mm256_cvtps_pd(_mm_loadu_ps(p)),
+    _mm_storeu_ps(p, _mm256_cvtpd_ps(x)),
+    _mm512_cvtps_pd(_mm256_loadu_ps(p)),
+    _mm256_storeu_ps(p, _mm512_cvtpd_ps(x))
+);
 
 /// Four rows of four numbers, transposed: pairs of rows, then of pairs.
 #[inline]
@@ -69,7 +126,7 @@ macro_rules! squares {
         /// # Safety
         /// The numbers fit the lanes, which are at least one.
         #[target_feature(enable = $feature)]
-        pub(super) unsafe fn $gather(rows: &[f64], lanes: &mut [Lane]) -> usize {
+        pub(super) unsafe fn $gather<T: Element>(rows: &[T], lanes: &mut [Lane]) -> usize {
             let size = lanes.len();
             let last = size.saturating_sub($n);
             let mut done = 0;
@@ -81,14 +138,14 @@ macro_rules! squares {
                         unsafe {
                             let row = rows.as_ptr().add((done + i) * size + column);
                             prefetch(row);
-                            square[i] = $load(row);
+                            square[i] = T::$load(row);
                         }
                     }
                     let square = $transpose(square);
                     for k in 0..$n {
                         if k < size {
                             // SAFETY: `done + $n <= LANES`.
-                            unsafe { $store(lanes[column + k].0.as_mut_ptr().add(done), square[k]) };
+                            unsafe { f64::$store(lanes[column + k].0.as_mut_ptr().add(done), square[k]) };
                         }
                     }
                 }
@@ -100,7 +157,7 @@ macro_rules! squares {
         /// # Safety
         /// The numbers fit the lanes, which are at least one.
         #[target_feature(enable = $feature)]
-        pub(super) unsafe fn $scatter(lanes: &[Lane], rows: &mut [f64]) -> usize {
+        pub(super) unsafe fn $scatter<T: Element>(lanes: &[Lane], rows: &mut [T]) -> usize {
             let size = lanes.len();
             let last = size.saturating_sub($n);
             let mut done = 0;
@@ -110,13 +167,13 @@ macro_rules! squares {
                     for k in 0..$n {
                         if k < size {
                             // SAFETY: `done + $n <= LANES`.
-                            square[k] = unsafe { $load(lanes[column + k].0.as_ptr().add(done)) };
+                            square[k] = unsafe { f64::$load(lanes[column + k].0.as_ptr().add(done)) };
                         }
                     }
                     let square = $transpose(square);
                     for i in 0..$n {
                         // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
-                        unsafe { $store(rows.as_mut_ptr().add((done + i) * size + column), square[i]) };
+                        unsafe { T::$store(rows.as_mut_ptr().add((done + i) * size + column), square[i]) };
                     }
                 }
                 done += $n;
@@ -126,39 +183,21 @@ macro_rules! squares {
     };
 }
 
-squares!(
-    "avx2",
-    4,
-    _mm256_setzero_pd,
-    _mm256_loadu_pd,
-    _mm256_storeu_pd,
-    transpose_avx2,
-    gather_avx2,
-    scatter_avx2
-);
+squares!("avx2", 4, _mm256_setzero_pd, load_4, store_4, transpose_avx2, gather_avx2, scatter_avx2);
 
-squares!(
-    "avx512f",
-    8,
-    _mm512_setzero_pd,
-    _mm512_loadu_pd,
-    _mm512_storeu_pd,
-    transpose_avx512,
-    gather_squares,
-    scatter_squares
-);
+squares!("avx512f", 8, _mm512_setzero_pd, load_8, store_8, transpose_avx512, gather_squares, scatter_squares);
 
 /// Calls a function of the constant number of lanes below eight, or the other one.
 macro_rules! by_size {
     ($size:expr, $few:ident, $many:ident, $arguments:tt) => {
         match $size {
-            1 => $few::<1> $arguments,
-            2 => $few::<2> $arguments,
-            3 => $few::<3> $arguments,
-            4 => $few::<4> $arguments,
-            5 => $few::<5> $arguments,
-            6 => $few::<6> $arguments,
-            7 => $few::<7> $arguments,
+            1 => $few::<T, 1> $arguments,
+            2 => $few::<T, 2> $arguments,
+            3 => $few::<T, 3> $arguments,
+            4 => $few::<T, 4> $arguments,
+            5 => $few::<T, 5> $arguments,
+            6 => $few::<T, 6> $arguments,
+            7 => $few::<T, 7> $arguments,
             _ => $many $arguments,
         }
     };
@@ -167,7 +206,7 @@ macro_rules! by_size {
 /// # Safety
 /// The numbers fit the lanes, which are at least one.
 #[target_feature(enable = "avx512f")]
-pub(super) unsafe fn gather_avx512(rows: &[f64], lanes: &mut [Lane]) -> usize {
+pub(super) unsafe fn gather_avx512<T: Element>(rows: &[T], lanes: &mut [Lane]) -> usize {
     // SAFETY: passed on.
     unsafe { by_size!(lanes.len(), gather_few, gather_squares, (rows, lanes)) }
 }
@@ -175,7 +214,7 @@ pub(super) unsafe fn gather_avx512(rows: &[f64], lanes: &mut [Lane]) -> usize {
 /// # Safety
 /// The numbers fit the lanes, which are at least one.
 #[target_feature(enable = "avx512f")]
-pub(super) unsafe fn scatter_avx512(lanes: &[Lane], rows: &mut [f64]) -> usize {
+pub(super) unsafe fn scatter_avx512<T: Element>(lanes: &[Lane], rows: &mut [T]) -> usize {
     // SAFETY: passed on.
     unsafe { by_size!(lanes.len(), scatter_few, scatter_squares, (lanes, rows)) }
 }
@@ -186,7 +225,7 @@ pub(super) unsafe fn scatter_avx512(lanes: &[Lane], rows: &mut [f64]) -> usize {
 /// # Safety
 /// The numbers fit the `SIZE` lanes.
 #[target_feature(enable = "avx512f")]
-unsafe fn gather_few<const SIZE: usize>(rows: &[f64], lanes: &mut [Lane]) -> usize {
+unsafe fn gather_few<T: Element, const SIZE: usize>(rows: &[T], lanes: &mut [Lane]) -> usize {
     let whole = rows.len() / (8 * SIZE);
     for group in 0..whole {
         let mut registers = [_mm512_setzero_pd(); SIZE];
@@ -195,7 +234,7 @@ unsafe fn gather_few<const SIZE: usize>(rows: &[f64], lanes: &mut [Lane]) -> usi
             unsafe {
                 let from = rows.as_ptr().add((group * SIZE + r) * 8);
                 prefetch(from);
-                registers[r] = _mm512_loadu_pd(from);
+                registers[r] = T::load_8(from);
             }
         }
         for (lane, &x) in lanes.iter_mut().zip(&pick(registers, &Picks::<SIZE>::GATHER)) {
@@ -211,7 +250,7 @@ unsafe fn gather_few<const SIZE: usize>(rows: &[f64], lanes: &mut [Lane]) -> usi
 /// # Safety
 /// The numbers fit the `SIZE` lanes.
 #[target_feature(enable = "avx512f")]
-unsafe fn scatter_few<const SIZE: usize>(lanes: &[Lane], rows: &mut [f64]) -> usize {
+unsafe fn scatter_few<T: Element, const SIZE: usize>(lanes: &[Lane], rows: &mut [T]) -> usize {
     let whole = rows.len() / (8 * SIZE);
     for group in 0..whole {
         let mut registers = [_mm512_setzero_pd(); SIZE];
@@ -222,7 +261,7 @@ unsafe fn scatter_few<const SIZE: usize>(lanes: &[Lane], rows: &mut [f64]) -> us
         let registers = pick(registers, &Picks::<SIZE>::SCATTER);
         for r in 0..SIZE {
             // SAFETY: `8 SIZE` numbers from `8 SIZE group` on are within the rows.
-            unsafe { _mm512_storeu_pd(rows.as_mut_ptr().add((group * SIZE + r) * 8), registers[r]) };
+            unsafe { T::store_8(rows.as_mut_ptr().add((group * SIZE + r) * 8), registers[r]) };
         }
     }
     whole * 8
@@ -291,22 +330,26 @@ fn pick<const SIZE: usize>(sources: [__m512d; SIZE], indices: &Indices<SIZE>) ->
 }
 
 /// # Safety
-/// The slices have one length, a multiple of 4, and `to` begins at a cache line.
+/// The slices have one length, whole cache lines, and `to` begins at one.
 #[target_feature(enable = "avx2")]
-pub(super) unsafe fn stream_avx2(from: &[f64], to: &mut [f64]) {
-    for i in (0..to.len()).step_by(4) {
-        // SAFETY: four numbers from `i` on are within both, and aligned in `to`.
-        unsafe { _mm256_stream_pd(to.as_mut_ptr().add(i), _mm256_loadu_pd(from.as_ptr().add(i))) };
+pub(super) unsafe fn stream_avx2<T: Element>(from: &[T], to: &mut [T]) {
+    let bytes = size_of_val(to);
+    let (from, to) = (from.as_ptr().cast::<f64>(), to.as_mut_ptr().cast::<f64>());
+    for i in (0..bytes / 8).step_by(4) {
+        // SAFETY: 32 bytes from `8 i` on are within both, and aligned in `to`.
+        unsafe { _mm256_stream_pd(to.add(i), _mm256_loadu_pd(from.add(i))) };
     }
 }
 
 /// # Safety
-/// The slices have one length, a multiple of 8, and `to` begins at a cache line.
+/// The slices have one length, whole cache lines, and `to` begins at one.
 #[target_feature(enable = "avx512f")]
-pub(super) unsafe fn stream_avx512(from: &[f64], to: &mut [f64]) {
-    for i in (0..to.len()).step_by(8) {
-        // SAFETY: eight numbers from `i` on are within both, and aligned in `to`.
-        unsafe { _mm512_stream_pd(to.as_mut_ptr().add(i), _mm512_loadu_pd(from.as_ptr().add(i))) };
+pub(super) unsafe fn stream_avx512<T: Element>(from: &[T], to: &mut [T]) {
+    let bytes = size_of_val(to);
+    let (from, to) = (from.as_ptr().cast::<f64>(), to.as_mut_ptr().cast::<f64>());
+    for i in (0..bytes / 8).step_by(8) {
+        // SAFETY: 64 bytes from `8 i` on are within both, and aligned in `to`.
+        unsafe { _mm512_stream_pd(to.add(i), _mm512_loadu_pd(from.add(i))) };
     }
 }
 

@@ -1,0 +1,145 @@
+//! Blades as subspaces: the smallest that contains two of them, and what they have in common.
+//!
+//! A blade `A = a1∧…∧ak` stands for the span of its vectors; no metric enters. To have a measure of what
+//! counts as the same direction, components are compared as lengths, basis vectors as orthonormal.
+
+use super::{Calculus, add_scaled, grade, scaled};
+use crate::functions::MathError;
+use crate::values::norm;
+
+/// The sine of the angle below which a direction counts as lying in a subspace, and the relative part
+/// of a multivector below which it counts as a blade.
+pub const SAME_DIRECTION: f64 = 1e-10;
+
+/// A subspace: orthonormal vectors, and the unit blade with its orientation.
+struct Subspace {
+    vectors: Vec<Vec<f64>>,
+    blade: Vec<f64>,
+}
+
+impl Calculus {
+    /// The join: the unit blade of the smallest subspace that contains both. See [`Calculus::meet`].
+    pub fn join(&self, a: &[f64], b: &[f64]) -> Result<Vec<f64>, MathError> {
+        Ok(self.join_and_meet(a, b)?.0)
+    }
+
+    /// The meet: the unit blade of the subspace common to both, the scalar 1 where that is zero only.
+    ///
+    /// Join J and meet M are oriented together: with `A = A'∧M` and `B = M∧B'`, `J = A'∧M∧B'`. Of the
+    /// two ways left, `J = A∧B`, `M = 1` where nothing is in common; the orientations of A and B,
+    /// `J = A`, `M = B` or reversed, where A contains B or B contains A; else that in which the first
+    /// of the largest components of J is positive: `J = I` and `M = A∨B` where they span the space.
+    pub fn meet(&self, a: &[f64], b: &[f64]) -> Result<Vec<f64>, MathError> {
+        Ok(self.join_and_meet(a, b)?.1)
+    }
+
+    fn join_and_meet(&self, a: &[f64], b: &[f64]) -> Result<(Vec<f64>, Vec<f64>), MathError> {
+        let (a, b) = (self.subspace(&self.read(a)?)?, self.subspace(&self.read(b)?)?);
+        let whole = extend(&a.vectors, &b.vectors, usize::MAX);
+        let outside = whole.len();
+        let whole = [a.vectors.clone(), whole].concat();
+        let common = a.vectors.len() + b.vectors.len() - whole.len();
+        debug_assert!(outside + common == b.vectors.len());
+        // What both lack and what one lacks leave the common part.
+        let lacking = extend(&a.vectors, &whole, whole.len() - a.vectors.len());
+        let other = extend(&b.vectors, &whole, whole.len() - b.vectors.len());
+        let lacking = [lacking.clone(), extend(&lacking, &other, other.len())].concat();
+        let shared = extend(&lacking, &whole, common);
+        let (of_a, of_b) = (a.vectors.len() - common, b.vectors.len() - common);
+        let mut meet = self.wedge_of(&shared);
+        let first = self.wedge_of(&extend(&shared, &a.vectors, of_a));
+        let last = self.wedge_of(&extend(&shared, &b.vectors, of_b));
+        let left = self.wedge_bits(&first, &meet);
+        let sign = dot(&left, &a.blade) * dot(&self.wedge_bits(&meet, &last), &b.blade);
+        let join = self.wedge_bits(&left, &last);
+        let mut join = scaled(&join, 1f64.copysign(sign) / norm(&join));
+        let flip = if of_b == 0 {
+            dot(&meet, &b.blade) < 0.0
+        } else if of_a == 0 {
+            dot(&meet, &a.blade) < 0.0
+        } else {
+            common > 0 && self.leads_negative(&join)
+        };
+        if flip {
+            join.iter_mut().chain(&mut meet).for_each(|x| *x = -*x);
+        }
+        Ok((self.to_basis(&join), self.to_basis(&meet)))
+    }
+
+    /// Whether the first component, in basis order, of those as large as the largest is negative.
+    fn leads_negative(&self, m: &[f64]) -> bool {
+        let m = self.to_basis(m);
+        let bound = (1.0 - SAME_DIRECTION) * m.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        m.iter().find(|x| x.abs() >= bound).is_some_and(|&x| x < 0.0)
+    }
+
+    /// The subspace of a blade; an error if it is none.
+    ///
+    /// The vectors of a blade are its contractions by all blades one grade lower; the k most independent
+    /// of them span it, and the wedge of these is the blade again if it is one.
+    fn subspace(&self, m: &[f64]) -> Result<Subspace, MathError> {
+        let size = norm(m);
+        if size == 0.0 {
+            return Err(MathError::NoSubspace);
+        }
+        let scale = crate::values::scale_of(m);
+        let m: Vec<f64> = m.iter().map(|x| x / scale / (size / scale)).collect();
+        let k = (0..m.len()).max_by(|&i, &j| m[i].abs().total_cmp(&m[j].abs())).map_or(0, grade);
+        let contraction = |bits: usize| -> Vec<f64> {
+            let component =
+                |i: usize| if bits >> i & 1 == 1 { 0.0 } else { self.sign(1 << i, bits) * m[bits | 1 << i] };
+            (0..self.generators).map(component).collect()
+        };
+        let lower = (0..m.len()).filter(|&bits| grade(bits) + 1 == k);
+        let vectors = extend(&[], &lower.map(contraction).collect::<Vec<_>>(), k as usize);
+        let blade = self.wedge_of(&vectors);
+        let blade = scaled(&blade, 1f64.copysign(dot(&blade, &m)));
+        let mut rest = m;
+        add_scaled(&mut rest, &blade, -1.0);
+        let deviation = norm(&rest);
+        if vectors.len() != k as usize || deviation > SAME_DIRECTION {
+            return Err(MathError::NotBlade { deviation });
+        }
+        Ok(Subspace { vectors, blade })
+    }
+
+    /// The wedge of vectors, 1 of none.
+    fn wedge_of(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
+        vectors.iter().fold(self.scalar(1.0), |blade, v| {
+            let mut vector = vec![0.0; self.size()];
+            v.iter().enumerate().for_each(|(i, x)| vector[1 << i] = *x);
+            self.wedge_bits(&blade, &vector)
+        })
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Up to `most` orthonormal vectors, perpendicular to the orthonormal `base`, that together with it span
+/// the candidates to within [`SAME_DIRECTION`]; the farthest first.
+fn extend(base: &[Vec<f64>], candidates: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    while found.len() < most {
+        let residual = |v: &Vec<f64>| {
+            let mut v = v.clone();
+            // Twice is enough (Kahan): the second pass takes out the rounding of the first.
+            for u in base.iter().chain(&found).chain(base).chain(&found) {
+                let along = dot(&v, u);
+                add_scaled(&mut v, u, -along);
+            }
+            v
+        };
+        let farthest = candidates.iter().map(residual).max_by(|a, b| norm(a).total_cmp(&norm(b)));
+        match farthest {
+            Some(v) if norm(&v) > SAME_DIRECTION => {
+                let unit = scaled(&v, 1.0 / norm(&v));
+                // What was left of a short one may lean on the others again.
+                found.push(unit);
+            }
+            _ => break,
+        }
+    }
+    found
+}

@@ -1,0 +1,195 @@
+//! A single value of G3 that carries its grades: what a dynamic language holds.
+
+use crate::product::{Grades, Plan, Product};
+use crate::rotor::Rotor;
+use crate::values::{Vector, geometric};
+
+/// Where each grade of G3 begins among the eight components, and where the last one ends.
+const STARTS: [usize; 5] = [0, 1, 4, 7, 8];
+
+/// The components of the grades present, in basis order; zeros follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Graded {
+    components: [f64; 8],
+    grades: Grades,
+}
+
+impl Default for Graded {
+    /// The scalar 0.
+    fn default() -> Graded {
+        Graded { components: [0.0; 8], grades: Grades::SCALAR }
+    }
+}
+
+impl Graded {
+    /// From the components of some grades of G3; `None` if their number does not fit.
+    pub fn new(components: &[f64], grades: Grades) -> Option<Graded> {
+        if grades.0 >= 16 || components.len() != size(grades) {
+            return None;
+        }
+        let mut held = [0.0; 8];
+        held[..components.len()].copy_from_slice(components);
+        Some(Graded { components: held, grades })
+    }
+
+    /// The components of the grades present.
+    pub fn components(&self) -> &[f64] {
+        &self.components[..size(self.grades)]
+    }
+
+    /// The grades it holds.
+    pub fn grades(&self) -> Grades {
+        self.grades
+    }
+
+    /// The eight components, zeros for the grades it does not hold.
+    pub fn full(&self) -> [f64; 8] {
+        let mut full = [0.0; 8];
+        let mut next = 0;
+        for k in (0..4).filter(|&k| self.grades.contains(k)) {
+            for slot in &mut full[STARTS[k]..STARTS[k + 1]] {
+                *slot = self.components[next];
+                next += 1;
+            }
+        }
+        full
+    }
+
+    /// Its part in some grades; zeros for those it does not hold.
+    pub fn with_grades(&self, grades: Grades) -> Graded {
+        if grades == self.grades {
+            return *self;
+        }
+        let full = self.full();
+        let mut part = Graded { components: [0.0; 8], grades };
+        let mut next = 0;
+        for k in (0..4).filter(|&k| grades.contains(k)) {
+            for x in &full[STARTS[k]..STARTS[k + 1]] {
+                part.components[next] = *x;
+                next += 1;
+            }
+        }
+        part
+    }
+
+    /// A named product, by the terms of the table, in their order.
+    pub fn product(&self, product: Product, other: &Graded) -> Graded {
+        let plan = Plan::g3(product, self.grades, other.grades);
+        let mut out = Graded { components: [0.0; 8], grades: plan.grades };
+        if plan.is_geometric {
+            // A sum that begins with 0, as in the plan, is never −0.
+            out.components = geometric(self.components, other.components).map(|x| x + 0.0);
+            return out;
+        }
+        for term in &plan.terms {
+            // The masks only tell the compiler that no index leaves the eight.
+            out.components[term.out & 7] +=
+                f64::from(term.sign) * self.components[term.a & 7] * other.components[term.b & 7];
+        }
+        out
+    }
+
+    /// Each component changed.
+    pub fn map(&self, f: impl Fn(f64) -> f64) -> Graded {
+        let mut out = *self;
+        for x in &mut out.components[..size(self.grades)] {
+            *x = f(*x);
+        }
+        out
+    }
+
+    /// Each component with that of the other value, over the grades of both.
+    pub fn zip(&self, other: &Graded, f: impl Fn(f64, f64) -> f64) -> Graded {
+        let union = Grades(self.grades.0 | other.grades.0);
+        let (mut a, b) = (self.with_grades(union), other.with_grades(union));
+        for (x, y) in a.components[..size(union)].iter_mut().zip(b.components) {
+            *x = f(*x, y);
+        }
+        a
+    }
+
+    /// `~A`: grades 2 and 3 change sign.
+    pub fn reverse(&self) -> Graded {
+        let mut out = *self;
+        let low = size(Grades(self.grades.0 & 0b0011));
+        for x in &mut out.components[low..size(self.grades)] {
+            *x = -*x;
+        }
+        out
+    }
+
+    /// `R A ~R`: vector and bivector each turn as three numbers, scalar and trivector stay.
+    pub fn turned(&self, rotor: Rotor) -> Graded {
+        let mut out = *self;
+        let mut next = 0;
+        for k in (0..4).filter(|&k| self.grades.contains(k)) {
+            if k % 3 == 0 {
+                next += 1;
+                continue;
+            }
+            let [x, y, z] = [next, next + 1, next + 2].map(|i| self.components[i & 7]);
+            out.components[next..next + 3].copy_from_slice(&rotor.apply(Vector([x, y, z])).0);
+            next += 3;
+        }
+        out
+    }
+}
+
+/// How many components the grades have.
+fn size(grades: Grades) -> usize {
+    const SIZES: [u8; 16] = [0, 1, 3, 4, 3, 4, 6, 7, 1, 2, 4, 5, 4, 5, 7, 8];
+    usize::from(SIZES[usize::from(grades.0 & 15)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::turn;
+    use crate::table::G3;
+
+    fn numbers(seed: usize, count: usize) -> Vec<f64> {
+        (0..count).map(|i| ((seed * 31 + i) as f64 * 0.7).sin()).collect()
+    }
+
+    /// Every product of every pair of sets of grades gives the numbers of the batch kernels, bit for bit.
+    #[test]
+    fn single_values_equal_the_batches() {
+        for (ga, gb) in (1..16).flat_map(|a| (1..16).map(move |b| (Grades(a), Grades(b)))) {
+            let (a, b) = (numbers(1, size(ga)), numbers(2, size(gb)));
+            let (left, right) = (Graded::new(&a, ga).unwrap(), Graded::new(&b, gb).unwrap());
+            for product in Product::ALL {
+                let plan = Plan::g3(product, ga, gb);
+                let mut expected = vec![0.0; plan.sizes.2];
+                plan.run(&a, &b, &mut expected);
+                let got = left.product(product, &right);
+                assert_eq!(got.components(), expected, "{product:?} {ga:?} {gb:?}");
+                assert_eq!(got.grades(), plan.grades);
+            }
+            let rotor = Rotor::from_components([0.3, -0.2, 0.9, 0.4]).unwrap();
+            let mut expected = vec![0.0; b.len()];
+            turn(&rotor.components(), &b, gb, &mut expected);
+            assert_eq!(right.turned(rotor).components(), expected);
+        }
+    }
+
+    #[test]
+    fn parts_and_sums_follow_the_basis() {
+        for grades in (1..16).map(Grades) {
+            let value = Graded::new(&numbers(3, size(grades)), grades).unwrap();
+            let full = value.full();
+            for (x, i) in value.components().iter().zip(grades.indices(&G3)) {
+                assert_eq!(*x, full[i]);
+            }
+            let all = value.with_grades(Grades::ALL);
+            assert_eq!(all.components(), full);
+            assert_eq!(all.with_grades(grades), value);
+            let sum = value.zip(&Graded::new(&[1.0], Grades::SCALAR).unwrap(), |x, y| x + y);
+            assert_eq!(sum.full()[0], full[0] + 1.0);
+            for (i, x) in value.reverse().full().iter().enumerate() {
+                assert_eq!(*x, if G3.blades()[i].grade() >= 2 { -full[i] } else { full[i] });
+            }
+        }
+        assert_eq!(Graded::new(&[1.0, 2.0], Grades::SCALAR), None);
+        assert_eq!(Graded::new(&[1.0], Grades(16)), None);
+    }
+}

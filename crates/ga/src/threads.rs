@@ -1,0 +1,97 @@
+//! Rows shared among threads.
+//!
+//! A row is computed from its own numbers alone, so that results have the same bits however many threads
+//! share them.
+
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+/// How many threads may share the rows of a call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Threads(usize);
+
+impl Threads {
+    /// The caller's own thread alone.
+    pub const ONE: Threads = Threads(1);
+
+    /// So many, but at least one and at most 1024.
+    pub fn new(count: usize) -> Threads {
+        Threads(count.clamp(1, 1024))
+    }
+
+    /// As many as the machine runs at a time for this process.
+    pub fn available() -> Threads {
+        thread::available_parallelism().map_or(Threads::ONE, |count| Threads::new(count.get()))
+    }
+
+    /// Splits `out`, rows of `size` numbers, into one contiguous piece for each thread, though none of
+    /// fewer than `least` rows, and calls `work` for each with the rows it spans and the piece itself.
+    /// To start a thread takes some 30 µs, and a piece should take longer.
+    ///
+    /// # Panics
+    /// If `out` is not a whole number of rows.
+    pub fn for_each_piece<T: Send>(
+        self,
+        least: usize,
+        size: usize,
+        out: &mut [T],
+        work: impl Fn(Range<usize>, &mut [T]) + Sync,
+    ) {
+        let total = out.len().checked_div(size).unwrap_or(0);
+        assert_eq!(out.len(), total * size, "the result is not a whole number of rows");
+        let count = self.0.min(total / least.max(1));
+        if count <= 1 {
+            return work(0..total, out);
+        }
+        let mut rest = out;
+        let pieces = (0..count).map(|i| {
+            let rows = i * total / count..(i + 1) * total / count;
+            (rows.clone(), rest.split_off_mut(..rows.len() * size).expect("pieces fill the result"))
+        });
+        let pieces = Mutex::new(pieces);
+        let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let worker = || {
+            while let Some((rows, piece)) = next() {
+                work(rows, piece);
+            }
+        };
+        thread::scope(|scope| {
+            // Where no more threads are to be had, those that are there do all the pieces.
+            for _ in 1..count {
+                if thread::Builder::new().spawn_scoped(scope, worker).is_err() {
+                    break;
+                }
+            }
+            worker();
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each row is done once, with its own number, in pieces that are not too small.
+    #[test]
+    fn pieces_cover_the_rows() {
+        for threads in [0, 1, 2, 3, 7, usize::MAX] {
+            for (rows, size, least) in
+                [(0, 3, 1), (1, 3, 1), (100, 3, 1), (100, 1, 40), (100, 2, 0), (5, 0, 1)]
+            {
+                let mut out = vec![0; rows * size];
+                Threads::new(threads).for_each_piece(least, size, &mut out, |rows, piece| {
+                    assert_eq!(piece.len(), rows.len() * size);
+                    assert!(rows.len() >= least.min(rows.end));
+                    for (row, numbers) in rows.zip(piece.chunks_mut(size.max(1))) {
+                        for x in numbers {
+                            *x += 1 + row;
+                        }
+                    }
+                });
+                let expected: Vec<usize> = (0..rows * size).map(|i| 1 + i / size).collect();
+                assert_eq!(out, expected);
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+"""Exact and approximate equality of values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._arrays import is_float
+from polhode._coefficients import common, namespace
+from polhode._parts import with_grades
+
+if TYPE_CHECKING:
+    from polhode._multivector import Multivector
+
+
+def equal(a: Multivector, b: Multivector) -> Any:
+    """Whether all components are equal: a bool, or an array of the batch shape."""
+    if a.algebra is not b.algebra:
+        return False
+    left, right = _same_grades(a, b)
+    same: Any = left == right
+    if isinstance(left, np.ndarray):
+        result: Any = np.asarray(same, dtype=bool).all(axis=-1)
+        return result[()]
+    return namespace(left).all(same, axis=-1)
+
+
+def negated(same: Any) -> Any:
+    """Return the opposite truth of each."""
+    return not same if isinstance(same, bool) else ~same
+
+
+def close(a: Multivector, b: Multivector, rtol: float, atol: float) -> Any:
+    """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``."""
+    if np.any(np.less(rtol, 0)) or np.any(np.less(atol, 0)):
+        raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
+    left, right = _same_grades(a, b)
+    if not isinstance(left, np.ndarray):
+        return _close_foreign(namespace(left), left, right, rtol, atol)
+    if left.dtype == object:
+        left, right = _as_floats(left), _as_floats(right)
+    left, right = np.broadcast_arrays(left, right)
+    # Measured in units of the largest component, so that nothing overflows.
+    unit = np.maximum(np.abs(left), np.abs(right)).max(axis=-1, keepdims=True)
+    unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
+    with np.errstate(invalid="ignore"):  # inf − inf and NaN are not close
+        left, right = left / unit, right / unit
+        distance = np.linalg.norm(left - right, axis=-1)
+        size = np.maximum(np.linalg.norm(left, axis=-1), np.linalg.norm(right, axis=-1))
+        near = np.isfinite(size) & (distance <= np.maximum(rtol * size, atol / unit[..., 0]))
+    return np.logical_or(near, equal(a, b))[()]
+
+
+def _close_foreign(xp: Any, left: Any, right: Any, rtol: float, atol: float) -> Any:
+    """Like `close` for arrays of another library, which may not say whether they are finite."""
+
+    def length(x: Any) -> Any:
+        return xp.sqrt(xp.sum(x * x, axis=-1))
+
+    size = xp.maximum(length(left), length(right))
+    return length(left - right) <= xp.maximum(rtol * size, xp.full_like(size, atol))
+
+
+def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
+    mask = a._mask | b._mask
+    left, right = with_grades(a, mask), with_grades(b, mask)
+    if is_float(left) and is_float(right):
+        return left, right
+    return common(left, right)
+
+
+def _as_floats(data: Any) -> Any:
+    try:
+        return data.astype(np.float64)
+    except TypeError:
+        raise TypeError(
+            "is_close needs numbers; simplify the difference of symbolic values and compare it with =="
+        ) from None

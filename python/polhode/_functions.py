@@ -1,0 +1,182 @@
+"""Sizes, powers, inverses, exponentials, logarithms and roots of values."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _generic, _native, _parts
+from polhode._arrays import Array, is_float, mapped
+from polhode._coefficients import common, kind_of
+from polhode._products import coerced
+
+if TYPE_CHECKING:
+    from polhode._multivector import Multivector
+
+_BIVECTOR, _EVEN = 0b0100, 0b0101
+
+
+def divided(value: Multivector, other: Any) -> Multivector:
+    """``A/s``, and ``A/B = A B⁻¹``."""
+    divisor = coerced(other, value)
+    if divisor is None:
+        return NotImplemented  # type: ignore[no-any-return]
+    if divisor._mask != 1:
+        return value * divisor.inverse()
+    if isinstance(divisor._data, np.ndarray):
+        zeros = np.argwhere(divisor._data[..., 0] == 0)
+        if zeros.size or (len(zeros) and not divisor.shape):
+            index = tuple(int(i) for i in zeros[0])
+            raise ZeroDivisionError(
+                "division of a multivector by zero" + (f" at index {index}" if index else "")
+            )
+    a, b = common(value._data, divisor._data)
+    with np.errstate(over="ignore", invalid="ignore"):
+        quotient = a / b if is_float(a) else kind_of(a, b).divide(a, b)
+    return _native.Multivector._of(quotient, value._mask, value.algebra)
+
+
+def power(value: Multivector, n: Any) -> Multivector:
+    """Return an integer power, by squaring."""
+    try:
+        exponent = operator.index(n)
+    except TypeError:
+        raise TypeError(
+            f"a multivector has integer powers, got {n!r}; write (n * A.log()).exp() for others"
+        ) from None
+    base = value.inverse() if exponent < 0 else value
+    exponent = abs(exponent)
+    if exponent == 0:
+        first = value._data[..., :1]
+        one = np.ones_like(first) if is_float(first) else kind_of(first).zeros_like(first) + 1
+        return _native.Multivector._of(one, 1, value.algebra)
+    result: Multivector | None = None
+    while True:
+        if exponent & 1:
+            result = base if result is None else result * base
+        exponent >>= 1
+        if not exponent:
+            return result  # type: ignore[return-value]
+        base = base * base
+
+
+def norm_squared(value: Multivector) -> Any:
+    """``⟨A ~A⟩``, of the batch shape."""
+    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    if is_float(data):
+        with np.errstate(over="ignore"):
+            return (np.square(data) * signs).sum(axis=-1)[()]
+    return value.scalar_product(~value)._data[..., 0]
+
+
+def norm(value: Multivector) -> Any:
+    """``√abs⟨A ~A⟩``, of the batch shape."""
+    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    if not is_float(data):
+        kind = kind_of(data)
+        return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
+    if min(signs) > 0 and len(signs) <= 8:
+        return mapped(_native.norm, _padded(data))[..., 0][()]
+    # In units of the largest component, so that nothing overflows.
+    unit = np.abs(data).max(axis=-1, keepdims=True)
+    unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
+    return (np.sqrt(np.abs((np.square(data / unit) * signs).sum(axis=-1))) * unit[..., 0])[()]
+
+
+def _padded(data: Array) -> Array:
+    """Return rows of eight: zeros follow."""
+    wide = np.zeros((*data.shape[:-1], 8), dtype=data.dtype)
+    wide[..., : data.shape[-1]] = data
+    return wide
+
+
+def normalized(value: Multivector) -> Multivector:
+    """``A/|A|``, with an error for the first value that has no direction."""
+    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    if not is_float(data):
+        if min(signs) > 0:
+            return value._like(_generic.functions.normalized(kind_of(data), data))
+        return value / coerced(norm(value), value)
+    # Scaling by the largest component first keeps subnormal values accurate.
+    largest = np.abs(data).max(axis=-1, keepdims=True)
+    usable = np.isfinite(largest) & (largest > 0)
+    scaled = data / np.where(usable, largest, 1)
+    size = np.sqrt(np.abs((np.square(scaled) * signs).sum(axis=-1, keepdims=True)))
+    # Where squares cancel, a size below this is rounding.
+    _require((usable & (size > 8 * np.finfo(data.dtype).eps))[..., 0], "has no direction (norm {})", value)
+    return value._like(scaled / size)
+
+
+def _require(ok: Any, what: str, value: Multivector) -> None:
+    """Raise a ValueError that names the first batch index where `ok` is false, and the norm there."""
+    if np.all(ok):
+        return
+    index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
+    place = f"the multivector at index {index}" if index else "the multivector"
+    raise ValueError(f"{place} {what.format(np.asarray(norm(value))[index])}")
+
+
+def _function(name: str, value: Multivector) -> Multivector:
+    """Return a function of any value: native over floats, else by the generic formulas."""
+    algebra, data = value.algebra, value._data
+    if is_float(data):
+        mask = algebra._grades_of_function(name, value._mask)
+
+        def native(rows: Array) -> Array:
+            return _native.function(algebra, name, rows)[..., algebra._indices(mask)]
+
+        result = mapped(native, _parts.with_grades(value, algebra._all))
+    elif algebra.signature == (3, 0, 0):
+        result, mask = getattr(_generic.functions, name)(kind_of(data), data, value._mask)
+    else:
+        result, mask = _generic_function(name, value)
+    return _native.Multivector._of(result, mask, algebra)
+
+
+def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
+    """Return the inverse or the exponential of other coefficients in other algebras."""
+    algebra = value.algebra
+    if name not in ("inverse", "exp"):
+        raise TypeError(f"{name} in {algebra} needs floats, got {value.dtype}; convert with .astype(float)")
+    mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
+    terms, _ = algebra._terms("geometric", everything, everything)
+    full = _parts.with_grades(value, everything)
+    if name == "exp":
+        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full)
+    else:
+        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full)
+    return kind_of(rows).stack([rows[..., i] for i in algebra._indices(mask)]), mask
+
+
+def inverse(value: Multivector) -> Multivector:
+    """``A⁻¹``."""
+    return _function("inverse", value)
+
+
+def exp(value: Multivector) -> Multivector:
+    """``exp A``; a rotor of a bivector of 3-d space."""
+    result = _function("exp", value)
+    is_rotor = result._mask == _EVEN and value.algebra.signature == (3, 0, 0)
+    if is_rotor and not value._held() & ~_BIVECTOR:
+        return _native.Rotor._from_rows(result._data)
+    return result
+
+
+def log(value: Multivector) -> Multivector:
+    """Return a logarithm."""
+    return _function("log", value)
+
+
+def sqrt(value: Multivector) -> Multivector:
+    """Return a square root."""
+    return _function("sqrt", value)
+
+
+def projected(value: Multivector, blade: Multivector) -> Multivector:
+    """``(A⌋B) B⁻¹``, over the grades of A."""
+    if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
+        raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
+    unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
+    return (value.left_contraction(unit) * unit.inverse())._part(value._mask)

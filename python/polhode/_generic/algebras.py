@@ -1,0 +1,193 @@
+"""inverse and exp in a geometric algebra of any signature, over arrays of any coefficients.
+
+An algebra of n generators is its geometric product, a list of terms over all 2ⁿ blades (see `products`), of
+which the first is the scalar 1. Data are arrays (..., 2ⁿ).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from polhode._generic.coefficients import Coefficients
+from polhode._generic.exact import call, divide, is_symbolic, is_zero, sqrt
+from polhode._generic.functions import by_rows, components, require_in_range
+from polhode._generic.numeric import Numeric
+from polhode._generic.products import Term, product
+from polhode._generic.smooth import COSH, SINHC, horner
+
+Array = Any
+
+# exp's series for |M| <= 1/2: the first term left out is 2⁻¹⁶/16! < 1e-18.
+_TAYLOR = [1 / math.factorial(k) for k in range(16)]
+# Halvings of an argument of unknown size: |M| up to 2¹¹.
+_TRACED_HALVINGS = 12
+# A product with the inverse this far from 1 has lost all but three digits.
+_RESIDUAL = 2.0**-10
+
+
+# --- inverse
+
+
+def inverse(d: Coefficients, terms: Sequence[Term], generators: int, data: Array) -> Array:
+    """``U⁻¹``, exact for exact coefficients; a ValueError with the batch index where there is none.
+
+    By Faddeev and LeVerrier's recursion for the characteristic polynomial, whose trace is N times the
+    scalar part for matrices of size ``N = 2^⌈n/2⌉`` (Shirokov, Comput. Appl. Math. 40 (2021)):
+
+        U_k = U A_(k−1),   C_k = N/k ⟨U_k⟩,   A_k = U_k − C_k,   A_0 = 1,
+
+    ends in ``U A_(N−1) = ⟨U_N⟩``, a number. Only whole numbers divide, and that number at last. These are
+    identities between polynomials in the squares of the generators, so generators may square to 0 as well.
+    """
+    if isinstance(d, Numeric):
+        with np.errstate(all="ignore"):
+            return _refined_inverse(d, terms, generators, data)
+    adjugate, determinant = _adjugate(d, terms, generators, data)
+    singular = np.frompyfunc(is_zero, 1, 1)(determinant)
+    d.require(np.logical_not(np.asarray(singular, dtype=bool)), "no inverse: the multivector is singular")
+    return d.divide(adjugate, np.asarray(determinant, dtype=object)[..., None])
+
+
+def _adjugate(d: Coefficients, terms: Sequence[Term], generators: int, u: Array) -> tuple[Array, Array]:
+    """Return ``A_(N−1)`` and ``⟨U_N⟩``."""
+    size, count = 2 ** ((generators + 1) // 2), u.shape[-1]
+    adjugate = _number(d, u, 1)
+    for k in range(1, size):
+        power = product(d, terms, count, u, adjugate)
+        trace = d.divide(size * power[..., 0], k)
+        adjugate = d.stack([power[..., 0] - trace, *components(power)[1:]])
+    return adjugate, product(d, terms, count, u, adjugate)[..., 0]
+
+
+def _refined_inverse(d: Numeric, terms: Sequence[Term], generators: int, data: Array) -> Array:
+    """The recursion loses digits; Newton's step ``X(2 − UX)`` for the inverse brings them back."""
+    d.require_finite(components(data))
+    scale = d.scale(components(data))[..., None]
+    u, count = data / scale, data.shape[-1]
+    adjugate, determinant = _adjugate(d, terms, generators, u)
+    x, one = adjugate / determinant[..., None], _number(d, u, 1)
+    for _ in range(2):
+        x = product(d, terms, count, x, 2.0 * one - product(d, terms, count, u, x))
+    residual = d.xp.max(d.xp.abs(product(d, terms, count, u, x) - one), axis=-1)
+    d.require(residual <= _RESIDUAL, "no inverse: the multivector is singular to rounding")
+    result = x / scale
+    require_in_range(d, result)
+    return result
+
+
+def _number(d: Coefficients, like: Array, value: int) -> Array:
+    """Return a number as a multivector of the shape of another."""
+    zero = d.zeros_like(like[..., 0])
+    return d.stack([zero + value] + [zero] * (like.shape[-1] - 1))
+
+
+# --- exp
+
+
+def exp(d: Coefficients, terms: Sequence[Term], held: Sequence[int], data: Array) -> Array:
+    """``exp M``; `held` are the blades that M may have, its other components being 0.
+
+    Where all blades held (but 1) anticommute, as those of vectors, the square of what they span is a number
+    and the result a closed form. Elsewhere the series is summed after halving, and squared back; exact and
+    symbolic values must have such a square by their components, or it is a TypeError.
+
+    A value that only happens to have it, like a simple bivector in four dimensions, takes the series as well:
+    derivatives lead off such values. Values traced by JAX are computed up to ``Σ|m| = 2048``; beyond, NaN.
+    """
+    if not isinstance(d, Numeric):
+        rows = range(data.shape[-1])
+        return by_rows(lambda m: _exp_row(terms, m), data, list(rows))
+    with np.errstate(all="ignore"):
+        d.require_finite(components(data))
+        simple = _anticommute(terms, [i for i in held if i != 0])
+        result = _closed_exp(d, terms, data) if simple else _series_exp(d, terms, data)
+        require_in_range(d, result)
+    return result
+
+
+def _anticommute(terms: Sequence[Term], held: list[int]) -> bool:
+    signs = {(i, j): sign for i, j, _, sign in terms}
+    return all(signs.get((i, j), 0) == -signs.get((j, i), 0) for i in held for j in held if i < j)
+
+
+def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
+    """``e^s (cosh √w + V sinh √w / √w)`` for ``V² = w``, a number of any sign: a boost, a shift or a turn."""
+    s, *v = components(m)
+    scale = d.scale(v) if v else d.zeros_like(s) + 1.0
+    scaled = d.zeros_like(s)
+    for i, j, k, sign in terms:
+        if i == j != 0 and k == 0:
+            scaled = scaled + sign * (v[i - 1] / scale) * (v[i - 1] / scale)
+    w = scaled * scale * scale
+    small, turns = d.abs(w) < 1, w < 0
+    near = d.where(small, w, 0.0)
+    x = scale * d.sqrt(d.where(small, 1.0, d.abs(scaled)))
+    # Only where it is a boost may x be exponentiated; exponents are added first, as their sum may be small.
+    boost, turn = d.where(turns, 1.0, x), d.where(turns, x, 1.0)
+    plus, minus = 0.5 * d.exp(s + boost), 0.5 * d.exp(s - boost)
+    factor = d.exp(d.where(small | turns, s, 0.0))
+    cosh = d.where(turns, factor * d.cos(turn), plus + minus)
+    sinhc = d.where(turns, factor * d.sin(turn) / turn, (plus - minus) / boost)
+    c = d.where(small, factor * horner(COSH, near), cosh)
+    q = d.where(small, factor * horner(SINHC, near), sinhc)
+    return d.stack([c, *(q * component for component in v)])
+
+
+def _series_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
+    """The series of M/2ᵏ, squared k times, k by the size of each value."""
+    size = d.xp.sum(d.xp.abs(d.constant(m)), axis=-1)[..., None]
+    halvings = _TRACED_HALVINGS
+    if d.is_concrete(size):
+        largest = float(d.xp.max(size)) if math.prod(size.shape) else 0.0
+        halvings = max(0, math.frexp(largest)[1] + 1)
+    halved = [size > 2.0 ** (k - 1) for k in range(halvings)]
+    x = m
+    for halve in halved:
+        x = d.where(halve, 0.5 * x, x)
+    result = _taylor(d, terms, x)
+    for halve in halved:
+        result = d.where(halve, product(d, terms, m.shape[-1], result, result), result)
+    return d.where(size <= 2.0 ** (halvings - 1), result, math.nan)
+
+
+def _taylor(d: Numeric, terms: Sequence[Term], x: Array) -> Array:
+    """Sixteen terms by six products: four blocks of four in the powers of x⁴ (Paterson and Stockmeyer)."""
+    count = x.shape[-1]
+    powers = [_number(d, x, 1), x]
+    for _ in range(3):
+        powers.append(product(d, terms, count, powers[-1], x))
+    total = d.zeros_like(x)
+    for block in (3, 2, 1, 0):
+        if block < 3:
+            total = product(d, terms, count, total, powers[4])
+        for k in range(4):
+            total = total + _TAYLOR[4 * block + k] * powers[k]
+    return total
+
+
+def _exp_row(terms: Sequence[Term], m: list[Any]) -> list[Any]:
+    """The closed form for exact, symbolic or multiprecision components whose square is a number."""
+    s, v = m[0], [0, *m[1:]]
+    square: list[Any] = [0] * len(m)
+    for i, j, k, sign in terms:
+        square[k] = square[k] + sign * v[i] * v[j]
+    if not all(is_zero(x) for x in square[1:]):
+        raise TypeError(
+            "exp of exact or symbolic coefficients needs a multivector whose non-scalar part squares to a "
+            "number; split it into commuting parts, or convert it to floats"
+        )
+    w = square[0]
+    if is_zero(w):
+        cosh, sinhc = 1, 1
+    elif (not is_symbolic(w) and w < 0) or (is_symbolic(w) and w.is_nonpositive):
+        root = sqrt(-w)
+        cosh, sinhc = call("cos", root), divide(call("sin", root), root)
+    else:
+        root = sqrt(w)
+        cosh, sinhc = call("cosh", root), divide(call("sinh", root), root)
+    factor = call("exp", s)
+    return [factor * cosh, *(factor * sinhc * x for x in v[1:])]

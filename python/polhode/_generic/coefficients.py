@@ -1,0 +1,99 @@
+"""Which arithmetic serves given arrays: `of` tells, and the two kinds of answer are `Numeric` and `Exact`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from polhode._extras import optional
+from polhode._generic.exact import Exact, is_coefficient, is_multiprecision
+from polhode._generic.numeric import Numeric
+
+Coefficients = Numeric | Exact
+
+# Libraries whose arrays follow the standard through array-api-compat only.
+_THROUGH_COMPAT = ("torch", "cupy", "dask", "ndonnx", "sparse")
+
+
+def of(*values: Any) -> Coefficients:
+    """Return the arithmetic of these arrays, numbers and nested lists together.
+
+    Floats in NumPy arrays and Python numbers go along with everything. Exact coefficients (arrays of
+    objects, Fractions, SymPy expressions) go with them only, and so do the arrays of each other library;
+    another mix is a TypeError. NumPy alone gives NumPy, of float64.
+    """
+    exact: list[Any] = []
+    foreign: list[Any] = []
+    for leaf in _leaves(values):
+        if _is_exact(leaf):
+            exact.append(leaf)
+        elif _namespace(leaf) is not None:
+            foreign.append(leaf)
+    if not foreign:
+        return Exact(_context(exact)) if exact else Numeric(np, np.dtype(np.float64))
+    names = list(dict.fromkeys(map(_library, foreign)))
+    if exact or len(names) > 1:
+        other = f"exact coefficients ({_example(exact[0])})" if exact else f"{names[1]} arrays"
+        raise TypeError(f"{names[0]} arrays and {other} do not mix; convert one of them first")
+    return _numeric(foreign)
+
+
+def _numeric(arrays: list[Any]) -> Numeric:
+    """Return the arithmetic of arrays of one library, in the floating type that they have in common."""
+    xp = _namespace(arrays[0])
+    floating = []
+    for array in arrays:
+        if xp.isdtype(array.dtype, "real floating"):
+            floating.append(array.dtype)
+        elif not xp.isdtype(array.dtype, "integral"):
+            raise TypeError(f"coefficients are real numbers (int or float), got dtype {array.dtype}")
+    dtype = xp.result_type(*floating) if floating else None
+    # JAX places arrays itself; a traced array has no device.
+    device = None if _library(arrays[0]) == "jax" else getattr(arrays[0], "device", None)
+    return Numeric(xp, dtype, device)
+
+
+def _leaves(value: Any) -> Iterator[Any]:
+    if isinstance(value, list | tuple):
+        for item in value:
+            yield from _leaves(item)
+    else:
+        yield value
+
+
+def _is_exact(x: Any) -> bool:
+    return is_coefficient(x) or (isinstance(x, np.ndarray) and x.dtype == object)
+
+
+def _library(array: Any) -> str:
+    """Return the name of the library of an array; JAX's arrays and tracers are of jax or jaxlib."""
+    name = type(array).__module__.partition(".")[0]
+    return "jax" if name == "jaxlib" else name
+
+
+def _namespace(array: Any) -> Any:
+    """Return the namespace of an array that is not NumPy's; None for what NumPy can take."""
+    if isinstance(array, np.ndarray | np.generic):
+        return None
+    if hasattr(array, "__array_namespace__"):
+        return array.__array_namespace__()
+    if _library(array) in _THROUGH_COMPAT and hasattr(array, "dtype"):
+        what = f"computing with {_library(array)} arrays"
+        return optional("array_api_compat", "array-api", what).array_namespace(array)
+    return None
+
+
+def _context(exact: list[Any]) -> Any:
+    """Return the mpmath context of the first multiprecision number; None if there is none."""
+    for x in exact:
+        for element in x.flat if isinstance(x, np.ndarray) else (x,):
+            if is_multiprecision(element):
+                return element.context
+    return None
+
+
+def _example(x: Any) -> str:
+    element = x.flat[0] if isinstance(x, np.ndarray) and x.size else x
+    return type(element).__name__

@@ -1,0 +1,214 @@
+"""NumPy arrays of Python objects: int, Fraction, SymPy expressions, mpmath numbers, and floats among them.
+
+Exact stays exact: ``1/2`` is a Fraction, ``√(9/4)`` is ``3/2``, ``cos 0`` is 1. Where there is no exact value
+the function of the element's own library answers: SymPy's, mpmath's at its precision, else `math`.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from fractions import Fraction
+from numbers import Rational
+from typing import Any
+
+import numpy as np
+
+Array = Any
+
+_WHOLE = 2.0**53  # larger floats are whole because they are rounded
+
+
+def is_symbolic(x: Any) -> bool:
+    """Whether x is a SymPy expression. SymPy is not imported for it: without SymPy there are none."""
+    sympy = sys.modules.get("sympy")
+    return sympy is not None and isinstance(x, sympy.Expr)
+
+
+def is_multiprecision(x: Any) -> bool:
+    """Whether x is a real number of mpmath."""
+    mpmath = sys.modules.get("mpmath")
+    return mpmath is not None and isinstance(x, mpmath.mpf)
+
+
+def is_coefficient(x: Any) -> bool:
+    """Whether x is a number or expression that no array of floats holds."""
+    return isinstance(x, Fraction) or is_symbolic(x) or is_multiprecision(x)
+
+
+def checked(x: Any, index: tuple[int, ...] = ()) -> Any:
+    """Return the element as one of the types that are computed with; else a TypeError that names it."""
+    if is_symbolic(x) or is_multiprecision(x) or type(x) in (int, float, Fraction):
+        return x
+    if isinstance(x, bool | np.bool_):
+        pass  # as an index or a mask it is a mistake
+    elif isinstance(x, Rational):
+        return divide(int(x.numerator), int(x.denominator))
+    elif isinstance(x, float | np.floating):
+        return float(x)
+    place = f" at index {index}" if index else ""
+    raise TypeError(
+        f"the coefficient{place} is {x!r} ({type(x).__name__}); "
+        "coefficients are int, float, Fraction, SymPy expressions or mpmath.mpf"
+    )
+
+
+def met(x: float) -> Any:
+    """Return a float that meets exact coefficients: a whole one is the integer it stands for."""
+    return int(x) if x.is_integer() and abs(x) <= _WHOLE else x
+
+
+# --- elements
+
+
+def _library(*elements: Any) -> Any:
+    """Where the functions of these elements are: sympy, an mpmath context, or math."""
+    if any(map(is_symbolic, elements)):
+        return sys.modules["sympy"]
+    for x in elements:
+        if is_multiprecision(x):
+            return x.context
+    return math
+
+
+# The values that stay exact.
+_AT_ZERO = {"sin": 0, "cos": 1, "exp": 1, "sinh": 0, "cosh": 1, "atan": 0}
+
+
+def call(name: str, x: Any) -> Any:
+    """``sin``, ``cos``, ``sinh``, ``cosh``, ``atan``, ``exp`` or ``log`` of an element."""
+    if name in _AT_ZERO and not is_symbolic(x) and x == 0:
+        return _AT_ZERO[name]
+    if name == "log" and isinstance(x, Rational) and x == 1:
+        return 0
+    try:
+        return getattr(_library(x), name)(x)
+    except OverflowError:
+        raise ValueError(f"{name}({x}) is beyond the range of floating point (1.8e308)") from None
+
+
+def atan2(y: Any, x: Any) -> Any:
+    """Return the angle of the point (x, y); exactly 0 on the positive axis."""
+    if isinstance(x, int | Fraction) and isinstance(y, int | Fraction) and y == 0 < x:
+        return 0
+    return _library(x, y).atan2(y, x)
+
+
+def sqrt(x: Any) -> Any:
+    """``√x``: exact for the squares of rational numbers and in SymPy."""
+    if isinstance(x, int | Fraction) and x >= 0:
+        top, bottom = math.isqrt(x.numerator), math.isqrt(x.denominator)
+        if top * top == x.numerator and bottom * bottom == x.denominator:
+            return divide(top, bottom)
+    return _library(x).sqrt(x)
+
+
+def divide(x: Any, y: Any) -> Any:
+    """``x/y``: of whole numbers and fractions a fraction, or the whole number that it is."""
+    if isinstance(x, int | Fraction) and isinstance(y, int | Fraction):
+        quotient = Fraction(x) / y
+        return quotient.numerator if quotient.denominator == 1 else quotient
+    return x / y
+
+
+def is_zero(x: Any) -> bool:
+    """Whether x is exactly 0, also of an expression that only proves to be 0, as ``1 − sin² − cos²``."""
+    if is_symbolic(x):
+        return x.is_zero is True or (x.is_zero is None and x.equals(0) is True)
+    return bool(x == 0)
+
+
+def is_finite(x: Any) -> bool:
+    """Whether x is no NaN or infinity; expressions count as finite unless they are one."""
+    if is_symbolic(x):
+        return x.is_finite is not False and x is not sys.modules["sympy"].nan
+    return isinstance(x, int | Fraction) or bool(_library(x).isfinite(x))
+
+
+_divide = np.frompyfunc(divide, 2, 1)
+_sqrt = np.frompyfunc(sqrt, 1, 1)
+_atan2 = np.frompyfunc(atan2, 2, 1)
+_call = np.frompyfunc(call, 2, 1)
+
+
+class Exact:
+    """What NumPy arrays of Python objects can do."""
+
+    exact = True
+    native = False
+
+    def __init__(self, context: Any = None) -> None:
+        self._context = context  # of mpmath, where its numbers are among the elements
+
+    def asarray(self, values: Any) -> Array:
+        """Numbers, expressions, nested lists and arrays as an array of objects, every element checked.
+
+        Whole floats of a float array become the integers they stand for, so that ``Fraction(1, 3) * e1``
+        stays exact; other floats make floats of what they meet, as everywhere in Python.
+        """
+        given = np.asarray(values) if isinstance(values, np.ndarray) else np.array(values, dtype=object)
+        if given.dtype.kind in "iuf":
+            elements = [self._element(met(float(x))) for x in given.flat]
+        else:
+            where = np.ndindex(given.shape)
+            elements = [self._element(checked(x, i)) for x, i in zip(given.flat, where, strict=True)]
+        array = np.empty(given.shape, dtype=object)
+        array.reshape(-1)[:] = elements
+        return array
+
+    def _element(self, x: Any) -> Any:
+        """With mpmath numbers, rational ones become such: its differences do not take fractions."""
+        if self._context is None or not isinstance(x, int | Fraction) or x == 0:
+            return x
+        return self._context.mpf(x.numerator) / x.denominator
+
+    def zeros(self, shape: tuple[int, ...]) -> Array:
+        """Exact zeros of this shape."""
+        return np.zeros(shape, dtype=int).astype(object)
+
+    def zeros_like(self, x: Array) -> Array:
+        """Exact zeros, as many as x has."""
+        return self.zeros(np.shape(x))
+
+    def stack(self, components: list[Array]) -> Array:
+        """Broadcast the components together and lay them along a new last axis."""
+        batch = np.broadcast_shapes(*map(np.shape, components))
+        stacked = np.empty((*batch, len(components)), dtype=object)
+        for i, component in enumerate(components):
+            stacked[..., i] = component
+        return stacked
+
+    def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
+        """The same elements in another shape."""
+        return np.reshape(x, shape)
+
+    def is_concrete(self, _: Array) -> bool:
+        """Elements can always be looked at."""
+        return True
+
+    def divide(self, x: Array, y: Array) -> Array:
+        """``x/y``, exact where it can be."""
+        return _divide(x, y)
+
+    def sqrt(self, x: Array) -> Array:
+        """``√x``, exact where it can be."""
+        return _sqrt(x)
+
+    def sin(self, x: Array) -> Array:
+        """Return the sine."""
+        return _call("sin", x)
+
+    def cos(self, x: Array) -> Array:
+        """Return the cosine."""
+        return _call("cos", x)
+
+    def atan2(self, y: Array, x: Array) -> Array:
+        """Return the angle of the point (x, y)."""
+        return _atan2(y, x)
+
+    def require(self, ok: Array, message: str) -> None:
+        """Raise a ValueError, with the first index where `ok` is false."""
+        if np.all(ok):
+            return
+        index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
+        raise ValueError(f"at index {index}: {message}" if index else message)

@@ -1,0 +1,66 @@
+"""Where the components of G3 stand: ``1 | e1 e2 e3 | e2e3 e3e1 e1e2 | I``, only those of the grades held.
+
+Grades are the bits of a mask.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from polhode._generic.central import Central
+from polhode._generic.coefficients import Coefficients
+
+Array = Any
+
+SCALAR, VECTOR, BIVECTOR, TRIVECTOR = 0b0001, 0b0010, 0b0100, 0b1000
+EVEN, ALL = 0b0101, 0b1111
+
+_BLADES = {SCALAR: (0,), VECTOR: (1, 2, 3), BIVECTOR: (4, 5, 6), TRIVECTOR: (7,)}
+
+# Grades closed under products: two that square to a number, and what commutes.
+_CLOSED = (EVEN, SCALAR | VECTOR, SCALAR | TRIVECTOR)
+# Inverse: M̄ times a number, where M M̄ has no trivector part.
+_INVERTED = (
+    *(SCALAR, VECTOR, BIVECTOR, TRIVECTOR, SCALAR | VECTOR, EVEN),
+    *(VECTOR | TRIVECTOR, BIVECTOR | TRIVECTOR, SCALAR | TRIVECTOR),
+)
+
+
+def indices(mask: int) -> list[int]:
+    """Which of the eight components the grades have."""
+    return [i for grade, blades in _BLADES.items() if mask & grade for i in blades]
+
+
+def grades_of(function: str, mask: int) -> int:
+    """Return the grades that the values of `inverse`, `exp`, `log` or `sqrt` may hold."""
+    if function == "exp" and mask == SCALAR:
+        return SCALAR
+    closed = {"inverse": _INVERTED, "exp": _CLOSED, "log": (EVEN,), "sqrt": (EVEN,)}[function]
+    return next((grades for grades in closed if not mask & ~grades), ALL)
+
+
+def eight(d: Coefficients, data: Array, mask: int) -> list[Array]:
+    """Return all eight components, exact zeros for the grades not held."""
+    place = {i: k for k, i in enumerate(indices(mask))}
+    zero = d.zeros(tuple(data.shape[:-1]))
+    return [data[..., place[i]] if i in place else zero for i in range(8)]
+
+
+def of_eight(d: Coefficients, components: list[Array], mask: int) -> Array:
+    """Return the array of the components of these grades."""
+    return d.stack([components[i] for i in indices(mask)])
+
+
+def split(m: list[Any]) -> tuple[Central, Central]:
+    """Return ζ and w of ``M = ζ + V``, ``V = a + B``: ``w = V² = a² + B² + 2 a∧B`` is central as well."""
+    a, b = m[1:4], m[4:7]
+    square = a[0] * a[0] + a[1] * a[1] + a[2] * a[2] - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
+    wedge = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return Central(m[0], m[7]), Central(square, wedge + wedge)
+
+
+def join(c: Central, m: list[Any], q: Central) -> list[Any]:
+    """``c + V q`` for central c and q, V being the vector and bivector part of m; ``a I`` is a bivector."""
+    vector = [a * q.re - b * q.im for a, b in zip(m[1:4], m[4:7], strict=True)]
+    bivector = [b * q.re + a * q.im for a, b in zip(m[1:4], m[4:7], strict=True)]
+    return [c.re, *vector, *bivector, c.im]

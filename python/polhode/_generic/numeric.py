@@ -1,0 +1,184 @@
+"""Floating-point arrays of any library that follows the array API standard."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any
+
+import numpy as np
+
+from polhode._arrays import as_floats
+
+Array = Any
+
+
+class Numeric:
+    """What arrays of one namespace can do: NumPy, JAX, torch, CuPy, Dask and whoever follows the standard.
+
+    All arrays of a computation have one floating type: float32 stays float32. Only functions of the
+    standard are used, and components are never assigned to: they are taken apart, and stacked again.
+    """
+
+    exact = False
+
+    def __init__(self, xp: Any, dtype: Any = None, device: Any = None) -> None:
+        self.xp = xp
+        self.dtype = xp.asarray(1.0).dtype if dtype is None else dtype
+        self._device = {} if device is None else {"device": device}
+
+    @property
+    def native(self) -> bool:
+        """True of NumPy, whose float64 the compiled core takes."""
+        return self.xp is np
+
+    @property
+    def eps(self) -> float:
+        """The spacing of numbers at 1."""
+        return float(self.xp.finfo(self.dtype).eps)
+
+    # --- arrays
+
+    def asarray(self, values: Any) -> Array:
+        """Numbers, nested lists and arrays as one array of this kind."""
+        if isinstance(values, list | tuple):
+            parts = self.xp.broadcast_arrays(*(self.asarray(value) for value in values))
+            return self.xp.stack(list(parts), axis=0)
+        if isinstance(values, np.ndarray | np.generic | int | float) or not hasattr(values, "dtype"):
+            floats = np.array(as_floats(values, "coefficients"))  # a copy, which others may keep and write to
+            return self.xp.asarray(floats, dtype=self.dtype, **self._device)
+        return values if values.dtype == self.dtype else self.xp.astype(values, self.dtype)
+
+    def zeros(self, shape: tuple[int, ...]) -> Array:
+        """Zeros of this shape."""
+        return self.xp.zeros(shape, dtype=self.dtype, **self._device)
+
+    def zeros_like(self, x: Array) -> Array:
+        """Zeros, as many as x has."""
+        return self.xp.zeros_like(x)
+
+    def stack(self, components: list[Array]) -> Array:
+        """Broadcast the components together and lay them along a new last axis."""
+        return self.xp.stack(list(self.xp.broadcast_arrays(*components)), axis=-1)
+
+    def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
+        """The same elements in another shape."""
+        return self.xp.reshape(x, shape)
+
+    def is_concrete(self, x: Array) -> bool:
+        """Whether values can be looked at: not while JAX traces, nor in a Dask graph."""
+        library = type(x).__module__.partition(".")[0]
+        if library == "dask":
+            return False
+        jax = sys.modules.get("jax")
+        return jax is None or not isinstance(x, jax.core.Tracer)
+
+    def constant(self, x: Array) -> Array:
+        """The same values, as numbers that no derivative is taken of."""
+        library = self.xp.__name__
+        if library == "jax.numpy":
+            return sys.modules["jax"].lax.stop_gradient(x)
+        return x.detach() if hasattr(x, "detach") else x
+
+    # --- elementwise
+
+    def where(self, condition: Array, x: Any, y: Any) -> Array:
+        """Take x where the condition holds, else y; either may be a number."""
+        return self.xp.where(condition, self._full(x), self._full(y))
+
+    def _full(self, x: Any) -> Array:
+        if isinstance(x, int | float):
+            return self.xp.asarray(x, dtype=self.dtype, **self._device)
+        return x
+
+    def abs(self, x: Array) -> Array:
+        """``|x|``, of derivative 1 at 0."""
+        return self.xp.where(x < 0, -x, x)
+
+    def divide(self, x: Array, y: Array) -> Array:
+        """``x/y``."""
+        return x / y
+
+    def sqrt(self, x: Array) -> Array:
+        """``√x``; where x is 0 the derivative is infinite."""
+        return self.xp.sqrt(x)
+
+    def exp(self, x: Array) -> Array:
+        """``eˣ``."""
+        return self.xp.exp(x)
+
+    def log(self, x: Array) -> Array:
+        """Return the natural logarithm."""
+        return self.xp.log(x)
+
+    def sin(self, x: Array) -> Array:
+        """Return the sine."""
+        return self.xp.sin(x)
+
+    def cos(self, x: Array) -> Array:
+        """Return the cosine."""
+        return self.xp.cos(x)
+
+    def atan2(self, y: Array, x: Array) -> Array:
+        """Return the angle of the point (x, y), in [−π, π]."""
+        return self.xp.atan2(*self.xp.broadcast_arrays(y, x))
+
+    # --- sizes
+
+    def scale(self, components: list[Array]) -> Array:
+        """A size to divide by so that fourth powers neither overflow nor vanish: 1 wherever they do not.
+
+        What is computed of the quotients is homogeneous, so the scale counts as a constant: no derivative
+        is taken of it.
+        """
+        largest = self.xp.abs(self.constant(components[0]))
+        for x in components[1:]:
+            largest = self.xp.maximum(largest, self.xp.abs(self.constant(x)))
+        info = self.xp.finfo(self.dtype)
+        bound = 2.0 ** (int(math.log2(float(info.max))) // 10)
+        usual = (largest >= 1 / bound) & (largest <= bound)
+        usable = (largest > 0) & (largest <= float(info.max))
+        return self.where(usable & ~usual, largest, self.xp.ones_like(largest))
+
+    def length(self, components: list[Array], at_zero: Array | None = None) -> Array:
+        """``√Σx²`` without overflow; at 0, where it has no derivative, that is 0, or that of `at_zero`."""
+        scale = self.scale(components)
+        square = squares(self, [x / scale for x in components])
+        zero = square == 0
+        root = scale * self.xp.sqrt(self.where(zero, 1.0, square))
+        return self.where(zero, 0.0 if at_zero is None else at_zero, root)
+
+    def direction(self, components: list[Array], default: list[float]) -> list[Array]:
+        """The components divided by their length; the default, a constant, for a length of 0."""
+        scale = self.scale(components)
+        scaled = [x / scale for x in components]
+        square = squares(self, scaled)
+        zero = square == 0
+        root = self.xp.sqrt(self.where(zero, 1.0, square))
+        return [self.where(zero, d, x / root) for x, d in zip(scaled, default, strict=True)]
+
+    # --- errors
+
+    def require(self, ok: Array, message: str) -> None:
+        """Raise a ValueError, with the first index where `ok` is false; nothing while values are unknown."""
+        if not self.is_concrete(ok) or bool(self.xp.all(ok)):
+            return
+        if ok.ndim == 0:
+            raise ValueError(message)
+        index = tuple(int(i[0]) for i in self.xp.nonzero(~ok))
+        raise ValueError(f"at index {index}: {message}")
+
+    def require_finite(self, components: list[Array]) -> None:
+        """Raise a ValueError where some component is NaN or infinite."""
+        ok = self.xp.isfinite(components[0])
+        for x in components[1:]:
+            ok = ok & self.xp.isfinite(x)
+        self.require(ok, "a component is NaN or infinite; remove such values first")
+
+
+def squares(d: Any, components: list[Array]) -> Array:
+    """``Σx²``."""
+    total = components[0] * components[0]
+    for x in components[1:]:
+        total = total + x * x
+    return total

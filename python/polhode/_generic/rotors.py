@@ -1,0 +1,253 @@
+"""Rotors over arrays of any coefficients: components (..., 4) over ``(1, e2e3, e3e1, e1e2)``.
+
+`R = exp(−Bθ/2)` turns by θ in the plane and sense of B. With ``q = −b`` for the bivector part b, ``(s, q)``
+is the quaternion. Derivatives are finite also at R = ±1; where the plane of a turn is not told, it is e1∧e2.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from polhode._generic import exact_rotors, functions, smooth
+from polhode._generic.coefficients import Coefficients
+from polhode._generic.functions import by_rows, components
+from polhode._generic.layout import BIVECTOR, eight, indices
+from polhode._generic.numeric import Numeric, squares
+
+Array = Any
+Parts = list[Any]
+
+_E12 = [0.0, 0.0, 1.0]
+
+# How far a matrix may be from a rotation and still be read as one: max |MᵀM − 1|.
+_MATRIX_TOLERANCE = 1e-4
+
+
+# --- constructors
+
+
+def from_components(d: Coefficients, c4: Array) -> Array:
+    """From components (..., 4), divided by their norm."""
+    if not isinstance(d, Numeric):
+        return by_rows(exact_rotors.unit, c4, [0, 1, 2, 3])
+    with np.errstate(all="ignore"):
+        parts = components(c4)
+        d.require_finite(parts)
+        d.require(
+            d.length(parts) > 0,
+            "all components are zero, which is no rotor; give the identity as 1, 0, 0, 0",
+        )
+        return d.stack(d.direction(parts, [math.nan] * 4))
+
+
+def from_plane_angle(d: Coefficients, plane: Array, angle: Array) -> Array:
+    """``exp(−Bθ/2)`` for planes (..., 3), whose size is ignored, and angles (...)."""
+    if isinstance(d, Numeric):
+        unit = _unit(d, plane, "a bivector of zero size spans no plane; give a nonzero one")
+    else:
+        unit = components(by_rows(exact_rotors.unit_plane, plane, [0, 1, 2]))
+    half = d.divide(angle, 2)
+    sin = d.sin(half)
+    return d.stack([d.cos(half), *(-(sin * x) for x in unit)])
+
+
+def from_rotation_vector(d: Coefficients, v: Array) -> Array:
+    """From vectors (..., 3) along the axis whose length is the angle."""
+    rotor, _ = functions.exp(d, d.divide(-v, 2), BIVECTOR)
+    return rotor
+
+
+def from_quaternion(d: Coefficients, wxyz: Array) -> Array:
+    """From quaternions (..., 4) in the order w, x, y, z, divided by their norm."""
+    return from_components(d, to_quaternion(d, wxyz))
+
+
+def from_vectors(d: Coefficients, a: Array, b: Array) -> Array:
+    """Turn the directions of a (..., 3) into those of b the short way.
+
+    For unit vectors ``c = a + b`` halves the angle, and ``R = ĉ a`` reflects twice. Near a half turn c is a
+    small difference: taking out its rounding along ``a − b``, to which it is perpendicular, keeps its
+    direction exact. At a half turn the plane goes through the basis vector farthest from a.
+    """
+    if not isinstance(d, Numeric):
+        a, b = np.broadcast_arrays(a, b)
+        return by_rows(exact_rotors.from_vectors, d.stack([*components(a), *components(b)]), [0, 1, 2, 3])
+    message = "a vector of zero length has no direction; give a nonzero one"
+    a, b = _unit(d, a, message), _unit(d, b, message)
+    c, difference = _sum(a, b), [x - y for x, y in zip(a, b, strict=True)]
+    size = squares(d, difference)
+    wide = size > 1
+    excess = d.where(wide, _dot(c, difference), 0.0) / d.where(wide, size, 1.0)
+    c = [x - excess * y for x, y in zip(c, difference, strict=True)]
+    axis = _farthest(d, a)
+    along = _dot(axis, a)
+    opposite = squares(d, c) < d.eps**2
+    c = [d.where(opposite, n - x * along, y) for n, x, y in zip(axis, a, c, strict=True)]
+    c = d.direction(c, [math.nan] * 3)
+    return d.stack(d.direction([_dot(c, a), *_cross(c, a)], [math.nan] * 4))
+
+
+def from_matrix(d: Coefficients, m: Array) -> Array:
+    """From rotation matrices (..., 3, 3), or the nearest to what is one within 1e-4; scalar part >= 0."""
+    if not isinstance(d, Numeric):
+        nine = d.reshape(m, (*m.shape[:-2], 9))
+        return by_rows(exact_rotors.from_matrix, nine, [0, 1, 2, 3])
+    with np.errstate(all="ignore"):
+        rows = [[m[..., i, j] for j in range(3)] for i in range(3)]
+        d.require_finite([x for row in rows for x in row])
+        for i, x in enumerate(rows):
+            for j, y in enumerate(rows):
+                near = d.abs(_dot(x, y) - float(i == j)) <= _MATRIX_TOLERANCE
+                d.require(near, "not a rotation matrix: M Mᵀ is not 1 within 1e-4; orthogonalize it first")
+        proper = _dot(rows[0], _cross(rows[1], rows[2])) > 0
+        d.require(proper, "the matrix has determinant −1, a reflection; a rotation has +1; flip an axis")
+        for _ in range(3):
+            rows = _nearer_rotation(rows)
+        return d.stack(d.direction(_shepperd(d, rows), [math.nan] * 4))
+
+
+def _nearer_rotation(rows: list[Parts]) -> list[Parts]:
+    """Newton's step ``½(X + X⁻ᵀ)`` to the orthogonal polar factor: X⁻ᵀ has cross products as rows."""
+    cofactor = [_cross(rows[(i + 1) % 3], rows[(i + 2) % 3]) for i in range(3)]
+    determinant = _dot(rows[0], cofactor[0])
+    return [
+        [0.5 * (x + y / determinant) for x, y in zip(row, other, strict=True)]
+        for row, other in zip(rows, cofactor, strict=True)
+    ]
+
+
+def _shepperd(d: Numeric, m: list[Parts]) -> Parts:
+    """Components times the largest, which is at least ½ of the norm: Shepperd's choice of the four."""
+    squared, candidates = exact_rotors.shepperd(m)
+    best, largest = candidates[0], squared[0]
+    for size, candidate in zip(squared[1:], candidates[1:], strict=True):
+        larger = size > largest
+        best = [d.where(larger, x, y) for x, y in zip(candidate, best, strict=True)]
+        largest = d.where(larger, size, largest)
+    sign = d.where(best[0] < 0, -1.0, 1.0)
+    return [sign * x for x in best]
+
+
+# --- converters
+
+
+def to_quaternion(d: Coefficients, r: Array) -> Array:
+    """Quaternions (..., 4) in the order w, x, y, z, Hamilton's and active."""
+    s, x, y, z = components(r)
+    return d.stack([s, -x, -y, -z])
+
+
+def to_matrix(d: Coefficients, r: Array) -> Array:
+    """Rotation matrices (..., 3, 3) acting on columns."""
+    parts = components(r)
+    columns = [_turn(parts, [int(i == j) for i in range(3)]) for j in range(3)]
+    nine = d.stack([columns[j][i] for i in range(3) for j in range(3)])
+    return d.reshape(nine, (*nine.shape[:-1], 3, 3))
+
+
+def to_rotation_vector(d: Coefficients, r: Array) -> Array:
+    """Vectors (..., 3) along the axis whose length is the angle, at most π."""
+    if not isinstance(d, Numeric):
+        return by_rows(exact_rotors.to_rotation_vector, r, [0, 1, 2])
+    return -2.0 * log(d, d.where(r[..., :1] < 0, -r, r))
+
+
+def plane_angle(d: Coefficients, r: Array) -> tuple[Array, Array]:
+    """Return unit planes (..., 3) and angles (...) in [0, 2π]; for R = ±1 the plane is e1∧e2."""
+    if not isinstance(d, Numeric):
+        pairs = by_rows(exact_rotors.plane_angle, r, [0, 1, 2, 3])
+        return pairs[..., :3], pairs[..., 3]
+    s, *b = components(r)
+    with np.errstate(all="ignore"):
+        plane = d.direction([-x for x in b], _E12)
+        return d.stack(plane), 2.0 * d.atan2(d.length(b), s)
+
+
+def log(d: Coefficients, r: Array) -> Array:
+    """Return the bivectors (..., 3) of size at most π whose exp is R."""
+    if not isinstance(d, Numeric):
+        return by_rows(exact_rotors.log, r, [0, 1, 2])
+    s, *b = components(r)
+    zero = d.zeros_like(s)
+    with np.errstate(all="ignore"):
+        return d.stack(smooth.log_even(d, [s, zero, zero, zero, *b, zero])[4:7])
+
+
+def power(d: Coefficients, r: Array, n: Any) -> Array:
+    """``exp(n log R)`` for numbers n (...); whole numbers multiply exact rotors out."""
+    if d.exact and isinstance(n, int):
+        return _whole_power(d, r, n)
+    turn = log(d, r)
+    return functions.exp(d, d.stack([n * x for x in components(turn)]), BIVECTOR)[0]
+
+
+def _whole_power(d: Coefficients, r: Array, n: int) -> Array:
+    base = r if n >= 0 else to_quaternion(d, r)
+    one = d.zeros(tuple(r.shape[:-1]))
+    result = d.stack([one + 1, one, one, one])
+    for bit in bin(abs(n))[2:]:
+        result = multiply(d, result, result)
+        result = multiply(d, result, base) if bit == "1" else result
+    return result
+
+
+# --- action
+
+
+def multiply(d: Coefficients, left: Array, right: Array) -> Array:
+    """``S R``, not normalized: turns by R first."""
+    s, *a = components(left)
+    t, *b = components(right)
+    plane = [s * y + t * x - z for x, y, z in zip(a, b, _cross(a, b), strict=True)]
+    return d.stack([s * t - _dot(a, b), *plane])
+
+
+def apply(d: Coefficients, r: Array, data: Array, mask: int) -> Array:
+    """``R X ~R`` for the components (..., K) of the grades in the mask; scalars and trivectors stay."""
+    rotor, m = components(r), eight(d, data, mask)
+    turned = [m[0], *_turn(rotor, m[1:4]), *_turn(rotor, m[4:7]), m[7]]
+    batch = np.broadcast_shapes(tuple(r.shape[:-1]), tuple(data.shape[:-1]))
+    return d.stack([turned[i] + d.zeros(batch) for i in indices(mask)])
+
+
+def _turn(rotor: Parts, a: Parts) -> Parts:
+    """``R a ~R = a + s t + q x t`` with ``t = 2 q x a``; bivectors turn as their duals do."""
+    s, q = rotor[0], [-x for x in rotor[1:]]
+    t = [2 * x for x in _cross(q, a)]
+    return [x + s * y + z for x, y, z in zip(a, t, _cross(q, t), strict=True)]
+
+
+# --- vectors as lists of components
+
+
+def _unit(d: Numeric, vectors: Array, message: str) -> Parts:
+    """Return the components of the directions; a ValueError where there is none."""
+    with np.errstate(all="ignore"):
+        parts = components(vectors)
+        d.require_finite(parts)
+        d.require(d.length(parts) > 0, message)
+        return d.direction(parts, [math.nan] * 3)
+
+
+def _farthest(d: Numeric, a: Parts) -> Parts:
+    """Return the basis vector along which a has its smallest component."""
+    x, y, z = map(d.abs, a)
+    first = (x <= y) & (x <= z)
+    second = ~first & (y <= z)
+    chosen = first, second, ~(first | second)
+    return [d.where(here, d.zeros_like(x) + 1.0, 0.0) for here in chosen]
+
+
+def _sum(a: Parts, b: Parts) -> Parts:
+    return [x + y for x, y in zip(a, b, strict=True)]
+
+
+def _dot(a: Parts, b: Parts) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Parts, b: Parts) -> Parts:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -1,0 +1,215 @@
+"""exp, log and sqrt of G3 over floating-point arrays, without a branch on values and with derivatives.
+
+``M = ζ + V``, V² = w; ζ and w are central, and V behaves like a number with the two values ±√w. With
+``λ± = ζ ± √w``, for any analytic f,
+
+    f(M) = (f(λ+) + f(λ−))/2 + V (f(λ+) − f(λ−))/(2√w).
+
+Both quotients are analytic in w, but √w is not: near w = 0 they are series in w, and derivatives of all
+orders are those of the series. Even elements ``s + B`` have logarithms and roots of their own, which are
+even as well, and go over the whole double cover of rotations: ``log(−1) = π e1e2``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from polhode._generic import central
+from polhode._generic.central import Central, choose, series
+from polhode._generic.layout import EVEN, join, split
+from polhode._generic.numeric import Numeric, squares
+
+Components = list[Any]
+
+# cosh √w and sinh √w / √w for |w| < 1: the first terms left out are 1/22! and 1/23!.
+COSH = [1 / math.factorial(2 * k) for k in range(11)]
+SINHC = [1 / math.factorial(2 * k + 1) for k in range(11)]
+# artanh(z)/z in u = z² for |u| < 1/16: the first term left out is 16⁻¹³/27 < 1e-17.
+_NEAR = 1 / 16
+_ARTANHC = [1 / (2 * k + 1) for k in range(13)]
+
+_E12 = [0.0, 0.0, 1.0]  # the plane of half turns that do not tell their plane
+
+
+def horner(coefficients: list[float], x: Any) -> Any:
+    """``Σ c_k x^k`` of real numbers."""
+    total = x * 0.0 + coefficients[-1]
+    for c in reversed(coefficients[:-1]):
+        total = total * x + c
+    return total
+
+
+def singular(d: Numeric) -> float:
+    """Below this fraction of what was summed a difference is rounding."""
+    return 8 * d.eps
+
+
+# --- exp
+
+
+def exp(d: Numeric, m: Components, mask: int) -> Components:
+    """``e^ζ (cosh √w + V sinh √w / √w)``."""
+    if not mask & ~EVEN:
+        cos, sinc = cos_sinc(d, m[4:7])
+        size = d.exp(m[0])
+        return [size * cos, *m[1:4], *(size * (sinc * b) for b in m[4:7]), m[7]]
+    scale = d.scale(m[1:7])
+    zeta, scaled = Central(m[0], m[7]), split([x / scale for x in m])[1]
+    w = scaled.times(scale).times(scale)
+    small = w.square() < 1
+    near = choose(d, small, w, 0.0)
+    factor = central.exp(d, zeta)
+    root = central.sqrt(d, choose(d, small, 1.0, scaled)).times(scale)
+    # The exponents are added first: e^(ζ ± √w) may exist where cosh √w does not.
+    plus, minus = (central.exp(d, z).times(0.5) for z in (zeta + root, zeta - root))
+    c = choose(d, small, factor * series(d, COSH, near), plus + minus)
+    q = choose(d, small, factor * series(d, SINHC, near), (plus - minus).over(root, d.divide))
+    return join(c, m, q)
+
+
+def cos_sinc(d: Numeric, b: Components) -> tuple[Any, Any]:
+    """``cos|B|`` and ``sin|B|/|B|``."""
+    scale = d.scale(b)
+    scaled = squares(d, [x / scale for x in b])
+    square = scaled * scale * scale
+    small = square < 1
+    near = d.where(small, -square, 0.0)
+    size = scale * d.sqrt(d.where(small, 1.0, scaled))
+    cos = d.where(small, horner(COSH, near), d.cos(size))
+    return cos, d.where(small, horner(SINHC, near), d.sin(size) / size)
+
+
+# --- log
+
+
+def log(d: Numeric, m: Components, mask: int) -> Components:
+    """A logarithm; a ValueError where an eigenvalue is zero to rounding."""
+    if not mask & ~EVEN:
+        return log_even(d, m)
+    scale = d.scale(m)
+    m = [x / scale for x in m]
+    zeta, w = split(m)
+    turned = _is_negative(d, m)
+    near, root = _near_and_root(d, zeta, w)
+    plus, minus = zeta + root, zeta - root
+    smallest = d.where(plus.square() < minus.square(), plus.square(), minus.square())
+    size = squares(d, m)
+    d.require(smallest > (singular(d) ** 2) * size, "no logarithm: the multivector is singular to rounding")
+
+    # Near w = 0, on one side of the cut: ½ log λ+λ− = log ζ + ½ log(1 − u), and 2 artanh(√w/ζ)/2√w.
+    safe = choose(d, near, zeta, 1.0)
+    reciprocal = Central(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe, d.divide)
+    u = choose(d, near, w, 0.0) * reciprocal * reciprocal
+    rest = central.log(d, Central(1.0 - u.re, -u.im)).times(0.5)
+    mean_near = central.log(d, choose(d, turned, -safe, safe)) + rest
+    quotient_near = series(d, _ARTANHC, u) * reciprocal
+    # Elsewhere as it stands.
+    plus, minus = choose(d, near, 4.0, plus), choose(d, near, 2.0, minus)
+    root = choose(d, near, 1.0, root)
+    log_plus, log_minus = central.log(d, plus), central.log(d, minus)
+    mean = choose(d, near, mean_near, (log_plus + log_minus).times(0.5))
+    quotient = choose(d, near, quotient_near, (log_plus - log_minus).times(0.5).over(root, d.divide))
+
+    result = join(mean, m, quotient)
+    result[0] = result[0] + d.log(scale)
+    result[6] = result[6] + d.where(turned, math.pi, 0.0)
+    return result
+
+
+def log_even(d: Numeric, m: Components) -> Components:
+    """``log|M| + B/|B| · atan2(|B|, s)``, and at ``−|s|``, where B tells no plane, ``π e1e2``.
+
+    With t = |B|/s small it is ``B artan(t)/(t s)``, analytic also in B = 0, plus a half turn where s < 0.
+    """
+    scale = d.scale([m[0], *m[4:7]])
+    s, b = m[0] / scale, [x / scale for x in m[4:7]]
+    square = squares(d, b)
+    d.require(s * s + square > 0, "no logarithm: the multivector is singular to rounding")
+    near = square < _NEAR * s * s
+    safe = d.where(near, s, 1.0)
+    u = d.where(near, square, 0.0) / (safe * safe)
+    quotient = horner(_ARTANHC, -u) / safe
+    half_turn = d.where(s < 0, math.pi, 0.0)
+    size, direction = d.length(b), d.direction(b, _E12)
+    angle = d.atan2(d.where(near, 1.0, size), d.where(near, 1.0, s))
+    plane = [
+        d.where(near, x * quotient + half_turn * n, angle * n) for x, n in zip(b, direction, strict=True)
+    ]
+    return [d.log(scale) + d.log(d.sqrt(s * s + square)), *m[1:4], *plane, m[7]]
+
+
+# --- sqrt
+
+
+def sqrt(d: Numeric, m: Components, mask: int) -> Components:
+    """A square root; a ValueError where the two eigenvalues' roots cancel."""
+    if not mask & ~EVEN:
+        return _sqrt_even(d, m)
+    scale = d.scale(m)
+    size = d.sqrt(scale)
+    m = [x / scale for x in m]
+    zeta, w = split(m)
+    turned = _is_negative(d, m)
+    zero = squares(d, m) == 0
+    near, root = _near_and_root(d, zeta, w)
+
+    # Near w = 0, on one side of the cut: √λ+ + √λ− = 2 √ζ √((1 + √(1 − u))/2), analytic in u = w/ζ².
+    safe = choose(d, near, zeta, 1.0)
+    reciprocal = Central(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe, d.divide)
+    u = choose(d, near, w, 0.0) * reciprocal * reciprocal
+    inner = central.sqrt(d, Central(1.0 - u.re, -u.im))
+    sum_near = central.sqrt(d, safe) * central.sqrt(d, Central(2.0 + 2.0 * inner.re, 2.0 * inner.im))
+    sum_far = central.sqrt(d, choose(d, near, 1.0, zeta + root)) + central.sqrt(
+        d, choose(d, near, 1.0, zeta - root)
+    )
+    total = choose(d, near, sum_near, sum_far)
+    regular = total.square() > singular(d) * d.sqrt(squares(d, m))
+    d.require(regular | zero, "no square root: the multivector is singular to rounding")
+
+    safe_total = choose(d, zero, 1.0, total)
+    one = Central(d.where(zero, 0.0, 1.0), d.zeros_like(safe_total.im))
+    result = join(total.times(0.5), m, one.over(safe_total, d.divide))
+    # √−s = √s e1e2 where nothing tells another plane.
+    half_turn = d.sqrt(d.where(turned, -m[0], 1.0))
+    result = [d.where(turned, 0.0, x) for x in result]
+    result[6] = d.where(turned, half_turn, result[6])
+    return [x * size for x in result]
+
+
+def _sqrt_even(d: Numeric, m: Components) -> Components:
+    """``√|M|`` times the half-way rotor: ``√(s + B) = r + B/2r`` with ``r² = (|M| + s)/2``.
+
+    For s < 0 that sum cancels; it is then ``|B|/2r + r B/|B|`` with ``r² = (|M| − s)/2``.
+    """
+    scale = d.scale([m[0], *m[4:7]])
+    s, b = m[0] / scale, [x / scale for x in m[4:7]]
+    square = s * s + squares(d, b)
+    zero = square == 0
+    half = d.sqrt(d.where(zero, 1.0, 0.5 * (d.sqrt(d.where(zero, 1.0, square)) + d.abs(s))))
+    size, direction = d.length(b, b[2]), d.direction(b, _E12)
+    root = d.sqrt(scale)
+    even = [d.where(s < 0, 0.5 * size / half, half)]
+    even += [d.where(s < 0, half * n, 0.5 * x / half) for x, n in zip(b, direction, strict=True)]
+    s, *plane = [d.where(zero, 0.0, x * root) for x in even]
+    return [s, *m[1:4], *plane, m[7]]
+
+
+# --- where the series hold
+
+
+def _near_and_root(d: Numeric, zeta: Central, w: Central) -> tuple[Any, Central]:
+    """Whether ``|w| < |ζ|²/16`` with λ± on one side of the cut along the negative axis; and √w."""
+    root = central.sqrt(d, w)
+    plus, minus = zeta + root, zeta - root
+    turn = d.atan2(plus.im, plus.re) - d.atan2(minus.im, minus.re)
+    small = w.square() < (_NEAR * zeta.square()) * (_NEAR * zeta.square())
+    return small & (d.abs(turn) < math.pi), root
+
+
+def _is_negative(d: Numeric, m: Components) -> Any:
+    """Whether the value is a negative number: even, but of no plane."""
+    negative = m[0] < 0
+    for x in m[1:]:
+        negative = negative & (x == 0)
+    return negative

@@ -1,0 +1,60 @@
+"""Blades as subspaces: complements, the regressive product, join and meet."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import common_batch, is_float
+from polhode._coefficients import kind_of
+from polhode._parts import with_grades
+from polhode._products import coerced, common_algebra
+
+if TYPE_CHECKING:
+    from polhode._multivector import Multivector
+
+
+def complement(value: Multivector, right: bool) -> Multivector:
+    """Return the right or left complement: a permutation of the components, with signs."""
+    algebra, n, data = value.algebra, value.algebra.dimension, value._data
+    mask = sum(1 << n - k for k in value.grades)
+    images = algebra._complement(right)
+    source = {images[i][0]: (place, images[i][1]) for place, i in enumerate(algebra._indices(value._mask))}
+    taken = [source[i] for i in algebra._indices(mask)]
+    if is_float(data):
+        signs = np.array([sign for _, sign in taken], dtype=data.dtype)
+        return value._of(data[..., [place for place, _ in taken]] * signs, mask, algebra)
+    parts = [data[..., place] if sign > 0 else -data[..., place] for place, sign in taken]
+    return value._of(kind_of(data).stack(parts), mask, algebra)
+
+
+def regressive(left: Multivector, other: Any) -> Multivector:
+    """``A∨B``."""
+    right = coerced(other, left)
+    if right is None:
+        raise TypeError(f"vee needs a multivector, a number or an array, got {type(other).__name__}")
+    return left.right_complement().wedge(right.right_complement()).left_complement()
+
+
+def joined(left: Multivector, right: Multivector, name: str) -> Multivector:
+    """Return the join or the meet of blades of one grade each."""
+    if not isinstance(right, _native.Multivector):
+        raise TypeError(f"{name} needs blades, got {type(right).__name__}")
+    algebra = common_algebra(left, right)
+    if not (is_float(left._data) and is_float(right._data)):
+        raise TypeError(f"{name} needs floats, got {left.dtype} and {right.dtype}; use .astype(float)")
+    batch = common_batch(left.shape, right.shape)
+    everything = algebra._all
+    a, b = (
+        np.ascontiguousarray(
+            np.broadcast_to(with_grades(value, everything), (*batch, algebra.size)), dtype=np.float64
+        )
+        for value in (left, right)
+    )
+    dtype = np.result_type(left._data, right._data)
+    result = _native.subspaces(algebra, name, a, b)
+    held = (result != 0).reshape(-1, algebra.size).any(axis=0)
+    mask = int(np.bitwise_or.reduce(1 << algebra._grade_of[held], initial=0)) or 1
+    return left._of(result[..., algebra._indices(mask)].astype(dtype), mask, algebra)

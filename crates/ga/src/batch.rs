@@ -7,7 +7,7 @@ use crate::product::{Engine, Grades, Plan, Term};
 use crate::rotor::Rotor;
 pub use crate::simd::{Element, multiply_adds};
 use crate::simd::{Kernel, LANES, Lane, Path};
-use crate::sweep::sweep;
+use crate::sweep::{beyond_caches, sweep};
 use crate::threads::Threads;
 use crate::values::{Vector, geometric};
 
@@ -58,16 +58,16 @@ fn add<const N: usize>(terms: &[Term], a: &[Lane], b: &[Lane], out: &mut Lane) {
 /// The geometric product of all grades in 3-d space, written out.
 struct Geometric<'a>(&'a Plan);
 
-impl Kernel for Geometric<'_> {
+impl<const W: usize> Kernel<W> for Geometric<'_> {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
         self.0.row(a, b, out);
     }
 
     #[inline(always)]
-    fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         let (a, b, out) = (&a[..8], &b[..8], &mut out[..8]);
-        for l in 0..LANES {
-            let row = |lanes: &[Lane]| std::array::from_fn(|k| lanes[k].0[l]);
+        for l in 0..W {
+            let row = |lanes: &[Lane<W>]| std::array::from_fn(|k| lanes[k].0[l]);
             let product = geometric(row(a), row(b));
             for k in 0..8 {
                 // A sum that begins with 0, as in the plan, is never −0.
@@ -146,10 +146,13 @@ impl Plan {
 
     fn run_on<T: Element>(&self, path: Path, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
         let (na, nb, nout) = self.sizes;
+        let large = beyond_caches(a, b, out);
         let (a, b, out) = ((a, na), (b, nb), (out, nout));
         match &self.engine {
             Engine::Terms => sweep(path, threads, self, a, b, out),
-            Engine::Geometric => sweep(path, threads, &Geometric(self), a, b, out),
+            // Small blocks mix reading and writing memory with the arithmetic more finely.
+            Engine::Geometric if large => sweep::<_, 32, _>(path, threads, &Geometric(self), a, b, out),
+            Engine::Geometric => sweep::<_, 64, _>(path, threads, &Geometric(self), a, b, out),
             // Blocks of more rows leave the first-level cache; of few rows, one of eight is enough.
             Engine::Tiles(tiles) if out.0.len() > 8 * nout => {
                 sweep::<_, 16, _>(path, threads, tiles, a, b, out)
@@ -411,6 +414,23 @@ mod tests {
             turn_on(path, Threads::ONE, &r, &x, Grades::ALL, &mut out);
             turn(&wide(&r), &wide(&x), Grades::ALL, &mut expected);
             assert_same(&wide(&out), &wide(&narrow(&expected)), &format!("{path:?}"));
+        }
+    }
+
+    /// Beyond the caches, in smaller blocks, full products are still those of the rows.
+    #[test]
+    fn large_full_products_are_the_same() {
+        let plan = Plan::g3(Product::Geometric, Grades::ALL, Grades::ALL);
+        let rows = STREAMED / 8 / 24 + 5;
+        let (a, b) = (numbers(rows * 8, true), numbers(rows * 8 + 1, false).split_off(1));
+        let mut expected = vec![0.5; rows * 8];
+        for ((a, b), out) in a.chunks(8).zip(b.chunks(8)).zip(expected.chunks_mut(8)) {
+            plan.row(a, b, out);
+        }
+        for path in Path::available() {
+            let mut out = vec![0.5; rows * 8];
+            plan.run_on(path, Threads::ONE, &a, &b, &mut out);
+            assert_same(&out, &expected, &format!("{path:?}"));
         }
     }
 

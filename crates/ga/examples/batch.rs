@@ -3,6 +3,7 @@
 //! `cargo run --release -p polhode-ga --example batch [rows]`
 
 use polhode_ga::batch::turn;
+use polhode_ga::maps;
 use polhode_ga::product::{Grades, Plan, Product};
 use std::time::Instant;
 
@@ -51,6 +52,14 @@ fn turning(what: &str, rows: usize, rotors: usize) {
     line(what, rows, 3 + if rotors == 1 { 0 } else { 4 }, 3, || turn(&r, &v, VECTOR, &mut out));
 }
 
+/// exp of bivectors up to a full turn and beyond, and log of the rotors that it gives.
+fn exp_and_log(rows: usize) {
+    let mut b: Vec<f64> = numbers(3 * rows).iter().map(|x| 4.0 * x).collect();
+    let mut r = vec![1.0; 4 * rows];
+    line("exp", rows, 3, 4, || maps::exp(&b, &mut r).expect("finite"));
+    line("log", rows, 4, 3, || maps::log(&r, &mut b).expect("finite"));
+}
+
 fn main() {
     let asked = std::env::args().nth(1).and_then(|rows| rows.parse().ok());
     for rows in asked.map_or(vec![1_000_000, 1_000], |rows| vec![rows]) {
@@ -62,5 +71,6 @@ fn main() {
         product("rotor * vector", rows, Grades::EVEN, VECTOR, rows);
         turning("R v ~R", rows, rows);
         turning("one R, many v", rows, 1);
+        exp_and_log(rows);
     }
 }

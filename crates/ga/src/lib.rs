@@ -24,8 +24,11 @@
 pub mod batch;
 mod complex;
 pub mod functions;
+mod lanes_math;
+pub mod maps;
 pub mod pauli;
 pub mod product;
+mod reduction;
 pub mod rotor;
 mod simd;
 mod sweep;

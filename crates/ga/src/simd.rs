@@ -44,6 +44,12 @@ pub(crate) trait Kernel {
     /// A block of rows. Implementations are `#[inline(always)]` down to the arithmetic, so that each path
     /// compiles them for its own instructions.
     fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]);
+
+    /// The same where fused multiply-add is an instruction, for kernels that find errors of products by it.
+    #[inline(always)]
+    fn block_fma(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+        self.block(a, b, out);
+    }
 }
 
 /// A set of instructions that this machine has. There is no other way to make one than to detect it.
@@ -65,7 +71,8 @@ impl Path {
         [
             Some(Level::Portable),
             #[cfg(target_arch = "x86_64")]
-            std::is_x86_feature_detected!("avx2").then_some(Level::Avx2),
+            (std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma"))
+                .then_some(Level::Avx2),
             #[cfg(target_arch = "x86_64")]
             std::is_x86_feature_detected!("avx512f").then_some(Level::Avx512),
         ]

@@ -3,14 +3,14 @@
 use super::{Kernel, LANES, Lane};
 use std::arch::x86_64::*;
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 pub(super) fn apply_avx2<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-    kernel.block(a, b, out);
+    kernel.block_fma(a, b, out);
 }
 
-#[target_feature(enable = "avx512f")]
+#[target_feature(enable = "avx512f,fma")]
 pub(super) fn apply_avx512<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-    kernel.block(a, b, out);
+    kernel.block_fma(a, b, out);
 }
 
 /// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own

@@ -4,7 +4,7 @@
 //! row needs more than sums of two numbers, and says so by NaN. Such rows are computed again, one by
 //! one, the long way. Results are the same bits on every machine and path, for one row or many.
 
-use crate::lanes_math::{REDUCED, Size, angle_over_size, divide, quarter_turns, sin_cos};
+use crate::lanes_math::{Size, Tangent, divide, quarter_turns, sin_cos};
 use crate::reduction;
 use crate::simd::{Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
@@ -17,15 +17,20 @@ const FMA: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 /// A function of a row of `A` numbers and one of `B`.
 trait Map<const A: usize, const B: usize, const OUT: usize> {
-    /// Its value where the first number is not NaN. No branches.
-    fn short<const FMA: bool>(a: [f64; A], b: [f64; B]) -> [f64; OUT];
+    /// Its values for `W` rows, given by components; the first number is NaN where the row needs the long
+    /// way. No branches.
+    fn short<const W: usize, const FMA: bool>(a: [&[f64; W]; A], b: [&[f64; W]; B]) -> [[f64; W]; OUT];
 
     /// Its value for any finite row.
     fn long(a: [f64; A], b: [f64; B]) -> [f64; OUT];
 
     /// Its value; NaN if the row is not finite.
     fn value(a: [f64; A], b: [f64; B]) -> [f64; OUT] {
-        let value = Self::short::<FMA>(a, b);
+        let value = Self::short::<1, FMA>(
+            a.each_ref().map(std::array::from_ref),
+            b.each_ref().map(std::array::from_ref),
+        )
+        .map(|[x]| x);
         if !value[0].is_nan() {
             value
         } else if a.iter().chain(&b).all(|x| x.is_finite()) {
@@ -41,21 +46,33 @@ struct Exp;
 
 impl Map<3, 0, 4> for Exp {
     #[inline(always)]
-    fn short<const FMA: bool>(b: [f64; 3], _: [f64; 0]) -> [f64; 4] {
-        /// Below, `sin x/x` is 1 to 2⁻⁵⁸.
-        const TINY: f64 = 1.0 / (1u64 << 56) as f64;
-        /// `r` must be so much of the angle that 2⁻¹⁰³ of the angle is nothing to it.
-        const KEPT: f64 = 1.0 / (1u64 << 46) as f64;
-        let size = Size::of::<FMA>(b);
-        let tiny = size.square < TINY;
-        let reciprocal = 1.0 / if tiny { 1.0 } else { size.hi };
-        let lo = size.lo(reciprocal);
-        let (k, r, rest) = quarter_turns(size.hi, lo);
-        let (sin, (cos, _)) = sin_cos(k, r, rest);
-        let quotient = divide::<FMA>(sin, (size.hi, lo), reciprocal).0;
-        let sinc = if tiny { 1.0 } else { quotient };
-        let known = size.hi <= REDUCED && r.abs() >= size.hi * KEPT;
-        [if known { cos } else { f64::NAN }, b[0] * sinc, b[1] * sinc, b[2] * sinc]
+    fn short<const W: usize, const FMA: bool>(b: [&[f64; W]; 3], _: [&[f64; W]; 0]) -> [[f64; W]; 4] {
+        /// `r` must be so much of |B|² that 2⁻¹⁰³ |B| is nothing to it. It is not beyond |B| = 10⁶ either.
+        const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
+        let ([mut hi, mut lo, mut reciprocal], [mut k, mut r, mut rest]) = ([[0.0; W]; 3], [[0.0; W]; 3]);
+        for l in 0..W {
+            let size = Size::of::<FMA>(b.map(|x| x[l]));
+            reciprocal[l] = 1.0 / size.hi;
+            (hi[l], lo[l]) = (size.hi, size.lo(reciprocal[l]));
+        }
+        let mut quarter = [0; W];
+        for l in 0..W {
+            (quarter[l], r[l], rest[l]) = quarter_turns::<FMA>(hi[l], lo[l]);
+        }
+        let mut out = [[0.0; W]; 4];
+        for l in 0..W {
+            let known = r[l].abs() >= hi[l] * hi[l] * KEPT;
+            let (sin, cos) = sin_cos::<FMA>(quarter[l], r[l], rest[l]);
+            (k[l], rest[l]) = sin;
+            out[0][l] = if known { cos } else { f64::NAN };
+        }
+        for l in 0..W {
+            let sinc = divide::<FMA>((k[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            for i in 0..3 {
+                out[i + 1][l] = b[i][l] * sinc;
+            }
+        }
+        out
     }
 
     fn long(b: [f64; 3], _: [f64; 0]) -> [f64; 4] {
@@ -63,7 +80,7 @@ impl Map<3, 0, 4> for Exp {
         let scaled = b.map(|x| x / scale);
         let size = Size::of::<FMA>(scaled);
         let (k, r, rest) = reduction::quarter_turns(b);
-        let (sin, (cos, _)) = sin_cos(k, r, rest);
+        let (sin, cos) = sin_cos::<FMA>(k, r, rest);
         let reciprocal = 1.0 / size.hi;
         let sinc = divide::<FMA>(sin, (size.hi, size.lo(reciprocal)), reciprocal).0;
         let [x, y, z] = scaled.map(|x| x * sinc);
@@ -76,23 +93,37 @@ struct Log;
 
 impl Map<4, 0, 3> for Log {
     #[inline(always)]
-    fn short<const FMA: bool>([s, x, y, z]: [f64; 4], _: [f64; 0]) -> [f64; 3] {
-        /// |B|² and s² are as exact as they must be between these.
-        const TINY: f64 = 1e-200;
-        const HUGE: f64 = 1e200;
-        let size = Size::of::<FMA>([x, y, z]);
-        let tiny = size.square < TINY;
-        let factor = angle_over_size::<FMA>(size, s, tiny);
-        let known = size.square + s * s < HUGE && (s > 0.0 || !tiny);
-        let factor = if known { factor } else { f64::NAN };
-        [x * factor, y * factor, z * factor]
+    fn short<const W: usize, const FMA: bool>(c: [&[f64; W]; 4], _: [&[f64; W]; 0]) -> [[f64; W]; 3] {
+        /// Between these the squares of sizes are exact enough.
+        const FACTORS: (f64, f64) = (1e-100, 1e100);
+        let ([mut hi, mut lo, mut reciprocal], [mut u, mut rest, mut eighths]) =
+            ([[0.0; W]; 3], [[0.0; W]; 3]);
+        for l in 0..W {
+            let size = Size::of::<FMA>([c[1][l], c[2][l], c[3][l]]);
+            let tangent;
+            (tangent, lo[l], reciprocal[l]) = Tangent::of::<FMA>(size, c[0][l]);
+            (hi[l], u[l], rest[l], eighths[l]) = (size.hi, tangent.u, tangent.rest, tangent.eighths);
+        }
+        for l in 0..W {
+            (u[l], rest[l]) = Tangent { u: u[l], rest: rest[l], eighths: eighths[l] }.angle::<FMA>(c[0][l]);
+        }
+        let mut out = [[0.0; W]; 3];
+        for l in 0..W {
+            let factor = divide::<FMA>((u[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            let known = (factor > FACTORS.0) & (factor < FACTORS.1);
+            let factor = if known { factor } else { f64::NAN };
+            for i in 0..3 {
+                out[i][l] = c[i + 1][l] * factor;
+            }
+        }
+        out
     }
 
-    /// Scaled, a row is too short for the other way only if it is −1 but for a tiny bivector.
+    /// Scaled, a row is too short for the other way only if it is −1 but for a tiny bivector, or zero.
     fn long(c: [f64; 4], _: [f64; 0]) -> [f64; 3] {
         let scale = scale_of(&c);
         let [s, x, y, z] = c.map(|x| x / scale);
-        let value = Log::short::<FMA>([s, x, y, z], []);
+        let value = Log::short::<1, FMA>([&[s], &[x], &[y], &[z]], []).map(|[x]| x);
         if !value[0].is_nan() {
             return value;
         }
@@ -100,7 +131,7 @@ impl Map<4, 0, 3> for Log {
         let b = [x, y, z].map(|x| x / scale);
         let size = Size::of::<FMA>(b);
         if size.hi == 0.0 {
-            return [0.0, 0.0, PI];
+            return [0.0, 0.0, if s < 0.0 { PI } else { 0.0 }];
         }
         let reciprocal = 1.0 / size.hi;
         let pi = (PI, 1.224_646_799_147_353_2e-16);
@@ -127,20 +158,24 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
     #[inline(always)]
     fn lanes<const FMA: bool>(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
         let (a, b, out) = (&a[..A], &b[..B], &mut out[..OUT]);
-        let row = |l: usize| (std::array::from_fn(|k| a[k].0[l]), std::array::from_fn(|k| b[k].0[l]));
-        let mut missing = 0;
-        for l in 0..LANES {
-            let (a, b) = row(l);
-            let value = M::short::<FMA>(a, b);
+        const W: usize = 32;
+        let mut most = 0;
+        for i in 0..LANES / W {
+            let rows = |lane: &Lane| lane.0.as_chunks::<W>().0[i];
+            let (x, y): ([[f64; W]; A], [[f64; W]; B]) =
+                (std::array::from_fn(|k| rows(&a[k])), std::array::from_fn(|k| rows(&b[k])));
+            let values = M::short::<W, FMA>(x.each_ref(), y.each_ref());
             for k in 0..OUT {
-                out[k].0[l] = value[k];
+                out[k].0.as_chunks_mut::<W>().0[i] = values[k];
             }
-            missing |= u64::from(value[0].is_nan());
+            for x in values[0] {
+                most = most.max(x.abs().to_bits());
+            }
         }
-        if missing != 0 {
+        if f64::from_bits(most).is_nan() {
             for l in 0..LANES {
                 if out[0].0[l].is_nan() {
-                    let (a, b) = row(l);
+                    let (a, b) = (std::array::from_fn(|k| a[k].0[l]), std::array::from_fn(|k| b[k].0[l]));
                     let value = self.value(a, b);
                     for k in 0..OUT {
                         out[k].0[l] = value[k];

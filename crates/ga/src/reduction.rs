@@ -115,7 +115,8 @@ fn root(square: &mut [u64], limbs: usize) -> [u64; ROOT] {
     for _ in 0..40 {
         let exact = exponent - BITS;
         let digits = (step.abs() * f64::from(1 << BITS)) as u64;
-        let (m, shift) = if exact < 0 { (digits.checked_shr(-exact as u32).unwrap_or(0), 0) } else { (digits, exact) };
+        let (m, shift) =
+            if exact < 0 { (digits.checked_shr(-exact as u32).unwrap_or(0), 0) } else { (digits, exact) };
         if m == 0 {
             break;
         }

@@ -73,11 +73,10 @@ fn flip(x: f64, sign: u64) -> f64 {
 /// [`Size::LEAST`] are that size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Size {
-    /// The sum of the squares, rounded.
-    pub square: f64,
-    /// Its root, rounded.
+    /// The root of the rounded sum of the squares, rounded.
     pub hi: f64,
-    rest: f64,
+    /// What is left of the sum.
+    pub rest: f64,
 }
 
 impl Size {
@@ -94,7 +93,7 @@ impl Size {
         let square = sum + Size::LEAST * Size::LEAST;
         let hi = square.sqrt();
         let rest = remainder::<FMA>(square, hi, hi) + ((ea + eb) + (ec + e1) + e2);
-        Size { square, hi, rest }
+        Size { hi, rest }
     }
 
     /// What `hi` lacks, given `1/hi`: `√(h² + ρ) = h + ρ/2h` to `ρ²/8h³`.
@@ -164,6 +163,23 @@ pub(crate) fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64)
     ((flip(sin.0, minus_sin), flip(sin.1, minus_sin)), flip(cos.0 + cos.1, minus_cos))
 }
 
+/// Whether the point `(c, size)` lies below 67.5°, and above 22.5°. To leave at most 22.5° either way it is
+/// turned back by 0 where it is only below, by 90° where it is only above, and else by 45°:
+/// `(c, size)` becomes `(below c + above size, below size − above c)`, up to a factor.
+#[inline(always)]
+fn turned_back(size: f64, c: f64) -> (bool, bool) {
+    const TAN_22_5: f64 = 0.414_213_562_373_095_03;
+    (size * TAN_22_5 <= c, size > c * TAN_22_5)
+}
+
+/// `1/(size · denominator)` for [`Tangent::of`]: one division for the two quotients of a logarithm.
+#[inline(always)]
+pub(crate) fn common_reciprocal(size: f64, s: f64) -> f64 {
+    let c = s.abs();
+    let (below, above) = turned_back(size, c);
+    1.0 / (size * (only(above, size) + only(below, c)))
+}
+
 /// A quotient `u + rest` whose arc tangent is at most 22.5°, and how it makes up an angle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tangent {
@@ -174,20 +190,18 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// Of the point `(|s|, size)`, turned back by 0, 45° or 90°, whichever leaves at most 22.5°. One
-    /// division serves the quotient and `1/size`. Also `size` as `hi + lo`, and `1/hi`.
+    /// Of the point `(|s|, size)` turned back, given [`common_reciprocal`]. Also the rest of the size, and
+    /// `1/size.hi`.
     #[inline(always)]
-    pub fn of<const FMA: bool>(size: Size, s: f64) -> (Tangent, f64, f64) {
-        const TAN_22_5: f64 = 0.414_213_562_373_095_03;
+    pub fn of<const FMA: bool>(size: Size, s: f64, common: f64) -> (Tangent, f64, f64) {
         let c = s.abs();
-        let (below, above) = (size.hi * TAN_22_5 <= c, size.hi > c * TAN_22_5);
+        let (below, above) = turned_back(size.hi, c);
         let (num, num_rest) = two_sum(only(below, size.hi), -only(above, c));
         let (den, den_rest) = two_sum(only(above, size.hi), only(below, c));
-        let common = 1.0 / (size.hi * den);
-        let (over_den, over_size) = (size.hi * common, den * common);
+        let over_size = den * common;
         let lo = size.lo(over_size);
         let (num_rest, den_rest) = (num_rest + only(below, lo), den_rest + only(above, lo));
-        let (u, rest) = divide::<FMA>((num, num_rest), (den, den_rest), over_den);
+        let (u, rest) = divide::<FMA>((num, num_rest), (den, den_rest), size.hi * common);
         let eighths = only(above, 1.0) + only(!below, 1.0);
         (Tangent { u, rest, eighths }, lo, over_size)
     }

@@ -4,7 +4,7 @@
 //! row needs more than sums of two numbers, and says so by NaN. Such rows are computed again, one by
 //! one, the long way. Results are the same bits on every machine and path, for one row or many.
 
-use crate::lanes_math::{Size, Tangent, divide, quarter_turns, sin_cos};
+use crate::lanes_math::{Size, Tangent, common_reciprocal, divide, quarter_turns, sin_cos};
 use crate::reduction;
 use crate::simd::{Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
@@ -49,25 +49,25 @@ impl Map<3, 0, 4> for Exp {
     fn short<const W: usize, const FMA: bool>(b: [&[f64; W]; 3], _: [&[f64; W]; 0]) -> [[f64; W]; 4] {
         /// `r` must be so much of |B|² that 2⁻¹⁰³ |B| is nothing to it. It is not beyond |B| = 10⁶ either.
         const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
-        let ([mut hi, mut lo, mut reciprocal], [mut k, mut r, mut rest]) = ([[0.0; W]; 3], [[0.0; W]; 3]);
+        let [mut hi, mut lo, mut reciprocal, mut r, mut rest, mut sin] = [[0.0; W]; 6];
         for l in 0..W {
             let size = Size::of::<FMA>(b.map(|x| x[l]));
             reciprocal[l] = 1.0 / size.hi;
             (hi[l], lo[l]) = (size.hi, size.lo(reciprocal[l]));
         }
-        let mut quarter = [0; W];
+        let mut k = [0; W];
         for l in 0..W {
-            (quarter[l], r[l], rest[l]) = quarter_turns::<FMA>(hi[l], lo[l]);
+            (k[l], r[l], rest[l]) = quarter_turns::<FMA>(hi[l], lo[l]);
         }
         let mut out = [[0.0; W]; 4];
         for l in 0..W {
             let known = r[l].abs() >= hi[l] * hi[l] * KEPT;
-            let (sin, cos) = sin_cos::<FMA>(quarter[l], r[l], rest[l]);
-            (k[l], rest[l]) = sin;
+            let cos;
+            ((sin[l], rest[l]), cos) = sin_cos::<FMA>(k[l], r[l], rest[l]);
             out[0][l] = if known { cos } else { f64::NAN };
         }
         for l in 0..W {
-            let sinc = divide::<FMA>((k[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
+            let sinc = divide::<FMA>((sin[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
             for i in 0..3 {
                 out[i + 1][l] = b[i][l] * sinc;
             }
@@ -94,23 +94,32 @@ struct Log;
 impl Map<4, 0, 3> for Log {
     #[inline(always)]
     fn short<const W: usize, const FMA: bool>(c: [&[f64; W]; 4], _: [&[f64; W]; 0]) -> [[f64; W]; 3] {
-        /// Between these the squares of sizes are exact enough.
-        const FACTORS: (f64, f64) = (1e-100, 1e100);
-        let ([mut hi, mut lo, mut reciprocal], [mut u, mut rest, mut eighths]) =
-            ([[0.0; W]; 3], [[0.0; W]; 3]);
+        /// Between these squares and their rounding errors are exact. A rotor is beyond them only if it is
+        /// −1 but for a tiny bivector.
+        const LEAST: f64 = 1e-100;
+        const MOST: f64 = 1e100;
+        let [s, x, y, z] = c;
+        let [mut hi, mut lo, mut reciprocal, mut u, mut rest, mut eighths] = [[0.0; W]; 6];
         for l in 0..W {
-            let size = Size::of::<FMA>([c[1][l], c[2][l], c[3][l]]);
-            let tangent;
-            (tangent, lo[l], reciprocal[l]) = Tangent::of::<FMA>(size, c[0][l]);
-            (hi[l], u[l], rest[l], eighths[l]) = (size.hi, tangent.u, tangent.rest, tangent.eighths);
+            let size = Size::of::<FMA>([x[l], y[l], z[l]]);
+            (hi[l], rest[l]) = (size.hi, size.rest);
         }
         for l in 0..W {
-            (u[l], rest[l]) = Tangent { u: u[l], rest: rest[l], eighths: eighths[l] }.angle::<FMA>(c[0][l]);
+            reciprocal[l] = common_reciprocal(hi[l], s[l]);
+        }
+        for l in 0..W {
+            let size = Size { hi: hi[l], rest: rest[l] };
+            let tangent;
+            (tangent, lo[l], reciprocal[l]) = Tangent::of::<FMA>(size, s[l], reciprocal[l]);
+            (u[l], rest[l], eighths[l]) = (tangent.u, tangent.rest, tangent.eighths);
+        }
+        for l in 0..W {
+            (u[l], rest[l]) = Tangent { u: u[l], rest: rest[l], eighths: eighths[l] }.angle::<FMA>(s[l]);
         }
         let mut out = [[0.0; W]; 3];
         for l in 0..W {
             let factor = divide::<FMA>((u[l], rest[l]), (hi[l], lo[l]), reciprocal[l]).0;
-            let known = (factor > FACTORS.0) & (factor < FACTORS.1);
+            let known = (factor > LEAST) & (factor < MOST);
             let factor = if known { factor } else { f64::NAN };
             for i in 0..3 {
                 out[i][l] = c[i + 1][l] * factor;
@@ -130,7 +139,7 @@ impl Map<4, 0, 3> for Log {
         let scale = scale_of(&[x, y, z]);
         let b = [x, y, z].map(|x| x / scale);
         let size = Size::of::<FMA>(b);
-        if size.hi == 0.0 {
+        if b == [0.0; 3] {
             return [0.0, 0.0, if s < 0.0 { PI } else { 0.0 }];
         }
         let reciprocal = 1.0 / size.hi;

@@ -245,3 +245,13 @@ pub fn exp(bivectors: &[f64], out: &mut [f64]) -> Result<(), usize> {
 pub fn log(rotors: &[f64], out: &mut [f64]) -> Result<(), usize> {
     run(Log, Path::best(), rotors, &[], out)
 }
+
+/// `exp(B)` of one bivector, the same bits as [`exp`]; NaN if it is not finite.
+pub(crate) fn exp_one(b: [f64; 3]) -> [f64; 4] {
+    Exp::value(b, [])
+}
+
+/// `log R` of one rotor, the same bits as [`log`]; NaN if it is not finite.
+pub(crate) fn log_one(c: [f64; 4]) -> [f64; 3] {
+    Log::value(c, [])
+}

@@ -91,7 +91,8 @@ pub(crate) fn sweep<K: Kernel>(
         return;
     }
     let streamed = !path.is_portable() && a.data.len() + b.data.len() + out.len() >= STREAMED;
-    let mut lanes = vec![Lane::filled(0.0); na + nb + nout + if streamed { nout + 1 } else { 0 }];
+    // What lies beyond the last rows is computed too; no function has difficulties with 1.
+    let mut lanes = vec![Lane::filled(1.0); na + nb + nout + if streamed { nout + 1 } else { 0 }];
     let (a_lanes, rest) = lanes.split_at_mut(na);
     let (b_lanes, rest) = rest.split_at_mut(nb);
     let (out_lanes, buffer) = rest.split_at_mut(nout);

@@ -222,8 +222,8 @@ impl Tangent {
             3.653_157_274_421_691_6e-2,
             -1.628_582_011_536_578_2e-2,
         ];
-        /// π/4, the first part of 51 bits, so that its product with 3 is exact.
-        const EIGHTH: (f64, f64) = (0.785_398_163_397_448_3, 3.061_616_997_868_383e-17);
+        /// π/4; the first part has 50 bits, so that its product with 3 is exact.
+        const EIGHTH: (f64, f64) = (std::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17);
         let Tangent { u, rest, eighths } = self;
         let z = u * u;
         let zz = z * z;

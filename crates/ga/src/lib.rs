@@ -15,7 +15,8 @@
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`values`] (`Vector`, `Bivector`, `Trivector`,
+//! keeps), [`batch`] (any product over rows of numbers), [`maps`] (exp, log
+//! and powers over rows), [`values`] (`Vector`, `Bivector`, `Trivector`,
 //! `Multivector`), [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`pauli`].
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
@@ -25,6 +26,7 @@ pub mod batch;
 mod complex;
 pub mod functions;
 mod lanes_math;
+mod map;
 pub mod maps;
 pub mod pauli;
 pub mod product;

@@ -206,9 +206,9 @@ impl Tangent {
         (Tangent { u, rest, eighths }, lo, over_size)
     }
 
-    /// The angle in [0, π] of `(s, size)` as `hi + lo`. The polynomial is fdlibm's, good to 2⁻⁵⁸.
+    /// What the arc tangent exceeds `u` by. The polynomial is fdlibm's, good to 2⁻⁵⁸.
     #[inline(always)]
-    pub fn angle<const FMA: bool>(self, s: f64) -> (f64, f64) {
+    pub fn excess(self) -> f64 {
         const A: [f64; 11] = [
             -3.333_333_333_333_293e-1,
             1.999_999_999_987_648_3e-1,
@@ -222,20 +222,26 @@ impl Tangent {
             3.653_157_274_421_691_6e-2,
             -1.628_582_011_536_578_2e-2,
         ];
-        /// π/4; the first part has 50 bits, so that its product with 3 is exact.
-        const EIGHTH: (f64, f64) = (std::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17);
-        let Tangent { u, rest, eighths } = self;
+        let Tangent { u, rest, .. } = self;
         let z = u * u;
         let zz = z * z;
         let high = (A[6] + z * A[7]) + zz * ((A[8] + z * A[9]) + zz * A[10]);
         let low = (A[0] + z * A[1]) + zz * ((A[2] + z * A[3]) + zz * (A[4] + z * A[5]));
-        let tail = (z * u) * (low + (zz * zz) * zz * high) + (rest - z * rest);
+        (z * u) * (low + (zz * zz) * zz * high) + (rest - z * rest)
+    }
+
+    /// The angle in [0, π] of `(s, size)` as `hi + lo`, given the [`Tangent::excess`].
+    #[inline(always)]
+    pub fn angle<const FMA: bool>(self, s: f64, excess: f64) -> (f64, f64) {
+        /// π/4; the first part has 50 bits, so that its product with 3 is exact.
+        const EIGHTH: (f64, f64) = (std::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17);
+        let Tangent { u, eighths, .. } = self;
         // For a negative s the angle is what is missing to π.
         let minus = s.to_bits() & SIGN;
         let eighths = if minus == 0 { eighths } else { 4.0 - eighths };
         let u = flip(u, minus);
         let hi = exact_product_plus::<FMA>(eighths, EIGHTH.0, u);
         let error = exact_product_plus::<FMA>(eighths, EIGHTH.0, -hi) + u;
-        quick_two_sum(hi, (error + flip(tail, minus)) + eighths * EIGHTH.1)
+        quick_two_sum(hi, (error + flip(excess, minus)) + eighths * EIGHTH.1)
     }
 }

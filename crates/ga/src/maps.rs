@@ -71,7 +71,8 @@ impl Map<4, 0, 3> for Log {
         const LEAST: f64 = 1e-100;
         const MOST: f64 = 1e100;
         let [s, x, y, z] = c;
-        let [mut hi, mut lo, mut reciprocal, mut u, mut rest, mut eighths] = [[0.0; W]; 6];
+        let [mut hi, mut lo, mut reciprocal] = [[0.0; W]; 3];
+        let [mut u, mut rest, mut eighths, mut excess] = [[0.0; W]; 4];
         for l in 0..W {
             let size = Size::of::<FMA>([x[l], y[l], z[l]]);
             (hi[l], rest[l]) = (size.hi, size.rest);
@@ -85,8 +86,12 @@ impl Map<4, 0, 3> for Log {
             (tangent, lo[l], reciprocal[l]) = Tangent::of::<FMA>(size, s[l], reciprocal[l]);
             (u[l], rest[l], eighths[l]) = (tangent.u, tangent.rest, tangent.eighths);
         }
+        let tangent = |u, rest, eighths| Tangent { u, rest, eighths };
         for l in 0..W {
-            (u[l], rest[l]) = Tangent { u: u[l], rest: rest[l], eighths: eighths[l] }.angle::<FMA>(s[l]);
+            excess[l] = tangent(u[l], rest[l], eighths[l]).excess();
+        }
+        for l in 0..W {
+            (u[l], rest[l]) = tangent(u[l], rest[l], eighths[l]).angle::<FMA>(s[l], excess[l]);
         }
         let mut out = [[0.0; W]; 3];
         for l in 0..W {

@@ -69,7 +69,7 @@ fn flip(x: f64, sign: u64) -> f64 {
     f64::from_bits(x.to_bits() ^ sign)
 }
 
-/// The size of three components, `√(x² + y² + z²) = √(hi² + rest)`, to about 2⁻¹⁰³ of it. Sizes below
+/// The size of three components, `√(x² + y² + z²) = √(hi² + rest)`, to 2⁻¹⁰² of it. Sizes below
 /// [`Size::LEAST`] are that size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Size {

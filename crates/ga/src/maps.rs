@@ -18,7 +18,8 @@ struct Exp;
 impl Map<3, 0, 4> for Exp {
     #[inline(always)]
     fn short<const W: usize, const FMA: bool>(b: [&[f64; W]; 3], _: [&[f64; W]; 0]) -> [[f64; W]; 4] {
-        /// `r` must be so much of |B|² that 2⁻¹⁰³ |B| is nothing to it. It is not beyond |B| = 10⁶ either.
+        /// `r` is known to 2⁻¹⁰² |B|, which must be nothing to it. Asking for so much of |B|² leaves the long
+        /// way all from |B| = 10⁶ on, too.
         const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
         let [mut hi, mut lo, mut reciprocal, mut r, mut rest, mut sin] = [[0.0; W]; 6];
         for l in 0..W {

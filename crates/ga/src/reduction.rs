@@ -3,8 +3,8 @@
 //!
 //! Whole numbers do not round. `N = |B|²` is counted in units of 2⁻⁵¹², its root `R` in units of 2⁻²⁵⁶,
 //! and `R` is multiplied by as much of 2/π as has a say (M. Payne and R. Hanek, *Radian reduction for
-//! trigonometric functions*, SIGNUM Newsletter 18, 1983). No three binary64 numbers are known to come
-//! nearer to a multiple than 2⁻¹⁹⁰, for there are too few of them; the last bits leave room for that.
+//! trigonometric functions*, SIGNUM Newsletter 18, 1983). Triples of binary64 numbers are fewer than 2¹⁹²,
+//! so that none is expected nearer to a multiple of π/2 than 2⁻¹⁹²; that leaves 64 bits of what remains.
 
 use crate::lanes_math::{quick_two_sum, two_product};
 

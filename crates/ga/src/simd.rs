@@ -2,8 +2,9 @@
 //! the machine to work on them.
 //!
 //! The arithmetic of a [`Kernel`] is plain loops over lanes, compiled once for each [`Path`]. No path
-//! fuses a product with a sum, so all of them give the same numbers bit for bit, on any machine. Only
-//! the turning of rows into lanes and back is written by hand, because compilers do it badly.
+//! fuses a product with a sum where that changes the result (see [`Kernel::block_fma`]), so all of them
+//! give the same numbers bit for bit, on any machine. Only the turning of rows into lanes and back is
+//! written by hand, because compilers do it badly.
 //!
 //! This module holds all the unsafe code of the crate.
 #![allow(unsafe_code)]
@@ -45,7 +46,8 @@ pub(crate) trait Kernel {
     /// compiles them for its own instructions.
     fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]);
 
-    /// The same where fused multiply-add is an instruction, for kernels that find errors of products by it.
+    /// The same where fused multiply-add is an instruction, for kernels that find by it what they find
+    /// otherwise in more steps: the rounding errors of products.
     #[inline(always)]
     fn block_fma(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
         self.block(a, b, out);

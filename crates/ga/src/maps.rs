@@ -1,7 +1,7 @@
 //! Functions of rotors over many rows: exp, log and powers.
 //!
 //! The formulas are those of [`crate::Rotor`]. What they lose by rounding is kept by sums of two numbers
-//! ([`crate::lanes_math`]), or where that is too little by whole numbers ([`crate::reduction`]). The steps
+//! (`lanes_math`), or where that is too little by whole numbers (`reduction`). The steps
 //! of a formula are loops of their own: processors overlap short chains of operations, not long ones.
 
 use crate::lanes_math::{Size, Tangent, common_reciprocal, divide, quarter_turns, sin_cos};

@@ -142,8 +142,9 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W>>(
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(kernel, a, b, (out, nout));
     }
+    // What lies beyond the last rows is computed too; no function has difficulties with 1.
     let mut lanes =
-        vec![Lane::<W>::filled(0.0); a.size + b.size + nout + if streamed { nout + 2 } else { 0 }];
+        vec![Lane::<W>::filled(1.0); a.size + b.size + nout + if streamed { nout + 2 } else { 0 }];
     let (a_lanes, rest) = lanes.split_at_mut(a.size);
     let (b_lanes, rest) = rest.split_at_mut(b.size);
     let (out_lanes, buffer) = rest.split_at_mut(nout);

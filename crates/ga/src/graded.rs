@@ -73,6 +73,7 @@ impl Graded {
     }
 
     /// A named product, by the terms of the table, in their order.
+    #[inline]
     pub fn product(&self, product: Product, other: &Graded) -> Graded {
         let plan = Plan::g3(product, self.grades, other.grades);
         let mut out = Graded { components: [0.0; 8], grades: plan.grades };
@@ -100,6 +101,13 @@ impl Graded {
 
     /// Each component with that of the other value, over the grades of both.
     pub fn zip(&self, other: &Graded, f: impl Fn(f64, f64) -> f64) -> Graded {
+        if self.grades == other.grades {
+            let mut sum = Graded { components: [0.0; 8], grades: self.grades };
+            for i in 0..size(self.grades) {
+                sum.components[i & 7] = f(self.components[i & 7], other.components[i & 7]);
+            }
+            return sum;
+        }
         let union = Grades(self.grades.0 | other.grades.0);
         let (mut a, b) = (self.with_grades(union), other.with_grades(union));
         for (x, y) in a.components[..size(union)].iter_mut().zip(b.components) {

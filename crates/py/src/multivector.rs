@@ -60,17 +60,17 @@ fn number(x: &Bound<'_, PyAny>) -> Option<f64> {
 }
 
 /// The single value that an operand is, if it is one.
-enum Operand {
-    Value(Graded, bool),
+enum Operand<'a> {
+    Value(&'a Graded, bool),
     Number(f64),
     Other,
 }
 
-fn operand(x: &Bound<'_, PyAny>) -> Operand {
+fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
     if let Ok(value) = x.cast::<Multivector>() {
         let value = value.get();
         return match &value.held {
-            Held::One(graded) => Operand::Value(*graded, value.unit),
+            Held::One(graded) => Operand::Value(graded, value.unit),
             Held::Many { .. } => Operand::Other,
         };
     }
@@ -134,9 +134,9 @@ fn product<'py>(
     match operand(right) {
         Operand::Value(b, unit) => {
             if unit && left.get().unit && product == Product::Geometric {
-                return one_rotor(py, unit_rotor(a).compose(unit_rotor(&b)));
+                return one_rotor(py, unit_rotor(a).compose(unit_rotor(b)));
             }
-            one(py, a.product(product, &b))
+            one(py, a.product(product, b))
         }
         Operand::Number(x) => one(py, a.product(product, &scalar(x))),
         Operand::Other => fallback(),
@@ -153,7 +153,7 @@ fn sum<'py>(
     let fallback = || left.call_method1(name, (right,));
     let Some(a) = left.get().single() else { return fallback() };
     match operand(right) {
-        Operand::Value(b, _) => one(left.py(), a.zip(&b, f)),
+        Operand::Value(b, _) => one(left.py(), a.zip(b, f)),
         Operand::Number(x) => one(left.py(), a.zip(&scalar(x), f)),
         Operand::Other => fallback(),
     }

@@ -19,7 +19,7 @@ _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     """Return an array of coefficients: of floats where they are enough, else of the kind that they are.
 
-    Float32 and float64 arrays stay as they are. Other real numbers become float64, but integers that
+    Float32 and float64 arrays and numbers of NumPy stay as they are. Other real numbers become float64, but integers that
     float64 cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other
     libraries stay theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
     """
@@ -29,6 +29,8 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
         return _converted(values, what, dtype)
     if is_float(values):
         return values
+    if isinstance(values, np.ma.MaskedArray):
+        raise TypeError(f"{what} is a masked array; fill it, or take its compressed values")
     if isinstance(values, list | tuple):
         strange = [leaf for leaf in _leaves(values) if type(leaf) not in _PLAIN]
         special = any(not isinstance(leaf, np.ndarray | np.generic) for leaf in strange)
@@ -44,7 +46,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
         return _exact(array, what)
     if array.dtype.kind in "iu" and not _fits_floats(array):
         return _exact(array.astype(object), what)
-    return as_floats(array, what)
+    return array if is_float(array) else as_floats(array, what)
 
 
 def namespace(array: Any) -> Any:
@@ -79,6 +81,8 @@ def scalars(value: Any, like: Any) -> Any:
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
+        if value.dtype.kind in "iu" and is_float(like):  # rounded as they are, whatever their values
+            return as_floats(value, "scalar")[..., None]
     elif not isinstance(value, int | float | Fraction) and of_kind(value) is None:
         return None
     return as_coefficients(value, "scalar")[..., None]
@@ -142,7 +146,7 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
     """Return coefficients of the type asked for."""
     given = as_coefficients(values, what)
     if not isinstance(given, np.ndarray):
-        return given.astype(dtype)
+        return _converted_foreign(given, what, dtype)
     wanted = np.dtype(dtype)
     if wanted.kind == "O":
         return _exact(given.astype(object), what)
@@ -152,3 +156,15 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
         return given.astype(wanted, copy=False)
     except (TypeError, OverflowError) as error:
         raise TypeError(f"{what} does not become {wanted}: {error}") from error
+
+
+def _converted_foreign(given: Any, what: str, dtype: Any) -> Any:
+    """Return an array of another library in a floating type of that library, which may be given by NumPy's."""
+    xp = namespace(given)
+    try:
+        wanted = getattr(xp, np.dtype(dtype).name, None)
+    except TypeError:  # it is a type of the library's own
+        wanted = dtype
+    if wanted is None or not xp.isdtype(wanted, "real floating"):
+        raise TypeError(f"{what} of a {type(given).__name__} of {xp.__name__} does not become {dtype}")
+    return xp.astype(given, wanted)

@@ -71,7 +71,7 @@ def norm_squared(value: Multivector) -> Any:
     if is_float(data):
         with np.errstate(over="ignore"):
             return (np.square(data) * signs).sum(axis=-1)[()]
-    return value.scalar_product(~value)._data[..., 0]
+    return value.scalar_product(~value)._data[..., 0][()]
 
 
 def norm(value: Multivector) -> Any:
@@ -142,7 +142,10 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     """Return the inverse or the exponential of other coefficients in other algebras."""
     algebra = value.algebra
     if name not in ("inverse", "exp"):
-        raise TypeError(f"{name} in {algebra} needs floats, got {value.dtype}; convert with .astype(float)")
+        raise TypeError(
+            f"{name} in {algebra} needs NumPy floats, got {type(value._data).__name__} of {value.dtype}; "
+            "convert exact numbers with .astype(float), other arrays with np.asarray(A.components)"
+        )
     mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
     terms, _ = algebra._terms("geometric", everything, everything)
     full = _parts.with_grades(value, everything)

@@ -106,10 +106,9 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
         """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
-        places = _to_wxyz(order)
         given = _components(q, 4, "quaternion")
-        wxyz = common(*(given[..., k, None] for k in places))
-        return Rotor._from_rows(_computed("from_quaternion", *wxyz))
+        wxyz = of(given).stack([given[..., k] for k in _to_wxyz(order)])
+        return Rotor._from_rows(_computed("from_quaternion", wxyz))
 
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
@@ -133,14 +132,15 @@ class Rotor(_native.Rotor, Multivector):
 
     def to_matrix(self) -> Any:
         """Rotation matrices (..., 3, 3) acting on columns."""
-        return _computed("to_matrix", self._data).reshape((*self.shape, 3, 3))
+        matrices = _computed("to_matrix", self._data)
+        return of(matrices).reshape(matrices, (*self.shape, 3, 3))
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
         """Quaternions (..., 4), Hamilton's and active; the order must be said."""
         if _to_wxyz(order)[0] == 0:
             return _computed("to_quaternion", self._data)
         wxyz = _computed("to_quaternion", self._data)
-        return wxyz[..., np.argsort(_to_wxyz(order))]
+        return of(wxyz).stack([wxyz[..., k] for k in (1, 2, 3, 0)])
 
     def to_rotation_vector(self) -> Any:
         """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
@@ -202,6 +202,8 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
+        if isinstance(n, int) and of(self._data).exact:
+            return Rotor._from_rows(generic.power(of(self._data), self._data, n))
         turn = self.log() * as_coefficients(n, "the power of a rotor")
         power: Rotor = turn.exp()
         return power

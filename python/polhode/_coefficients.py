@@ -19,9 +19,9 @@ _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     """Return an array of coefficients: of floats where they are enough, else of the kind that they are.
 
-    Float32 and float64 arrays and numbers of NumPy stay as they are. Other real numbers become float64, but integers that
-    float64 cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other
-    libraries stay theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
+    NumPy's float32 and float64 stay as they are. Other real numbers become float64, but integers that float64
+    cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other libraries stay
+    theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
     """
     if isinstance(values, _native.Multivector):
         raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
@@ -159,7 +159,7 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
 
 
 def _converted_foreign(given: Any, what: str, dtype: Any) -> Any:
-    """Return an array of another library in a floating type of that library, which may be given by NumPy's."""
+    """Return an array of another library in a floating type of it, given by itself or by NumPy's name."""
     xp = namespace(given)
     try:
         wanted = getattr(xp, np.dtype(dtype).name, None)

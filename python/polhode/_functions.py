@@ -65,13 +65,19 @@ def power(value: Multivector, n: Any) -> Multivector:
         base = base * base
 
 
+def as_precise(value: Multivector, like: Multivector) -> Multivector:
+    """Return a value of float64 in single precision, if the other is of it."""
+    return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
+
+
 def norm_squared(value: Multivector) -> Any:
     """``⟨A ~A⟩``, of the batch shape."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data):
         with np.errstate(over="ignore"):
             return (np.square(data) * signs).sum(axis=-1)[()]
-    return value.scalar_product(~value)._data[..., 0][()]
+    square = value.scalar_product(~value)._data[..., 0]
+    return square[()] if isinstance(square, np.ndarray) else square
 
 
 def norm(value: Multivector) -> Any:

@@ -226,12 +226,12 @@ class Multivector(_native.Multivector):
 
         A TypeError where I has no inverse, as in Cl(3,0,1); `right_complement` takes its place there.
         """
-        return self * self.algebra._inverse_of_I()
+        return self * _functions.as_precise(self.algebra._inverse_of_I(), self)
 
     def undual(self) -> Multivector:
         """``A I``, the inverse of `dual`."""
         self.algebra._inverse_of_I()
-        return self * self.algebra.I
+        return self * _functions.as_precise(self.algebra.I, self)
 
     def right_complement(self) -> Multivector:
         """Return what is missing from the whole space: linear, ``E ∧ rc(E) = I`` for basis elements E.

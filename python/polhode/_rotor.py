@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
-from polhode._coefficients import as_coefficients, common
+from polhode._coefficients import as_coefficients
 from polhode._extras import optional
 from polhode._generic import rotors as generic
 from polhode._generic.coefficients import of

@@ -23,72 +23,72 @@ def plane(A):
     return A.grade(2)
 
 
-# Each gives two sides that are equal for all multivectors A, B, C; I is the pseudoscalar.
+# Each gives two sides that are equal for all multivectors A, B, C; J is I in their precision.
 POLYNOMIAL = {
-    "the product is associative": lambda A, B, C, I: (A * (B * C), (A * B) * C),
-    "and distributes from the left": lambda A, B, C, I: (A * (B + C), A * B + A * C),
-    "and from the right": lambda A, B, C, I: ((A - B) * C, A * C - B * C),
-    "wedge is associative": lambda A, B, C, I: (A.wedge(B.wedge(C)), A.wedge(B).wedge(C)),
-    "vee is associative": lambda A, B, C, I: (A.vee(B.vee(C)), A.vee(B).vee(C)),
-    "numbers commute": lambda A, B, C, I: (A * 3 * B, 3 * (A * B)),
-    "reverse of a product": lambda A, B, C, I: (~(A * B), ~B * ~A),
-    "reverse twice": lambda A, B, C, I: (~~A, A),
-    "grade involution of a product": lambda A, B, C, I: (
+    "the product is associative": lambda A, B, C, J: (A * (B * C), (A * B) * C),
+    "and distributes from the left": lambda A, B, C, J: (A * (B + C), A * B + A * C),
+    "and from the right": lambda A, B, C, J: ((A - B) * C, A * C - B * C),
+    "wedge is associative": lambda A, B, C, J: (A.wedge(B.wedge(C)), A.wedge(B).wedge(C)),
+    "vee is associative": lambda A, B, C, J: (A.vee(B.vee(C)), A.vee(B).vee(C)),
+    "numbers commute": lambda A, B, C, J: (A * 3 * B, 3 * (A * B)),
+    "reverse of a product": lambda A, B, C, J: (~(A * B), ~B * ~A),
+    "reverse twice": lambda A, B, C, J: (~~A, A),
+    "grade involution of a product": lambda A, B, C, J: (
         (A * B).grade_involution(),
         A.grade_involution() * B.grade_involution(),
     ),
-    "Clifford conjugate": lambda A, B, C, I: (A.clifford_conjugate(), (~A).grade_involution()),
-    "sum of the grades": lambda A, B, C, I: (A.grade(0) + A.grade(1) + A.grade(2) + A.grade(3), A),
-    "commutator": lambda A, B, C, I: (2 * A.commutator(B), A * B - B * A),
-    "commutator as a derivation": lambda A, B, C, I: (
+    "Clifford conjugate": lambda A, B, C, J: (A.clifford_conjugate(), (~A).grade_involution()),
+    "sum of the grades": lambda A, B, C, J: (A.grade(0) + A.grade(1) + A.grade(2) + A.grade(3), A),
+    "commutator": lambda A, B, C, J: (2 * A.commutator(B), A * B - B * A),
+    "commutator as a derivation": lambda A, B, C, J: (
         A.commutator(B * C),
         A.commutator(B) * C + B * A.commutator(C),
     ),
-    "Jacobi": lambda A, B, C, I: (
+    "Jacobi": lambda A, B, C, J: (
         A.commutator(B.commutator(C)) + B.commutator(C.commutator(A)),
         -C.commutator(A.commutator(B)),
     ),
-    "scalar product": lambda A, B, C, I: (A.scalar_product(B), (A * B).grade(0)),
-    "scalar product commutes": lambda A, B, C, I: (A.scalar_product(B), B.scalar_product(A)),
-    "norm squared": lambda A, B, C, I: (
+    "scalar product": lambda A, B, C, J: (A.scalar_product(B), (A * B).grade(0)),
+    "scalar product commutes": lambda A, B, C, J: (A.scalar_product(B), B.scalar_product(A)),
+    "norm squared": lambda A, B, C, J: (
         0 * A.grade(0) + A.norm_squared(),
         A.scalar_product(~A),
     ),
-    "contraction of a wedge": lambda A, B, C, I: (
+    "contraction of a wedge": lambda A, B, C, J: (
         A.wedge(B).left_contraction(C),
         A.left_contraction(B.left_contraction(C)),
     ),
-    "contractions from both sides": lambda A, B, C, I: (
+    "contractions from both sides": lambda A, B, C, J: (
         A.left_contraction(B).right_contraction(C),
         A.left_contraction(B.right_contraction(C)),
     ),
-    "contractions reversed": lambda A, B, C, I: (~A.left_contraction(B), (~B).right_contraction(~A)),
-    "wedge and contraction are dual": lambda A, B, C, I: (A.wedge(B).dual(), A.left_contraction(B.dual())),
-    "dual and undual": lambda A, B, C, I: (A.dual().undual(), A),
-    "complements": lambda A, B, C, I: (A.left_complement().right_complement(), A),
-    "complement of vee": lambda A, B, C, I: (
+    "contractions reversed": lambda A, B, C, J: (~A.left_contraction(B), (~B).right_contraction(~A)),
+    "wedge and contraction are dual": lambda A, B, C, J: (A.wedge(B).dual(), A.left_contraction(B.dual())),
+    "dual and undual": lambda A, B, C, J: (A.dual().undual(), A),
+    "complements": lambda A, B, C, J: (A.left_complement().right_complement(), A),
+    "complement of vee": lambda A, B, C, J: (
         A.vee(B).right_complement(),
         A.right_complement().wedge(B.right_complement()),
     ),
-    "square and cube": lambda A, B, C, I: (A**2 * A, A**3),
-    "vector into a product": lambda A, B, C, I: (
+    "square and cube": lambda A, B, C, J: (A**2 * A, A**3),
+    "vector into a product": lambda A, B, C, J: (
         vector(A).left_contraction(B * C),
         vector(A).left_contraction(B) * C + B.grade_involution() * vector(A).left_contraction(C),
     ),
-    "vector times anything": lambda A, B, C, I: (
+    "vector times anything": lambda A, B, C, J: (
         vector(A) * B,
         vector(A).left_contraction(B) + vector(A).wedge(B),
     ),
-    "eq 1.13": lambda A, B, C, I: (2 * vector(A).dot(plane(B)), vector(A) * plane(B) - plane(B) * vector(A)),
-    "eq 1.21": lambda A, B, C, I: (A * I, I * A),
-    "eq 1.24": lambda A, B, C, I: (ph.cross(vector(A), vector(B)), -I * vector(A).wedge(vector(B))),
-    "Lagrange": lambda A, B, C, I: (
+    "eq 1.13": lambda A, B, C, J: (2 * vector(A).dot(plane(B)), vector(A) * plane(B) - plane(B) * vector(A)),
+    "eq 1.21": lambda A, B, C, J: (A * J, J * A),
+    "eq 1.24": lambda A, B, C, J: (ph.cross(vector(A), vector(B)), -J * vector(A).wedge(vector(B))),
+    "Lagrange": lambda A, B, C, J: (
         vector(A).wedge(vector(B)).dot(plane(C)),
         vector(A).dot(vector(B).dot(plane(C))),
     ),
-    "difference": lambda A, B, C, I: (A - (A - B), B),
-    "minus": lambda A, B, C, I: (-A, 0 - A),
-    "halves": lambda A, B, C, I: (A / 2 + A / 2, A),
+    "difference": lambda A, B, C, J: (A - (A - B), B),
+    "minus": lambda A, B, C, J: (-A, 0 - A),
+    "halves": lambda A, B, C, J: (A / 2 + A / 2, A),
 }
 
 
@@ -328,7 +328,7 @@ def test_comparison(kind):
     assert np.all(np.asarray(same))
     assert not np.any(np.asarray(A != A))
     assert not np.any(np.asarray(A + 1 == A))
-    assert not np.any(np.asarray(A == e1))
+    assert not np.any(np.asarray(kind.own(e1) == A))
     if kind.name != "sympy":
         assert np.all(np.asarray(A.is_close(A, rtol=0)))
         assert np.all(np.asarray(A.is_close(A * (1 + 4 * kind.eps), rtol=8 * kind.eps)))

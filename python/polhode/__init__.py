@@ -1,28 +1,16 @@
 """Polhode: geometric algebra of 3-d space, rotors and the motion of rigid bodies."""
 
-from polhode import torque as torque
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from polhode._algebra import Algebra as Algebra
 from polhode._algebra import algebra as algebra
-from polhode._bodies import Body as Body
-from polhode._bodies import Inertia as Inertia
-from polhode._interchange import from_dict as from_dict
-from polhode._interchange import to_dict as to_dict
-from polhode._motion import Certificate as Certificate
-from polhode._motion import FreeMotion as FreeMotion
-from polhode._motion import State as State
-from polhode._motion import SymmetricTop as SymmetricTop
-from polhode._motion import Trajectory as Trajectory
-from polhode._motion import describe_free as describe_free
-from polhode._motion import simulate as simulate
 from polhode._multivector import Multivector as Multivector
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
 from polhode._parts import concatenate as concatenate
 from polhode._parts import stack as stack
 from polhode._rotor import Rotor as Rotor
-from polhode._rotor import mean as mean
-from polhode._rotor import slerp as slerp
-from polhode._scene import Scene as Scene
 from polhode._values import I as I
 from polhode._values import bivector as bivector
 from polhode._values import cross as cross
@@ -35,3 +23,62 @@ from polhode._values import scalar as scalar
 from polhode._values import to_pauli as to_pauli
 from polhode._values import trivector as trivector
 from polhode._values import vector as vector
+
+if TYPE_CHECKING:
+    from polhode import torque as torque
+    from polhode._bodies import Body as Body
+    from polhode._bodies import Inertia as Inertia
+    from polhode._geometry import axial as axial
+    from polhode._geometry import from_axial as from_axial
+    from polhode._geometry import split as split
+    from polhode._interchange import from_dict as from_dict
+    from polhode._interchange import to_dict as to_dict
+    from polhode._interpolation import RotorSpline as RotorSpline
+    from polhode._interpolation import mean as mean
+    from polhode._interpolation import slerp as slerp
+    from polhode._linear import LinearMap as LinearMap
+    from polhode._motion import Certificate as Certificate
+    from polhode._motion import FreeMotion as FreeMotion
+    from polhode._motion import State as State
+    from polhode._motion import SymmetricTop as SymmetricTop
+    from polhode._motion import Trajectory as Trajectory
+    from polhode._motion import describe_free as describe_free
+    from polhode._motion import simulate as simulate
+    from polhode._scene import Scene as Scene
+
+# Imported when they are first asked for: those who only multiply need not wait for mechanics.
+_LATER = {
+    "Body": "_bodies",
+    "Inertia": "_bodies",
+    "axial": "_geometry",
+    "from_axial": "_geometry",
+    "split": "_geometry",
+    "from_dict": "_interchange",
+    "to_dict": "_interchange",
+    "RotorSpline": "_interpolation",
+    "mean": "_interpolation",
+    "slerp": "_interpolation",
+    "LinearMap": "_linear",
+    "Certificate": "_motion",
+    "FreeMotion": "_motion",
+    "State": "_motion",
+    "SymmetricTop": "_motion",
+    "Trajectory": "_motion",
+    "describe_free": "_motion",
+    "simulate": "_motion",
+    "Scene": "_scene",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "torque":
+        return importlib.import_module("polhode.torque")
+    if name not in _LATER:
+        raise AttributeError(f"module 'polhode' has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"polhode.{_LATER[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LATER, "torque"})

@@ -100,6 +100,10 @@ class Algebra(_native.Algebra):
     def _wrapped(
         self, components: Any, what: str, size: int, mask: int, dtype: Any, copy: bool
     ) -> Multivector:
+        if dtype is None and self.signature == (3, 0, 0):
+            value = Multivector._of_numbers(components, mask)
+            if value is not None:
+                return value
         data = as_coefficients(components, what, dtype)
         if not data.shape or data.shape[-1] != size:
             raise ValueError(

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Callable
+from typing import Any, overload
 
 import numpy as np
 
 from polhode import _native
 from polhode._arrays import Array, as_components, as_float, as_floats
+from polhode._linear import LinearMap
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_point, as_vectors, bivector, pure, vector
 
 
-class Inertia:
+class Inertia(LinearMap):
     """The inertia map ``I(B) = ∫ρ x∧(x·B) d³x`` of bivectors to bivectors (handout eq. 4.18).
 
     It takes the plane of rotation to the plane of angular momentum; both are in body axes. About the
     centre of mass unless its maker says otherwise. Units kg m². Its matrix over ``(e2e3, e3e1, e1e2)``
-    is the inertia tensor over axial vectors.
+    is the inertia tensor over axial vectors. A symmetric `LinearMap` of grade 2.
 
-    Made by `from_principal_moments`, `from_matrix` and `from_points`. Moments that no body can have
-    (``i1 + i2 < i3``, a negative one) are a ValueError.
+    Made by `from_principal_moments`, `from_matrix`, `from_function` and `from_points`. Moments that no body
+    can have (``i1 + i2 < i3``, a negative one) are a ValueError.
     """
 
     __slots__ = ("_core",)
@@ -39,7 +41,7 @@ class Inertia:
         return Inertia(_native.Inertia.from_principal_moments(moments))
 
     @staticmethod
-    def from_matrix(J: Any) -> Inertia:
+    def from_matrix(J: Any) -> Inertia:  # type: ignore[override]  # an inertia has one grade
         """From a symmetric 3x3 matrix (kg m²) in body axes; principal moments come out rising."""
         matrix = as_floats(J, "inertia matrix")
         if matrix.shape != (3, 3):
@@ -47,17 +49,36 @@ class Inertia:
         return Inertia(_native.Inertia.from_matrix(np.ascontiguousarray(matrix).reshape(9)))
 
     @staticmethod
+    def from_function(f: Callable[[Multivector], Multivector]) -> Inertia:  # type: ignore[override]
+        """From a function on bivectors, such as ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25)."""
+        return Inertia.from_matrix(LinearMap.from_function(f, grade=2).matrix)
+
+    @staticmethod
     def from_points(masses: Any, positions: Any) -> Inertia:
         """From point masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
         return Inertia(_native.Inertia.from_points(*_points(masses, positions)))
 
-    def __call__(self, B: Multivector) -> Multivector:
+    def __call__(self, B: Any) -> Multivector:
         """``I(B)``: the angular momentum of a rotation with angular velocity B, both in body axes."""
         return bivector(self._core.apply(pure(B, 2, "the plane of rotation")), copy=False)
 
-    def inverse(self, L: Multivector) -> Multivector:
-        """Return the angular velocity with angular momentum L; a ValueError if a principal moment is 0."""
+    @overload
+    def inverse(self) -> LinearMap: ...
+    @overload
+    def inverse(self, L: Multivector) -> Multivector: ...
+    def inverse(self, L: Multivector | None = None) -> LinearMap | Multivector:
+        """Return the angular velocity with angular momentum L; a ValueError if a principal moment is 0.
+
+        Without L, return the map from momenta to velocities.
+        """
+        if L is None:
+            return LinearMap.from_function(self.inverse, grade=2)
         return bivector(self._core.inverse(pure(L, 2, "the angular momentum")), copy=False)
+
+    @property
+    def grade(self) -> int:
+        """2: it maps bivectors."""
+        return 2
 
     @property
     def matrix(self) -> Array:
@@ -74,6 +95,10 @@ class Inertia:
         """Return the rotor F whose axes ``F(e1), F(e2), F(e3)`` are the principal axes in body axes."""
         return Rotor._from_rows(self._core.principal_frame())
 
+    def eigenplanes(self) -> tuple[Multivector, Array]:
+        """Return the principal planes ``F(I e_k)``, F the `principal_frame`, and the principal moments."""
+        return self.principal_frame(bivector(np.eye(3))), self.principal_moments
+
     def __repr__(self) -> str:
         i1, i2, i3 = self.principal_moments
         return f"Inertia(principal moments {i1:.8g}, {i2:.8g}, {i3:.8g} kg m²)"
@@ -83,7 +108,7 @@ class Inertia:
             return NotImplemented
         return bool(np.array_equal(self.matrix, other.matrix))
 
-    def __hash__(self) -> int:
+    def __hash__(self) -> int:  # type: ignore[override]  # a single map
         return hash(self.matrix.tobytes())
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
-from fractions import Fraction
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
-from polhode import _native
+from polhode import _generic, _native
 from polhode._arrays import as_floats, is_float
-from polhode._generic import pytrees
-from polhode._generic.coefficients import of
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 
@@ -37,7 +36,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     else:
         special = type(values) not in _PLAIN and not isinstance(values, np.ndarray | np.generic)
     if special:
-        kind = of(values)
+        kind = kind_of(values)
         if not kind.native:
             tell_jax()
             return kind.asarray(values)
@@ -51,25 +50,43 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
 
 def namespace(array: Any) -> Any:
     """Return the namespace of an array: NumPy's also for exact coefficients."""
-    kind = of(array)
-    return np if kind.exact else kind.xp  # type: ignore[union-attr]
+    kind = kind_of(array)
+    return np if kind.exact else kind.xp
+
+
+def kind_of(*values: Any) -> Any:
+    """Return the arithmetic that serves arrays which are not all of NumPy floats."""
+    return _generic.coefficients.of(*values)
+
+
+def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
+    """Return the same elements in another shape."""
+    return array.reshape(shape) if isinstance(array, np.ndarray) else kind_of(array).reshape(array, shape)
+
+
+def taken(array: Any, places: list[int]) -> Any:
+    """Return some components, in this order."""
+    if isinstance(array, np.ndarray):
+        return array[..., places]
+    return kind_of(array).stack([array[..., k] for k in places])
 
 
 def tell_jax() -> None:
     """Make values pytrees of JAX, if JAX has been imported: they then pass through jit, grad and vmap."""
-    pytrees.register(
+    _generic.pytrees.register(
         _native.Multivector,
         lambda value: ((value._data,), (value._mask, value.algebra)),
         lambda kind, leaves: _native.Multivector._of(next(iter(leaves)), *kind),
     )
-    pytrees.register(
+    _generic.pytrees.register(
         _native.Rotor,
         lambda rotor: ((rotor._data,), None),
         lambda _, leaves: _native.Rotor._from_rows(next(iter(leaves))),
     )
 
 
-tell_jax()
+if "jax" in sys.modules:
+    tell_jax()
 
 
 def scalars(value: Any, like: Any) -> Any:
@@ -83,15 +100,15 @@ def scalars(value: Any, like: Any) -> Any:
             return None
         if value.dtype.kind in "iu" and is_float(like):  # rounded as they are, whatever their values
             return as_floats(value, "scalar")[..., None]
-    elif not isinstance(value, int | float | Fraction) and of_kind(value) is None:
+    elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
     return as_coefficients(value, "scalar")[..., None]
 
 
-def of_kind(value: Any) -> Any:
+def foreign_kind(value: Any) -> Any:
     """Return the arithmetic of a value that is neither a number nor an array of NumPy; else None."""
     try:
-        kind = of(value)
+        kind = kind_of(value)
     except TypeError:
         return None
     return None if kind.native else kind
@@ -101,14 +118,14 @@ def common(*arrays: Any) -> tuple[Any, ...]:
     """Return the arrays with coefficients of one kind; floats of two precisions are left to NumPy."""
     if all(is_float(array) for array in arrays):
         return arrays
-    kind = of(*arrays)
+    kind = kind_of(*arrays)
     return tuple(kind.asarray(array) for array in arrays)
 
 
 def _exact(array: Any, what: str) -> Any:
     """Return an array of objects, each of them a number or an expression."""
     try:
-        return of(array).asarray(array)
+        return kind_of(array).asarray(array)
     except TypeError as error:
         raise TypeError(f"{what} must be real numbers or expressions: {error}") from None
 

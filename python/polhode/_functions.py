@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _native, _parts
+from polhode import _generic, _native, _parts
 from polhode._arrays import Array, is_float, mapped
-from polhode._coefficients import common
-from polhode._generic import algebras as generic_algebras
-from polhode._generic import functions as generic
-from polhode._generic.coefficients import of
+from polhode._coefficients import common, kind_of
 from polhode._products import coerced
 
 if TYPE_CHECKING:
@@ -37,7 +34,7 @@ def divided(value: Multivector, other: Any) -> Multivector:
             )
     a, b = common(value._data, divisor._data)
     with np.errstate(over="ignore", invalid="ignore"):
-        quotient = a / b if is_float(a) else of(a, b).divide(a, b)
+        quotient = a / b if is_float(a) else kind_of(a, b).divide(a, b)
     return _native.Multivector._of(quotient, value._mask, value.algebra)
 
 
@@ -53,7 +50,7 @@ def power(value: Multivector, n: Any) -> Multivector:
     exponent = abs(exponent)
     if exponent == 0:
         first = value._data[..., :1]
-        one = np.ones_like(first) if is_float(first) else of(first).zeros_like(first) + 1
+        one = np.ones_like(first) if is_float(first) else kind_of(first).zeros_like(first) + 1
         return _native.Multivector._of(one, 1, value.algebra)
     result: Multivector | None = None
     while True:
@@ -82,10 +79,12 @@ def norm_squared(value: Multivector) -> Any:
 
 def norm(value: Multivector) -> Any:
     """``√abs⟨A ~A⟩``, of the batch shape."""
+    if value._is_one:
+        return np.float64(value._norm_of_one())
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
-        kind = of(data)
-        return generic.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
+        kind = kind_of(data)
+        return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
     if min(signs) > 0 and len(signs) <= 8:
         return mapped(_native.norm, _padded(data))[..., 0][()]
     # In units of the largest component, so that nothing overflows.
@@ -106,7 +105,7 @@ def normalized(value: Multivector) -> Multivector:
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
         if min(signs) > 0:
-            return value._like(generic.normalized(of(data), data))
+            return value._like(_generic.functions.normalized(kind_of(data), data))
         return value / coerced(norm(value), value)
     # Scaling by the largest component first keeps subnormal values accurate.
     largest = np.abs(data).max(axis=-1, keepdims=True)
@@ -129,6 +128,8 @@ def _require(ok: Any, what: str, value: Multivector) -> None:
 
 def _function(name: str, value: Multivector) -> Multivector:
     """Return a function of any value: native over floats, else by the generic formulas."""
+    if value._is_one:
+        return value._function_of_one(name)
     algebra, data = value.algebra, value._data
     if is_float(data):
         mask = algebra._grades_of_function(name, value._mask)
@@ -138,7 +139,7 @@ def _function(name: str, value: Multivector) -> Multivector:
 
         result = mapped(native, _parts.with_grades(value, algebra._all))
     elif algebra.signature == (3, 0, 0):
-        result, mask = getattr(generic, name)(of(data), data, value._mask)
+        result, mask = getattr(_generic.functions, name)(kind_of(data), data, value._mask)
     else:
         result, mask = _generic_function(name, value)
     return _native.Multivector._of(result, mask, algebra)
@@ -156,10 +157,10 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     terms, _ = algebra._terms("geometric", everything, everything)
     full = _parts.with_grades(value, everything)
     if name == "exp":
-        rows = generic_algebras.exp(of(full), terms, algebra._indices(value._mask), full)
+        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full)
     else:
-        rows = generic_algebras.inverse(of(full), terms, algebra.dimension, full)
-    return of(rows).stack([rows[..., i] for i in algebra._indices(mask)]), mask
+        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full)
+    return kind_of(rows).stack([rows[..., i] for i in algebra._indices(mask)]), mask
 
 
 def inverse(value: Multivector) -> Multivector:
@@ -170,6 +171,8 @@ def inverse(value: Multivector) -> Multivector:
 def exp(value: Multivector) -> Multivector:
     """``exp A``; a rotor of a bivector of 3-d space."""
     result = _function("exp", value)
+    if value._is_one:
+        return result
     is_rotor = result._mask == _EVEN and value.algebra.signature == (3, 0, 0)
     if is_rotor and not value._held() & ~_BIVECTOR:
         return _native.Rotor._from_rows(result._data)

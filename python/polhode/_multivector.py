@@ -322,6 +322,16 @@ class Multivector(_native.Multivector):
         """Return the part perpendicular to the subspace of `blade`: A minus its projection."""
         return self - self.project(blade)
 
+    def reflect(self, n: Multivector) -> Multivector:
+        """Return the value in the mirror perpendicular to the vector n: ``−n a n⁻¹`` for a vector a.
+
+        ``n X̂ n⁻¹`` for any X, with X̂ its grade involution, so that mirrors respect ``∧``: scalars stay, I
+        changes sign. The mirror that is the plane of a bivector B has the normal ``B.dual()``.
+        """
+        from polhode._geometry import reflected
+
+        return reflected(self, n)
+
     # --- comparison
 
     def __eq__(self, other: object) -> Any:

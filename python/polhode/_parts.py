@@ -10,8 +10,8 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Shape, is_float
-from polhode._coefficients import common, namespace
-from polhode._generic.coefficients import of
+from polhode._coefficients import common, kind_of, namespace
+from polhode._coefficients import reshaped as coefficients_reshaped
 from polhode._products import coerced, common_algebra
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def with_grades(value: Multivector, mask: int) -> Any:
         full[..., held] = data
         return np.ascontiguousarray(full[..., wanted])
     place = {index: k for k, index in enumerate(held)}
-    kind = of(data)
+    kind = kind_of(data)
     zero = kind.zeros_like(data[..., 0])
     return kind.stack([data[..., place[i]] if i in place else zero for i in wanted])
 
@@ -65,7 +65,7 @@ def signed(value: Multivector, negative: Callable[[int], bool]) -> Multivector:
     if is_float(data):
         return value._like(np.where(np.array(signs) < 0, -data, data))
     parts = [data[..., k] if sign > 0 else -data[..., k] for k, sign in enumerate(signs)]
-    return value._like(of(data).stack(parts))
+    return value._like(kind_of(data).stack(parts))
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
@@ -97,7 +97,7 @@ def reshaped(value: Multivector, shape: tuple[Any, ...]) -> Multivector:
         lengths[lengths.index(-1)] = count // known
     if np.prod(lengths) != np.prod(value.shape):
         raise ValueError(f"a batch of shape {value.shape} cannot be reshaped to {tuple(lengths)}")
-    return value._like(of(data).reshape(data, (*lengths, data.shape[-1])))
+    return value._like(coefficients_reshaped(data, (*lengths, data.shape[-1])))
 
 
 def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:

@@ -6,12 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _native
+from polhode import _generic, _native
 from polhode._arrays import Array, Shape, common_batch, is_float, new, rows
 from polhode._coefficients import scalars
-from polhode._generic import products as generic
-from polhode._generic import rotors as generic_rotors
-from polhode._generic.coefficients import of
 
 if TYPE_CHECKING:
     from polhode._multivector import Multivector
@@ -27,10 +24,10 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
         if out is not None:
             raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
         terms, _ = algebra._terms(name, left._mask, right._mask)
-        kind = of(a, b)
-        result = generic.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
+        kind = _generic.coefficients.of(a, b)
+        result = _generic.products.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
         if rotors:
-            return _native.Rotor._from_rows(generic_rotors.from_components(kind, result))
+            return _native.Rotor._from_rows(_generic.rotors.from_components(kind, result))
         return _native.Multivector._of(result, mask, algebra)
     batch = common_batch(left.shape, right.shape)
     dtype = np.result_type(a, b)

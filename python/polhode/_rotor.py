@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _native
-from polhode._arrays import Shape, as_floats, batch_shape, common_batch, is_float, joined, mapped, rows
-from polhode._coefficients import as_coefficients
+from polhode import _euler, _generic, _geometry, _native
+from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, rows
+from polhode._coefficients import as_coefficients, kind_of, reshaped, taken
 from polhode._extras import optional
-from polhode._generic import rotors as generic
-from polhode._generic.coefficients import of
 from polhode._joined import joins
 from polhode._multivector import Multivector
 from polhode._products import coerced, common_algebra, result_array
@@ -37,8 +35,8 @@ def _computed(name: str, *operands: Any) -> Any:
     """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
     if all(map(is_float, operands)):
         return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
-    kind = of(*operands)
-    return getattr(generic, name)(kind, *map(kind.asarray, operands))
+    kind = kind_of(*operands)
+    return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
 
 
 @joins(_native.Rotor)
@@ -107,8 +105,7 @@ class Rotor(_native.Rotor, Multivector):
     def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
         """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
         given = _components(q, 4, "quaternion")
-        wxyz = of(given).stack([given[..., k] for k in _to_wxyz(order)])
-        return Rotor._from_rows(_computed("from_quaternion", wxyz))
+        return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
 
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
@@ -124,6 +121,29 @@ class Rotor(_native.Rotor, Multivector):
         return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
 
     @staticmethod
+    def from_numpy_quaternion(q: Any) -> Rotor:
+        """From quaternions of the package numpy-quaternion, one or an array (...), divided by their norm."""
+        quaternion = optional("quaternion", "quaternion", "from_numpy_quaternion")
+        array = np.asarray(q)
+        if array.dtype != np.dtype(quaternion.quaternion):
+            raise TypeError(f"from_numpy_quaternion needs an array of dtype quaternion, got {array.dtype}")
+        return Rotor.from_quaternion(quaternion.as_float_array(array), order="wxyz")
+
+    @staticmethod
+    def from_euler(seq: str, angles: Any, degrees: bool = False) -> Rotor:
+        """From Euler angles (..., n) about n = 1 to 3 axes, in radians; named as SciPy names them.
+
+        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
+        so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
+        For one axis a single angle needs no array.
+        """
+        total: Any = Rotor.identity()
+        for turn in _euler.rotation_vectors(seq, angles, degrees):
+            total = Rotor.from_rotation_vector(turn) * total
+        result: Rotor = total
+        return result
+
+    @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
         """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
         return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
@@ -132,15 +152,14 @@ class Rotor(_native.Rotor, Multivector):
 
     def to_matrix(self) -> Any:
         """Rotation matrices (..., 3, 3) acting on columns."""
-        matrices = _computed("to_matrix", self._data)
-        return of(matrices).reshape(matrices, (*self.shape, 3, 3))
+        return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
         """Quaternions (..., 4), Hamilton's and active; the order must be said."""
         if _to_wxyz(order)[0] == 0:
             return _computed("to_quaternion", self._data)
         wxyz = _computed("to_quaternion", self._data)
-        return of(wxyz).stack([wxyz[..., k] for k in (1, 2, 3, 0)])
+        return taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
         """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
@@ -152,13 +171,35 @@ class Rotor(_native.Rotor, Multivector):
         rotation: Rotation = transform.Rotation.from_quat(self.to_quaternion(order="xyzw"))
         return rotation
 
+    def to_numpy_quaternion(self) -> Any:
+        """Return an array (...) of dtype quaternion, of the package numpy-quaternion."""
+        quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
+        return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
+
+    def to_euler(self, seq: str, degrees: bool = False) -> Array:
+        """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
+
+        The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same
+        ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
+        difference of the others is determined: the third angle is then 0, and the three angles give the
+        attitude as ever, so nothing is lost and nothing is warned of.
+        """
+        return _euler.to_euler(self, seq, degrees)
+
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
         if not is_float(self._data):
-            plane, angle = generic.plane_angle(of(self._data), self._data)
+            plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
             return Multivector._of(plane, _BIVECTOR), angle
         pairs = _computed("plane_angle", self._data)
         return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
+
+    def distance(self, other: Rotor) -> Any:
+        """Return the angle in [0, π] of the turn from this attitude to the other, whatever their signs.
+
+        A float, or an array of the batch shape; accurate however close the attitudes are.
+        """
+        return _geometry.distance(self, other)
 
     # --- action and algebra
 
@@ -172,8 +213,8 @@ class Rotor(_native.Rotor, Multivector):
         if not (is_float(a) and is_float(b)):
             if out is not None:
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {value.dtype}")
-            kind = of(a, b)
-            return value._like(generic.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
+            kind = kind_of(a, b)
+            return value._like(_generic.rotors.apply(kind, kind.asarray(a), kind.asarray(b), value._mask))
         batch, dtype = common_batch(self.shape, value.shape), np.result_type(a, b)
         a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
         result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)
@@ -182,6 +223,8 @@ class Rotor(_native.Rotor, Multivector):
 
     def log(self) -> Multivector:
         """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
+        if self._is_one:
+            return self._log_of_one()
         return Multivector._of(_computed("log", self._data), _BIVECTOR)
 
     def inverse(self) -> Rotor:
@@ -202,45 +245,11 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
-        if isinstance(n, int) and of(self._data).exact:
-            return Rotor._from_rows(generic.power(of(self._data), self._data, n))
+        if isinstance(n, int) and not is_float(self._data):
+            return Rotor._from_rows(_generic.rotors.power(kind_of(self._data), self._data, n))
         turn = self.log() * as_coefficients(n, "the power of a rotor")
         power: Rotor = turn.exp()
         return power
-
-
-def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
-    """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
-
-    The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
-    or −S.
-    """
-    for value in (R, S):
-        if not isinstance(value, Rotor):
-            raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
-    step = (~R * S)._data
-    shorter = Rotor._from_rows(np.where(step[..., :1] < 0, -step, step))
-    path: Rotor = R * shorter**t
-    return path
-
-
-def mean(R: Rotor, weights: Any = None) -> Rotor:
-    """Return the mean attitude of a batch (n,), whatever the signs: the Q that minimises ``Σ w |R − Q|²``.
-
-    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
-    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
-    ValueError where no attitude is closer than all others, as for half turns about three axes.
-    """
-    if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
-        raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
-    w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
-    if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
-        raise ValueError(f"weights must be {R.shape[0]} finite numbers >= 0, not all 0, got {w.tolist()}")
-    values, vectors = np.linalg.eigh((w[:, np.newaxis] * R._data).T @ R._data)
-    if values[3] - values[2] <= 8 * np.finfo(float).eps * values[3]:
-        raise ValueError("the rotors have no mean: two attitudes are equally close to all of them")
-    best = vectors[:, 3]
-    return Rotor.from_components(-best if best[0] < 0 else best)
 
 
 def _to_wxyz(order: str) -> list[int]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import common_batch, is_float
-from polhode._generic.coefficients import of
+from polhode._coefficients import kind_of
 from polhode._parts import with_grades
 from polhode._products import coerced, common_algebra
 
@@ -27,7 +27,7 @@ def complement(value: Multivector, right: bool) -> Multivector:
         signs = np.array([sign for _, sign in taken], dtype=data.dtype)
         return value._of(data[..., [place for place, _ in taken]] * signs, mask, algebra)
     parts = [data[..., place] if sign > 0 else -data[..., place] for place, sign in taken]
-    return value._of(of(data).stack(parts), mask, algebra)
+    return value._of(kind_of(data).stack(parts), mask, algebra)
 
 
 def regressive(left: Multivector, other: Any) -> Multivector:

@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release -p polhode-ga --example batch [rows]`
 
-use polhode_ga::batch::{Element, turn};
+use polhode_ga::batch::{Element, multiply_adds, turn};
 use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::table::{Algebra, Signature};
 use polhode_ga::threads::Threads;
 use std::time::Instant;
 
@@ -54,6 +55,24 @@ fn turning<T: Element>(what: &str, rows: usize, rotors: usize) {
     line::<T>(what, rows, 3 + if rotors == 1 { 0 } else { 4 }, 3, || turn(&r, &v, VECTOR, &mut out));
 }
 
+/// The multiply-adds that the machine can do in a nanosecond.
+fn peak() -> f64 {
+    let rate = |many| 1.0 / best(multiply_adds(many), || _ = multiply_adds(many));
+    rate(false).max(rate(true))
+}
+
+/// Full products in a larger algebra, beside the multiply-adds that they take.
+fn full(rows: usize, peak: f64, p: usize, q: usize, r: usize) {
+    let algebra = Algebra::new(Signature { p, q, r }).expect("few enough generators");
+    let all = Grades((1 << (p + q + r + 1)) - 1);
+    let plan = Plan::new(&algebra, Product::Geometric, all, all);
+    let count = rows * plan.sizes.0;
+    let (a, b, mut out) = (numbers::<f64>(count), numbers::<f64>(count), numbers::<f64>(count));
+    let ours = best(rows, || plan.run(&a, &b, &mut out));
+    let share = 100.0 * plan.terms.len() as f64 / ours / peak;
+    println!("{:<34}{ours:>8.2} ns{share:>20.0} % of the peak", format!("full * full, Cl({p},{q},{r})"));
+}
+
 fn main() {
     let asked = std::env::args().nth(1).and_then(|rows| rows.parse().ok());
     for rows in asked.map_or(vec![1_000_000, 1_000], |rows| vec![rows]) {
@@ -69,5 +88,10 @@ fn main() {
         turning::<f64>("R v ~R", rows, rows);
         turning::<f32>("R v ~R, f32", rows, rows);
         turning::<f64>("one R, many v", rows, 1);
+    }
+    let peak = peak();
+    println!("1000 rows, peak {:.0} GFLOP/s", 2.0 * peak);
+    for (p, q, r) in [(3, 0, 1), (4, 1, 0), (4, 4, 0)] {
+        full(1000, peak, p, q, r);
     }
 }

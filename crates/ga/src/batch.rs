@@ -3,9 +3,9 @@
 //! Each function says what it does to a row, and the same arithmetic as one loop over the lanes of a block
 //! of rows, which compilers vectorise.
 
-use crate::product::{Grades, Plan, Term};
+use crate::product::{Engine, Grades, Plan, Term};
 use crate::rotor::Rotor;
-pub use crate::simd::Element;
+pub use crate::simd::{Element, multiply_adds};
 use crate::simd::{Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
 use crate::threads::Threads;
@@ -146,10 +146,15 @@ impl Plan {
 
     fn run_on<T: Element>(&self, path: Path, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
         let (na, nb, nout) = self.sizes;
-        if self.is_geometric {
-            sweep(path, threads, &Geometric(self), (a, na), (b, nb), (out, nout));
-        } else {
-            sweep(path, threads, self, (a, na), (b, nb), (out, nout));
+        let (a, b, out) = ((a, na), (b, nb), (out, nout));
+        match &self.engine {
+            Engine::Terms => sweep(path, threads, self, a, b, out),
+            Engine::Geometric => sweep(path, threads, &Geometric(self), a, b, out),
+            // Blocks of more rows leave the first-level cache; of few rows, one of eight is enough.
+            Engine::Tiles(tiles) if out.0.len() > 8 * nout => {
+                sweep::<_, 16, _>(path, threads, tiles, a, b, out)
+            }
+            Engine::Tiles(tiles) => sweep::<_, 8, _>(path, threads, tiles, a, b, out),
         }
     }
 }
@@ -225,36 +230,94 @@ mod tests {
         plan.grades.indices(algebra).iter().map(|&k| full[k]).collect()
     }
 
-    /// Each row on each path, one row against many both ways, in several algebras: the same numbers as
-    /// the sum over the table, bit for bit.
-    #[test]
-    fn every_row_equals_the_table() {
-        for (p, q, r) in [(3, 0, 0), (2, 0, 0), (3, 0, 1), (4, 1, 0), (1, 3, 0)] {
-            let algebra = Algebra::new(Signature { p, q, r }).unwrap();
-            let all = Grades((1 << (algebra.signature().generators() + 1)) - 1);
-            let size = algebra.blades().len();
-            for product in Product::ALL {
-                let plan = Plan::new(&algebra, product, all, all);
-                let (n, special) = (ROWS[10], size == 8);
-                let (a, b) = (numbers(n * size, special), numbers(n * size + 5, false).split_off(5));
-                let row = |x: &[f64], i: usize| x[i * size..(i + 1) * size].to_vec();
-                let pick = |i: usize, j: usize| by_table(&algebra, product, &plan, &row(&a, i), &row(&b, j));
-                let each: Vec<f64> = (0..n).flat_map(|i| pick(i, i)).collect();
-                let one_a: Vec<f64> = (0..n).flat_map(|i| pick(0, i)).collect();
-                let one_b: Vec<f64> = (0..n).flat_map(|i| pick(i, 0)).collect();
-                for path in Path::available() {
-                    for rows in ROWS {
-                        let what = format!("{path:?} {:?} {product:?} {rows}", algebra.signature());
-                        let mut out = vec![0.5; rows * plan.sizes.2];
-                        let length = out.len();
-                        plan.run_on(path, Threads::ONE, &a[..rows * size], &b[..rows * size], &mut out);
-                        assert_same(&out, &each[..length], &what);
-                        plan.run_on(path, Threads::ONE, &a[..size], &b[..rows * size], &mut out);
-                        assert_same(&out, &one_a[..length], &what);
-                        plan.run_on(path, Threads::ONE, &a[..rows * size], &b[..size], &mut out);
-                        assert_same(&out, &one_b[..length], &what);
+    fn assert_near(got: &[f64], expected: &[f64], bound: f64, what: &str) {
+        for (i, (x, y)) in got.iter().zip(expected).enumerate() {
+            assert!((x - y).abs() <= bound, "{what}, number {i}: {x} {y}");
+        }
+    }
+
+    /// Each row on each path, one row against many both ways: the same numbers as the sum over the table,
+    /// bit for bit, or by tiles to the rounding of its terms.
+    fn check_table(algebra: &Algebra, product: Product, rows: &[usize]) {
+        let all = Grades((1 << (algebra.signature().generators() + 1)) - 1);
+        let size = algebra.blades().len();
+        let plan = Plan::new(algebra, product, all, all);
+        let (n, special) = (rows[rows.len() - 1], size == 8);
+        let (a, b) = (numbers(n * size, special), numbers(n * size + 5, false).split_off(5));
+        let row = |x: &[f64], i: usize| x[i * size..(i + 1) * size].to_vec();
+        let pick = |i: usize, j: usize| by_table(algebra, product, &plan, &row(&a, i), &row(&b, j));
+        let each: Vec<f64> = (0..n).flat_map(|i| pick(i, i)).collect();
+        let one_a: Vec<f64> = (0..n).flat_map(|i| pick(0, i)).collect();
+        let one_b: Vec<f64> = (0..n).flat_map(|i| pick(i, 0)).collect();
+        // Two sums of at most `size` terms, none above 1, are each rounded by ε/2 at every term.
+        let bound = (size * size) as f64 * f64::EPSILON;
+        let tiles = matches!(plan.engine, Engine::Tiles(_));
+        for path in Path::available() {
+            for &rows in rows {
+                let (many_a, many_b) = (&a[..rows * size], &b[..rows * size]);
+                for (a, b, expected) in
+                    [(many_a, many_b, &each), (&a[..size], many_b, &one_a), (many_a, &b[..size], &one_b)]
+                {
+                    let what = format!("{path:?} {:?} {product:?} {rows}", algebra.signature());
+                    let mut out = vec![0.5; rows * plan.sizes.2];
+                    plan.run_on(path, Threads::ONE, a, b, &mut out);
+                    let expected = &expected[..out.len()];
+                    if tiles {
+                        assert_near(&out, expected, bound, &what);
+                    } else {
+                        assert_same(&out, expected, &what);
                     }
                 }
+            }
+        }
+    }
+
+    /// Every signature of up to five generators.
+    #[test]
+    fn every_row_equals_the_table() {
+        for n in 0..=5 {
+            for p in 0..=n {
+                for q in 0..=n - p {
+                    let algebra = Algebra::new(Signature { p, q, r: n - p - q }).unwrap();
+                    let known =
+                        [(3, 0, 0), (2, 0, 0), (3, 0, 1), (4, 1, 0), (1, 3, 0)].contains(&(p, q, n - p - q));
+                    for product in Product::ALL {
+                        check_table(&algebra, product, if known { &ROWS } else { &[1, 8, 9, 17] });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Large ones: of every number of positive generators among the first three, and of two alone.
+    #[test]
+    fn rows_of_large_algebras_equal_the_table() {
+        for (p, q, r) in [(4, 2, 0), (0, 5, 1), (1, 2, 4), (2, 2, 2), (1, 1, 4), (4, 4, 0)] {
+            let algebra = Algebra::new(Signature { p, q, r }).unwrap();
+            let tiles = Plan::new(&algebra, Product::Geometric, Grades(511), Grades(511)).engine;
+            assert_eq!(matches!(tiles, Engine::Tiles(_)), p + q >= 3);
+            check_table(&algebra, Product::Geometric, &[1, 17]);
+        }
+    }
+
+    /// One row or many, alone or among threads: tiles round a row in one way.
+    #[test]
+    fn tiles_round_the_same_for_any_number_of_rows() {
+        let algebra = Algebra::new(Signature { p: 3, q: 0, r: 1 }).unwrap();
+        let plan = Plan::new(&algebra, Product::Geometric, Grades(31), Grades(31));
+        let rows = 80_003;
+        let (a, b) = (numbers(rows * 16, false), numbers(rows * 16 + 3, false).split_off(3));
+        for path in Path::available() {
+            let mut expected = vec![0.5; rows * 16];
+            plan.run_on(path, Threads::ONE, &a, &b, &mut expected);
+            let mut out = vec![0.5; rows * 16];
+            plan.run_on(path, Threads::new(7), &a, &b, &mut out);
+            assert_same(&out, &expected, &format!("{path:?}"));
+            for (row, expected) in expected.chunks(16).enumerate().take(40) {
+                let place = row * 16..(row + 1) * 16;
+                let mut out = [0.5; 16];
+                plan.run_on(path, Threads::ONE, &a[place.clone()], &b[place], &mut out);
+                assert_same(&out, expected, &format!("{path:?}, row {row}"));
             }
         }
     }

@@ -36,6 +36,7 @@ mod simd;
 mod sweep;
 pub mod table;
 pub mod threads;
+mod tile;
 pub mod values;
 
 pub use functions::MathError;

@@ -4,6 +4,7 @@
 //! handout's dot is the lowest grade, `abs(r − s)`, scalars included (`3·a = 3a`); its wedge the highest.
 
 use crate::table::{Algebra, G3};
+use crate::tile::Tiles;
 use std::sync::OnceLock;
 
 /// The products of the handout, and the contractions.
@@ -132,8 +133,20 @@ pub struct Plan {
     pub grades: Grades,
     /// The terms.
     pub terms: Vec<Term>,
-    /// Whether it is the geometric product of all grades in 3-d space, which is also written out.
-    pub(crate) is_geometric: bool,
+    /// How it is run.
+    pub(crate) engine: Engine,
+}
+
+/// The ways to run a plan.
+#[derive(Clone, Debug)]
+pub(crate) enum Engine {
+    /// Term by term.
+    Terms,
+    /// Written out: the geometric product of all grades in 3-d space.
+    Geometric,
+    /// The geometric product of all grades in a larger algebra. Terms are summed in another order, and
+    /// fused where the machine can, so that sums differ from the others' by a rounding for each term.
+    Tiles(Tiles),
 }
 
 impl Plan {
@@ -157,11 +170,14 @@ impl Plan {
             term.out = iout.binary_search(&term.out).expect("its grade is in the set");
         }
         found.sort_by_key(|t| (t.out, t.a));
-        let is_geometric = product == Product::Geometric
-            && algebra.signature() == G3.signature()
-            && Grades::ALL.within(ga)
-            && Grades::ALL.within(gb);
-        Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found, is_geometric }
+        let full = product == Product::Geometric
+            && [ia.len(), ib.len()].iter().all(|&size| size == algebra.blades().len());
+        let engine = if full && algebra.signature() == G3.signature() {
+            Engine::Geometric
+        } else {
+            Tiles::new(algebra).filter(|_| full).map_or(Engine::Terms, Engine::Tiles)
+        };
+        Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found, engine }
     }
 
     /// The plan in [`G3`], made once for each product and pair of grades.

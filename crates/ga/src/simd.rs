@@ -1,44 +1,53 @@
 //! Lanes: rows of numbers turned so that each component is contiguous, and the widest instructions of
 //! the machine to work on them.
 //!
-//! The arithmetic of a [`Kernel`] is plain loops over lanes, compiled once for each [`Path`]. No path
-//! fuses a product with a sum, so all of them give the same numbers bit for bit, on any machine. Only
-//! the turning of rows into lanes and back is written by hand, because compilers do it badly.
+//! The arithmetic of a [`Kernel`] is plain loops over lanes, compiled once for each [`Path`]. None fuses
+//! a product with a sum unless a kernel asks for it, so all give the same numbers bit for bit, on any
+//! machine; where one asks, the portable path rounds once more at each term. Only the turning of rows into
+//! lanes and back is written by hand, because compilers do it badly.
 //!
 //! This module holds all the unsafe code of the crate.
 #![allow(unsafe_code)]
 
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod squares;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+#[cfg(target_arch = "aarch64")]
+use neon::Registers;
 #[cfg(target_arch = "x86_64")]
 use x86::Registers;
 
 /// No registers by hand.
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 pub trait Registers {}
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 impl Registers for f32 {}
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 impl Registers for f64 {}
 
 /// Rows in a block: three operands of eight lanes stay in the first-level cache.
 pub(crate) const LANES: usize = 64;
 
-/// One component of a block of rows.
+/// One component of a block of `W` rows, a multiple of eight.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Lane(pub [f64; LANES]);
+pub(crate) struct Lane<const W: usize = LANES>(pub [f64; W]);
 
-impl Lane {
+impl<const W: usize> Lane<W> {
     /// The same number in every row.
-    pub const fn filled(x: f64) -> Lane {
-        Lane([x; LANES])
+    pub const fn filled(x: f64) -> Lane<W> {
+        const { assert!(W.is_multiple_of(8), "lanes are whole registers") };
+        Lane([x; W])
     }
 
     /// Room for as many numbers as the lanes hold.
-    pub fn flat<T: Element>(lanes: &mut [Lane]) -> &mut [T] {
-        let count = lanes.len() * LANES;
-        // SAFETY: a lane is an array of `LANES` numbers and nothing else; a `T` is no larger, and any bits
+    pub fn flat<T: Element>(lanes: &mut [Lane<W>]) -> &mut [T] {
+        let count = lanes.len() * W;
+        // SAFETY: a lane is an array of `W` numbers and nothing else; a `T` is no larger, and any bits
         // are one.
         unsafe { std::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), count) }
     }
@@ -64,16 +73,72 @@ impl Element for f32 {
 }
 
 /// A function of two rows. Both ways of computing it give the same numbers.
-pub(crate) trait Kernel: Sync {
+pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
     const FAST_ROWS: bool = false;
+
+    /// Below so many rows, turning them into lanes does not pay.
+    const FEW: usize = 8;
 
     /// One row. `out` may hold anything before.
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]);
 
     /// A block of rows. Implementations are `#[inline(always)]` down to the arithmetic, so that each path
     /// compiles them for its own instructions.
-    fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]);
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]);
+
+    /// The same where `mul_add` is one instruction; elsewhere it is a call, a hundred times slower.
+    #[inline(always)]
+    fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        self.block(a, b, out);
+    }
+}
+
+/// `N` independent chains of products and sums, as fast as the machine can.
+struct Chains<const N: usize>;
+
+impl<const N: usize> Chains<N> {
+    const LENGTH: usize = 1000;
+
+    #[inline(always)]
+    fn run(start: f64, multiply_add: impl Fn(f64) -> f64) -> f64 {
+        let mut chains: [f64; N] = std::array::from_fn(|i| start + i as f64);
+        for _ in 0..Self::LENGTH {
+            for x in &mut chains {
+                *x = multiply_add(*x);
+            }
+        }
+        chains.iter().sum()
+    }
+}
+
+impl<const N: usize> Kernel<8> for Chains<N> {
+    fn row(&self, _: &[f64], _: &[f64], _: &mut [f64]) {}
+
+    #[inline(always)]
+    fn block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
+        let (x, y) = (a[0].0[0], b[0].0[0]);
+        out[0].0[0] = Self::run(x, |z| z * x + y);
+    }
+
+    #[inline(always)]
+    fn fused_block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
+        let (x, y) = (a[0].0[0], b[0].0[0]);
+        out[0].0[0] = Self::run(x, |z| z.mul_add(x, y));
+    }
+}
+
+/// For measuring what a machine can do at most: does independent multiply-adds in registers, and says how
+/// many. Few enough chains fit the registers of AVX2, many enough hide the latency of AVX-512.
+#[doc(hidden)]
+pub fn multiply_adds(many: bool) -> usize {
+    fn run<const N: usize>() -> usize {
+        let (a, mut out) = (std::hint::black_box([Lane::filled(0.999)]), [Lane::filled(0.0)]);
+        Path::best().apply(&Chains::<N>, &a, &a, &mut out);
+        std::hint::black_box(out);
+        N * Chains::<N>::LENGTH
+    }
+    if many { run::<96>() } else { run::<48>() }
 }
 
 /// A set of instructions that this machine has. There is no other way to make one than to detect it.
@@ -87,6 +152,8 @@ enum Level {
     Avx2,
     #[cfg(target_arch = "x86_64")]
     Avx512,
+    #[cfg(target_arch = "aarch64")]
+    Neon,
 }
 
 impl Path {
@@ -95,9 +162,12 @@ impl Path {
         [
             Some(Level::Portable),
             #[cfg(target_arch = "x86_64")]
-            std::is_x86_feature_detected!("avx2").then_some(Level::Avx2),
+            (std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma"))
+                .then_some(Level::Avx2),
             #[cfg(target_arch = "x86_64")]
             std::is_x86_feature_detected!("avx512f").then_some(Level::Avx512),
+            #[cfg(target_arch = "aarch64")]
+            std::arch::is_aarch64_feature_detected!("neon").then_some(Level::Neon),
         ]
         .into_iter()
         .flatten()
@@ -114,8 +184,25 @@ impl Path {
         self.0 == Level::Portable
     }
 
+    /// Whether it can write past the caches.
+    pub fn streams(self) -> bool {
+        match self.0 {
+            Level::Portable => false,
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 | Level::Avx512 => true,
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => false,
+        }
+    }
+
     /// Applies a kernel to a block.
-    pub fn apply<K: Kernel>(self, kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+    pub fn apply<const W: usize, K: Kernel<W>>(
+        self,
+        kernel: &K,
+        a: &[Lane<W>],
+        b: &[Lane<W>],
+        out: &mut [Lane<W>],
+    ) {
         match self.0 {
             Level::Portable => kernel.block(a, b, out),
             // SAFETY: the instructions were detected.
@@ -124,13 +211,16 @@ impl Path {
             // SAFETY: the instructions were detected.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::apply_avx512(kernel, a, b, out) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::apply_neon(kernel, a, b, out) },
         }
     }
 
-    /// Turns at most [`LANES`] rows of `lanes.len()` numbers into lanes. Places beyond the rows keep what
+    /// Turns at most `W` rows of `lanes.len()` numbers into lanes. Places beyond the rows keep what
     /// they held.
-    pub fn gather<T: Element>(self, rows: &[T], lanes: &mut [Lane]) {
-        assert!(!lanes.is_empty() && rows.len() <= lanes.len() * LANES);
+    pub fn gather<T: Element, const W: usize>(self, rows: &[T], lanes: &mut [Lane<W>]) {
+        assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
         let done = match self.0 {
             Level::Portable => 0,
             // SAFETY: the instructions were detected, and the numbers fit the lanes.
@@ -139,6 +229,9 @@ impl Path {
             // SAFETY: the instructions were detected, and the numbers fit the lanes.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::gather_avx512(rows, lanes) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::gather_neon(rows, lanes) },
         };
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact(size).enumerate() {
@@ -149,8 +242,8 @@ impl Path {
     }
 
     /// Turns lanes into rows: the inverse of [`Path::gather`].
-    pub fn scatter<T: Element>(self, lanes: &[Lane], rows: &mut [T]) {
-        assert!(!lanes.is_empty() && rows.len() <= lanes.len() * LANES);
+    pub fn scatter<T: Element, const W: usize>(self, lanes: &[Lane<W>], rows: &mut [T]) {
+        assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
         let done = match self.0 {
             Level::Portable => 0,
             // SAFETY: the instructions were detected, and the numbers fit the lanes.
@@ -159,6 +252,9 @@ impl Path {
             // SAFETY: the instructions were detected, and the numbers fit the lanes.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { x86::scatter_avx512(lanes, rows) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::scatter_neon(lanes, rows) },
         };
         let size = lanes.len();
         for (row, values) in rows[done * size..].chunks_exact_mut(size).enumerate() {
@@ -174,6 +270,8 @@ impl Path {
         assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
         match self.0 {
             Level::Portable => to.copy_from_slice(from),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => to.copy_from_slice(from),
             // SAFETY: the instructions were detected; lengths and alignment are as they must be.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 => unsafe { x86::stream_avx2(from, to) },
@@ -204,12 +302,12 @@ pub(crate) fn to_next_line<T>(numbers: &[T]) -> usize {
 mod tests {
     use super::*;
 
-    fn round_trip<T: Element + PartialEq + std::fmt::Debug>() {
+    fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
         for path in Path::available() {
             for size in (1..=20).chain([32, 64]) {
-                for rows in (0..20).chain([31, 32, 33, 56, 57, 63, LANES]) {
+                for rows in (0..20).chain([31, 32, 33, 56, 57, 63, 64]).filter(|&rows| rows <= W) {
                     let numbers: Vec<T> = (0..rows * size).map(|i| T::nearest(i as f64)).collect();
-                    let mut lanes = vec![Lane::filled(-1.0); size];
+                    let mut lanes = vec![Lane::<W>::filled(-1.0); size];
                     path.gather(&numbers, &mut lanes);
                     for (k, lane) in lanes.iter().enumerate() {
                         for (row, &x) in lane.0.iter().enumerate() {
@@ -228,8 +326,10 @@ mod tests {
     /// Numbers of rows around the widths of the registers, and every number of components.
     #[test]
     fn lanes_hold_the_rows_and_give_them_back() {
-        round_trip::<f64>();
-        round_trip::<f32>();
+        round_trip::<f64, 64>();
+        round_trip::<f32, 64>();
+        round_trip::<f64, 8>();
+        round_trip::<f32, 32>();
     }
 
     fn streamed<T: Element + PartialEq + std::fmt::Debug>() {

@@ -4,12 +4,9 @@
 //! contiguous; the kernel works on the lanes; the block is turned back. Beyond the caches all that counts
 //! is memory: rows are asked for ahead of time, and results go past the caches.
 
-use crate::simd::{Element, Kernel, LANES, Lane, Path, in_line, to_next_line};
+use crate::simd::{Element, Kernel, Lane, Path, in_line, to_next_line};
 use crate::threads::Threads;
 use std::ops::Range;
-
-/// Below so many rows, turning them into lanes does not pay.
-const FEW: usize = 8;
 
 /// From so many bytes on, factors and product together, the product goes past the caches.
 pub(crate) const STREAMED: usize = 16 << 20;
@@ -44,7 +41,7 @@ impl<'a, T: Element> Factor<'a, T> {
     }
 
     /// Fills the lanes from rows, or once and for all, at the first block, from the one row.
-    fn load(&self, path: Path, first: usize, count: usize, lanes: &mut [Lane]) {
+    fn load<const W: usize>(&self, path: Path, first: usize, count: usize, lanes: &mut [Lane<W>]) {
         if !self.one {
             path.gather(self.rows(first, count), lanes);
         } else if first == 0 {
@@ -66,7 +63,7 @@ struct Stream<'a, T> {
 }
 
 impl<T: Element> Stream<'_, T> {
-    fn write(&mut self, lanes: &[Lane], count: usize) {
+    fn write<const W: usize>(&mut self, lanes: &[Lane<W>], count: usize) {
         let filled = self.waiting + count * lanes.len();
         self.path.scatter(lanes, &mut self.buffer[self.waiting..filled]);
         let out = &mut self.out[self.written..self.written + filled];
@@ -87,7 +84,12 @@ impl<T: Element> Stream<'_, T> {
 }
 
 /// Applies a kernel to the rows one by one.
-fn by_rows<T: Element, K: Kernel>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, nout): (&mut [T], usize)) {
+fn by_rows<T: Element, const W: usize, K: Kernel<W>>(
+    kernel: &K,
+    a: Factor<T>,
+    b: Factor<T>,
+    (out, nout): (&mut [T], usize),
+) {
     let mut numbers = vec![0.0; a.size + b.size + nout];
     let (x, rest) = numbers.split_at_mut(a.size);
     let (y, z) = rest.split_at_mut(b.size);
@@ -105,7 +107,7 @@ fn by_rows<T: Element, K: Kernel>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, 
 }
 
 /// Applies a kernel to all rows of `(numbers, numbers in a row)`.
-pub(crate) fn sweep<T: Element, K: Kernel>(
+pub(crate) fn sweep<T: Element, const W: usize, K: Kernel<W>>(
     path: Path,
     threads: Threads,
     kernel: &K,
@@ -117,14 +119,14 @@ pub(crate) fn sweep<T: Element, K: Kernel>(
     assert_eq!(out.len(), total * nout, "the result is not a whole number of rows");
     let (a, b) = (Factor::new(a, na, total), Factor::new(b, nb, total));
     let bytes = size_of_val(a.data) + size_of_val(b.data) + size_of_val(out);
-    let streamed = !path.is_portable() && bytes >= STREAMED;
+    let streamed = path.streams() && bytes >= STREAMED;
     threads.for_each_piece(SHARED / (na + nb + nout), nout, out, |rows, out| {
         let (a, b) = (a.piece(rows.clone()), b.piece(rows));
         sweep_piece(path, streamed, kernel, a, b, (out, nout));
     });
 }
 
-fn sweep_piece<T: Element, K: Kernel>(
+fn sweep_piece<T: Element, const W: usize, K: Kernel<W>>(
     path: Path,
     streamed: bool,
     kernel: &K,
@@ -133,14 +135,15 @@ fn sweep_piece<T: Element, K: Kernel>(
     (out, nout): (&mut [T], usize),
 ) {
     let total = out.len() / nout;
-    if total < FEW || K::FAST_ROWS && path.is_portable() {
+    if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(kernel, a, b, (out, nout));
     }
-    let mut lanes = vec![Lane::filled(0.0); a.size + b.size + nout + if streamed { nout + 1 } else { 0 }];
+    let mut lanes =
+        vec![Lane::<W>::filled(0.0); a.size + b.size + nout + if streamed { nout + 2 } else { 0 }];
     let (a_lanes, rest) = lanes.split_at_mut(a.size);
     let (b_lanes, rest) = rest.split_at_mut(b.size);
     let (out_lanes, buffer) = rest.split_at_mut(nout);
-    let mut block = |first, count, out: &mut [Lane]| {
+    let mut block = |first, count, out: &mut [Lane<W>]| {
         a.load(path, first, count, a_lanes);
         b.load(path, first, count, b_lanes);
         path.apply(kernel, a_lanes, b_lanes, out);
@@ -148,15 +151,15 @@ fn sweep_piece<T: Element, K: Kernel>(
     if streamed {
         let buffer = Lane::flat(buffer);
         let mut stream = Stream { path, out, written: 0, buffer, waiting: 0 };
-        for first in (0..total).step_by(LANES) {
-            let count = LANES.min(total - first);
+        for first in (0..total).step_by(W) {
+            let count = W.min(total - first);
             block(first, count, out_lanes);
             stream.write(out_lanes, count);
         }
         stream.finish();
     } else {
-        for (i, rows) in out.chunks_mut(LANES * nout).enumerate() {
-            block(i * LANES, rows.len() / nout, out_lanes);
+        for (i, rows) in out.chunks_mut(W * nout).enumerate() {
+            block(i * W, rows.len() / nout, out_lanes);
             path.scatter(out_lanes, rows);
         }
     }

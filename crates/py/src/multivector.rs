@@ -4,12 +4,13 @@
 use crate::arrays::bad;
 use crate::signature::{Algebra, g3};
 use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
+use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Product};
-use polhode_ga::{Graded, Rotor as UnitRotor};
+use polhode_ga::{Graded, Multivector as FullMultivector, Rotor as UnitRotor};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyInt, PyType};
+use pyo3::types::{PyFloat, PyInt, PyList, PyTuple, PyType};
 
 type Object<'py> = PyResult<Bound<'py, PyAny>>;
 
@@ -74,6 +75,31 @@ fn operand(x: &Bound<'_, PyAny>) -> Operand {
         };
     }
     number(x).map_or(Operand::Other, Operand::Number)
+}
+
+/// The numbers of a short list or tuple, and how many they are.
+fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
+    let mut row = [0.0; 8];
+    let mut count = 0;
+    let mut take = |x: &Bound<'_, PyAny>| {
+        let x = x.cast_exact::<PyFloat>().map(|x| x.value()).ok().or_else(|| {
+            let whole: i64 = x.cast_exact::<PyInt>().ok()?.extract().ok()?;
+            (whole.unsigned_abs() <= 1 << 53).then_some(whole as f64)
+        })?;
+        *row.get_mut(count)? = x;
+        count += 1;
+        Some(())
+    };
+    if let Ok(list) = numbers.cast_exact::<PyList>() {
+        for x in list.iter().take(9) {
+            take(&x)?;
+        }
+    } else {
+        for x in numbers.cast_exact::<PyTuple>().ok()?.iter().take(9) {
+            take(&x)?;
+        }
+    }
+    Some((row, count))
 }
 
 impl Multivector {
@@ -202,6 +228,34 @@ impl Multivector {
             Held::One(graded) => graded.grades().0,
             Held::Many { grades, .. } => grades.0,
         }
+    }
+
+    /// A single value of 3-d space from a list or tuple of as many floats, or integers that floats hold, as the
+    /// grades have components; None of anything else.
+    #[staticmethod]
+    fn _of_numbers<'py>(py: Python<'py>, numbers: &Bound<'py, PyAny>, grades: u16) -> Object<'py> {
+        match row(numbers).and_then(|(row, count)| Graded::new(&row[..count], Grades(grades))) {
+            Some(value) => one(py, value),
+            None => Ok(py.None().into_bound(py)),
+        }
+    }
+
+    /// `inverse`, `exp`, `log` or `sqrt` of a single value; of a bivector, `exp` is a Rotor.
+    fn _function_of_one<'py>(&self, py: Python<'py>, name: &str) -> Object<'py> {
+        let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
+        let value = self.single().ok_or_else(|| bad("not a single value of 3-d space"))?;
+        let full = value.full();
+        let grades = f.grades(value.grades());
+        let result = Graded::new(&f.apply(FullMultivector(full)).map_err(bad)?.0, Grades::ALL);
+        let result = result.unwrap_or_default().with_grades(grades);
+        let others = [full[0], full[1], full[2], full[3], full[7]];
+        let unit = f == Function::Exp && grades == Grades::EVEN && others == [0.0; 5];
+        wrap(py, Held::One(result), unit)
+    }
+
+    /// The norm of a single value.
+    fn _norm_of_one(&self) -> f64 {
+        self.single().map_or(f64::NAN, |value| FullMultivector(value.full()).norm())
     }
 
     /// Whether it is a single value of 3-d space over float64, held inline.
@@ -378,6 +432,13 @@ impl Rotor {
     #[staticmethod]
     fn _from_rows<'py>(py: Python<'py>, data: Bound<'py, PyAny>) -> Object<'py> {
         wrap(py, held(py, data, Grades::EVEN, None)?, true)
+    }
+
+    /// The logarithm of a single rotor.
+    fn _log_of_one<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        let value = slf.as_super().get().single().ok_or_else(|| bad("not a single rotor"))?;
+        let log = Graded::new(&unit_rotor(value).log().0, Grades::BIVECTOR);
+        one(slf.py(), log.unwrap_or_default())
     }
 
     fn __call__<'py>(slf: &Bound<'py, Self>, x: &Bound<'py, PyAny>) -> Object<'py> {

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from polhode._generic.closed_forms import free_root
 from polhode._generic.coefficients import Coefficients
-from polhode._generic.exact import call, divide, is_symbolic, is_zero, sqrt
+from polhode._generic.exact import call, divide, is_symbolic, is_zero
 from polhode._generic.functions import by_rows, components, require_in_range
 from polhode._generic.numeric import Numeric
 from polhode._generic.products import Term, product
@@ -126,7 +127,7 @@ def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     small, turns = d.abs(w) < 1, w < 0
     near = d.where(small, w, 0.0)
     x = scale * d.sqrt(d.where(small, 1.0, d.abs(scaled)))
-    # Only where it is a boost may x be exponentiated; exponents are added first, as their sum may be small.
+    # Only of a boost is x an exponent; the exponents are added first, as their sum may be small.
     boost, turn = d.where(turns, 1.0, x), d.where(turns, x, 1.0)
     plus, minus = 0.5 * d.exp(s + boost), 0.5 * d.exp(s - boost)
     factor = d.exp(d.where(small | turns, s, 0.0))
@@ -183,11 +184,11 @@ def _exp_row(terms: Sequence[Term], m: list[Any]) -> list[Any]:
     w = square[0]
     if is_zero(w):
         cosh, sinhc = 1, 1
-    elif (not is_symbolic(w) and w < 0) or (is_symbolic(w) and w.is_nonpositive):
-        root = sqrt(-w)
+    elif w.is_nonpositive if is_symbolic(w) else w < 0:
+        root = free_root(-w)
         cosh, sinhc = call("cos", root), divide(call("sin", root), root)
     else:
-        root = sqrt(w)
+        root = free_root(w)
         cosh, sinhc = call("cosh", root), divide(call("sinh", root), root)
     factor = call("exp", s)
     return [factor * cosh, *(factor * sinhc * x for x in v[1:])]

@@ -190,11 +190,11 @@ def _simple_root(m: Row, w: Central) -> Central:
         return _sqrt(w)
     bivector = all(is_zero(a) for a in m[1:4])
     if bivector or not (is_symbolic(w.re) or w.re >= 0):
-        return Central(0, _free_root(-w.re))
-    return Central(_free_root(w.re), 0)
+        return Central(0, free_root(-w.re))
+    return Central(free_root(w.re), 0)
 
 
-def _free_root(x: Any) -> Any:
+def free_root(x: Any) -> Any:
     """A root of x of either sign."""
     root = sqrt(x)
     return sys.modules["sympy"].powdenest(root, force=True) if is_symbolic(root) else root

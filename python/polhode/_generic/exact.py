@@ -112,10 +112,32 @@ def divide(x: Any, y: Any) -> Any:
 
 
 def is_zero(x: Any) -> bool:
-    """Whether x is exactly 0, also of an expression that only proves to be 0, as ``1 − sin² − cos²``."""
-    if is_symbolic(x):
-        return x.is_zero is True or (x.is_zero is None and x.equals(0) is True)
-    return bool(x == 0)
+    """Whether x is 0; an expression such as ``1 − sin² − cos²`` also if it is only found to be."""
+    if not is_symbolic(x):
+        return bool(x == 0)
+    if x.is_zero is not None or x.is_number:
+        return x.is_zero is True or (x.is_zero is None and _is_tiny(x))
+    return _is_tiny(x.subs(_point(x, 1))) and _is_tiny(x.subs(_point(x, -1)))
+
+
+def _is_tiny(number: Any) -> bool:
+    """Whether thirty digits of an expression are 0. Those that have no digits do not count as 0."""
+    value = number.evalf(30)
+    return bool(value.is_number and abs(value) < 1e-20)
+
+
+def _point(x: Any, sign: int) -> dict[Any, Any]:
+    """Unlikely values for the symbols and unknown functions in x, of this sign where they may have it.
+
+    An expression that vanishes at two such points vanishes; to simplify it could take minutes.
+    """
+    sympy = sys.modules["sympy"]
+    unknown = x.atoms(sympy.core.function.AppliedUndef, sympy.Derivative) | x.free_symbols
+    values = {}
+    for k, symbol in enumerate(sorted(unknown, key=str)):
+        size = sympy.Rational(sympy.prime(k + 20), 97)
+        values[symbol] = size if symbol.is_nonnegative else -size if symbol.is_nonpositive else sign * size
+    return values
 
 
 def is_finite(x: Any) -> bool:

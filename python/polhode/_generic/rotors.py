@@ -159,7 +159,7 @@ def plane_angle(d: Coefficients, r: Array) -> tuple[Array, Array]:
     """Return unit planes (..., 3) and angles (...) in [0, 2π]; for R = ±1 the plane is e1∧e2."""
     if not isinstance(d, Numeric):
         pairs = by_rows(exact_rotors.plane_angle, r, [0, 1, 2, 3])
-        return pairs[..., :3], pairs[..., 3]
+        return pairs[..., :3], pairs[..., 3][()]
     s, *b = components(r)
     with np.errstate(all="ignore"):
         plane = d.direction([-x for x in b], _E12)

@@ -204,7 +204,7 @@ def _near_and_root(d: Numeric, zeta: Central, w: Central) -> tuple[Any, Central]
     plus, minus = zeta + root, zeta - root
     turn = d.atan2(plus.im, plus.re) - d.atan2(minus.im, minus.re)
     small = w.square() < (_NEAR * zeta.square()) * (_NEAR * zeta.square())
-    return small & (d.abs(turn) < math.pi), root
+    return small & ((d.abs(turn) < math.pi) | (w.square() == 0)), root
 
 
 def _is_negative(d: Numeric, m: Components) -> Any:

@@ -9,15 +9,18 @@
 //! In the ring nothing mixes the sizes of the parts: how often to double follows from the angles alone,
 //! however far a translation or boosted a frame.
 
-use super::pair::{Pair, Ring};
-use super::{Calculus, grade, part, scaled};
+use super::pair::{Pair, Ring, SPLITS};
+use super::{Calculus, add_scaled, grade, part, scaled};
 use crate::functions::MathError;
 use crate::values::{norm, scale_of};
 
 /// Beyond this `cosh` and `sinh` are exponentials that no longer nearly cancel.
 const LARGE: f64 = 1.0;
 
-/// Beyond this angle, in halvings, the rounding of the argument alone is a whole turn.
+/// Below this part of a bivector its half counts as small.
+const SMALL_HALF: f64 = 0.25;
+
+/// Beyond this binary logarithm of an angle its rounding alone may be a turn.
 const MOST_HALVINGS: f64 = 52.0;
 
 /// Terms of `exp`: for a size of at most 1/2 the next is below 2⁻⁵³ of the sum.
@@ -41,53 +44,61 @@ impl Calculus {
         let square = self.product(&scaled(&v, 1.0 / scale), &scaled(&v, 1.0 / scale));
         let rest = norm(&square[1..]);
         if rest <= 4.0 * f64::EPSILON * (norm(&v) / scale).powi(2) {
-            return Ok(exp_of_simple(s, &v, square[0], scale));
+            let (c, phi) = cosh_sinhc(s, square[0], scale);
+            let mut exp = scaled(&v, phi);
+            exp[0] = c;
+            return Ok(exp);
         }
         if self.generators <= 5 && (0..m.len()).all(|b| grade(b) == 2 || v[b] == 0.0) {
             return self.exp_of_bivector(s, &v);
         }
-        self.exp_by_squaring(s, &v)
+        Ok(times_exp(self.exp_by_squaring(&v)?, s))
     }
 
     /// For `V² = S` in the ring of pairs.
     fn exp_of_bivector(&self, s: f64, v: &[f64]) -> Result<Vec<f64>, MathError> {
         let square = self.product(v, v);
-        let mut unit = part(&square, |k| k == 4);
-        let y = norm(&unit);
-        if y > 0.0 {
-            unit.iter_mut().for_each(|x| *x /= y);
+        let (unit, y) = unit_of_grade_4(&square);
+        let q = self.scalar_product(&unit, &unit);
+        let (ring, full) = (Ring { q }, Pair { x: square[0], y });
+        let halvings = halvings(0.5 * ring.radius(full).log2())?;
+        let mut exp = vec![0.0; v.len()];
+        if q > SPLITS {
+            for root in [q.sqrt(), -q.sqrt()] {
+                let half = self.half(v, &unit, root);
+                let (c, phi) = cosh_sinhc(s, 2.0 * self.scalar_product(&half, &half), 1.0);
+                exp[0] += 0.5 * c;
+                add_scaled(&mut exp, &unit, 0.5 * c / root);
+                add_scaled(&mut exp, &half, phi);
+            }
+            return Ok(exp);
         }
-        let ring = Ring { q: self.scalar_product(&unit, &unit) };
-        let full = Pair { x: square[0], y };
-        let halvings = (0.5 * ring.radius(full).log2() + 1.0).ceil().max(0.0);
-        if halvings.is_nan() || halvings > MOST_HALVINGS {
-            return Err(MathError::AngleTooLarge);
-        }
-        let mut z = full.scale((-2.0 * halvings).exp2());
-        let (mut c, mut phi) = (ring.series(&COSH, z), ring.series(&SINHC, z));
-        for _ in 0..halvings as u32 {
-            // cosh 2x = cosh² x + sinh² x, sinh 2x / 2x = cosh x · sinh x / x.
-            let sinh_squared = ring.mul(z, ring.mul(phi, phi));
-            (c, phi) = (ring.mul(c, c).plus(sinh_squared), ring.mul(c, phi));
-            z = z.scale(4.0);
-        }
-        let (e, turned) = (s.exp(), self.product(v, &unit));
-        let of = |b: usize| match grade(b) {
-            0 => c.x,
-            2 => phi.x * v[b] + phi.y * turned[b],
-            _ => c.y * unit[b],
-        };
-        Ok((0..v.len()).map(|b| e * of(b)).collect())
+        let (c, phi) = cosh_sinhc_of_pair(ring, full, halvings);
+        exp[0] = c.x;
+        add_scaled(&mut exp, &unit, c.y);
+        add_scaled(&mut exp, v, phi.x);
+        add_scaled(&mut exp, &part(&self.product(v, &unit), |k| k == 2), phi.y);
+        Ok(times_exp(exp, s))
     }
 
-    /// By the series of `exp(M/2ᵏ) − 1`; squaring `1 + E` as `2E + E²` keeps small parts exact.
-    fn exp_by_squaring(&self, s: f64, v: &[f64]) -> Result<Vec<f64>, MathError> {
+    /// The half `P F` of a bivector, with the idempotent `P = ½(1 + U/root)`, `root² = U²`, for U of
+    /// grade 4 that commutes with it. In a small half a second P takes out the rounding of the first; the
+    /// halves of a nearly simple one are not small, and must remain F in sum, for U is uncertain.
+    pub(super) fn half(&self, f: &[f64], unit: &[f64], root: f64) -> Vec<f64> {
+        let halve = |f: &[f64]| {
+            let mut half = part(&self.product(f, unit), |k| k == 2);
+            half.iter_mut().zip(f).for_each(|(h, f)| *h = 0.5 * (f + *h / root));
+            half
+        };
+        let half = halve(f);
+        if norm(&half) < SMALL_HALF * norm(f) { halve(&half) } else { half }
+    }
+
+    /// By the series of `exp(V/2ᵏ) − 1`; squaring `1 + E` as `2E + E²` keeps small parts exact.
+    fn exp_by_squaring(&self, v: &[f64]) -> Result<Vec<f64>, MathError> {
         let size: f64 = v.iter().map(|x| x.abs()).sum();
-        let halvings = (size.log2() + 1.0).ceil().max(0.0);
-        if halvings.is_nan() || halvings > MOST_HALVINGS {
-            return Err(MathError::AngleTooLarge);
-        }
-        let small = scaled(v, (-halvings).exp2());
+        let halvings = halvings(size.log2())?;
+        let small = scaled(v, (-f64::from(halvings)).exp2());
         // Horner: E = V(1 + V/2(1 + V/3(1 + …))).
         let mut e = small.clone();
         for j in (2..=TERMS).rev() {
@@ -95,10 +106,7 @@ impl Calculus {
             e[0] += 1.0;
             e = self.product(&small, &e);
         }
-        let factor = s * (-halvings).exp2();
-        e.iter_mut().for_each(|x| *x *= factor.exp());
-        e[0] += factor.exp_m1();
-        for _ in 0..halvings as u32 {
+        for _ in 0..halvings {
             let square = self.product(&e, &e);
             e.iter_mut().zip(square).for_each(|(x, y)| *x = 2.0 * *x + y);
         }
@@ -107,11 +115,18 @@ impl Calculus {
     }
 }
 
-/// `e^s (cosh √w + V sinh √w / √w)` for `V² = w`, given `w / scale²`. For a large root the exponents are
-/// added first: `e^(s ± √w)` may exist where `cosh √w` does not.
-fn exp_of_simple(s: f64, v: &[f64], w: f64, scale: f64) -> Vec<f64> {
+/// The part of grade 4 as a unit, and its size.
+pub(super) fn unit_of_grade_4(m: &[f64]) -> (Vec<f64>, f64) {
+    let four = part(m, |k| k == 4);
+    let size = norm(&four);
+    (if size > 0.0 { scaled(&four, 1.0 / size) } else { four }, size)
+}
+
+/// `e^s cosh √w` and `e^s sinh √w / √w`, given `w / scale²`. For a large root the exponents are added
+/// first: `e^(s ± √w)` may exist where `cosh √w` does not.
+fn cosh_sinhc(s: f64, w: f64, scale: f64) -> (f64, f64) {
     let root = w.abs().sqrt() * scale;
-    let (c, phi) = if root == 0.0 {
+    if root == 0.0 {
         (s.exp(), s.exp())
     } else if w < 0.0 {
         (s.exp() * root.cos(), s.exp() * (root.sin() / root))
@@ -120,10 +135,35 @@ fn exp_of_simple(s: f64, v: &[f64], w: f64, scale: f64) -> Vec<f64> {
         (plus + minus, (plus - minus) / root)
     } else {
         (s.exp() * root.cosh(), s.exp() * (root.sinh() / root))
-    };
-    let mut out = scaled(v, phi);
-    out[0] = c;
-    out
+    }
+}
+
+/// How often to halve an argument of this binary logarithm to reach 1/2; an error beyond all certainty.
+fn halvings(log2: f64) -> Result<u32, MathError> {
+    if log2.is_nan() || log2 > MOST_HALVINGS {
+        return Err(MathError::AngleTooLarge);
+    }
+    Ok((log2 + 1.0).ceil().max(0.0) as u32)
+}
+
+/// `e^s M`, where `e^s` may be out of range and the product in it.
+fn times_exp(mut m: Vec<f64>, s: f64) -> Vec<f64> {
+    let root = (0.5 * s).exp();
+    m.iter_mut().for_each(|x| *x = *x * root * root);
+    m
+}
+
+/// `cosh √S` and `sinh √S / √S` by series and doubling.
+fn cosh_sinhc_of_pair(ring: Ring, square: Pair, halvings: u32) -> (Pair, Pair) {
+    let mut z = square.scale((-2.0 * f64::from(halvings)).exp2());
+    let (mut c, mut phi) = (ring.series(&COSH, z), ring.series(&SINHC, z));
+    for _ in 0..halvings {
+        // cosh 2x = cosh² x + sinh² x, sinh 2x / 2x = cosh x · sinh x / x.
+        let sinh_squared = ring.mul(z, ring.mul(phi, phi));
+        (c, phi) = (ring.mul(c, c).plus(sinh_squared), ring.mul(c, phi));
+        z = z.scale(4.0);
+    }
+    (c, phi)
 }
 
 /// `1/(2j)!`, the series of `cosh √z`; for |z| <= 1/4 the next term is below 2⁻⁵³.

@@ -68,7 +68,7 @@ impl Calculus {
         let holds = |parity: u32| (0..m.len()).any(|b| m[b] != 0.0 && grade(b) % 2 == parity);
         let unknowns: Vec<usize> = match (holds(0), holds(1)) {
             (true, true) => (0..m.len()).collect(),
-            (even, _) => (0..m.len()).filter(|&b| (grade(b) % 2 == 0) == even).collect(),
+            (even, _) => (0..m.len()).filter(|&b| grade(b).is_multiple_of(2) == even).collect(),
         };
         // The product is even: its blades are the unknown ones, or each of these times a generator.
         let flip = usize::from(!holds(0));

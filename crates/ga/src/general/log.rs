@@ -17,17 +17,22 @@
 //!
 //! Every result is checked: `exp(log R)` must be R again.
 
-use super::pair::{Pair, Ring};
-use super::{Calculus, add_scaled, grade, part, reverse, scaled};
+use super::exp::unit_of_grade_4;
+use super::pair::{Pair, Ring, SPLITS};
+use super::roots::symmetric_eigen;
+use super::{Calculus, add_scaled, dot, grade, part, reverse, scaled};
 use crate::functions::MathError;
 use crate::values::{norm, scale_of};
 use std::f64::consts::FRAC_PI_2;
 
 /// How far `R~R` may be from a number, and `exp(log R)` from R per unit of `1 + |log R|`.
-pub const VERSOR_TOLERANCE: f64 = 1e-12;
+const VERSOR_TOLERANCE: f64 = 1e-12;
 
 /// The most that the size of a logarithm may loosen its check.
 const MOST_LENIENT: f64 = 1e3;
+
+/// No logarithm is given that is less certain than this, relative to R.
+const MOST_TOLERANT: f64 = 1e-8;
 
 /// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
@@ -49,8 +54,10 @@ impl Calculus {
     /// The logarithm `ln|M| + B`, B a bivector, of a positive number times an even versor; `exp(log M) = M`.
     /// `log 1 = 0`; `log(−1) = π E` with E the first basis plane of square −1.
     ///
-    /// With up to five generators it is found wherever there is one. With more, where the sum of the
-    /// angles of B over its planes is below π, and in some other cases; otherwise it is an error.
+    /// With up to five generators it is found wherever there is one, as far as rounding lets it be seen:
+    /// with two generators or more of either sign, a large boost may drown the rotation beside it. With
+    /// more generators, where the sum of the angles of B over its planes is below π, and in most other
+    /// cases. What is not found is an error.
     pub fn log(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let polar = self.polar(&self.read(m)?)?.ok_or(MathError::NoLogarithm)?;
         let mut log = polar.bivector;
@@ -106,7 +113,8 @@ impl Calculus {
 
     /// The bivector B with `exp B = R`.
     fn log_of_unit(&self, r: &[f64]) -> Result<Vec<f64>, MathError> {
-        let found = self.checked_log(r).or_else(|| {
+        let principal = self.principal_log(r).filter(|log| self.is_log(log, r));
+        let found = principal.or_else(|| {
             self.commuting_planes(r).into_iter().find_map(|plane| {
                 let y = scaled(&plane, FRAC_PI_2);
                 let rest = self.product(r, &self.exp_bits(&scaled(&y, -1.0)).ok()?);
@@ -118,110 +126,160 @@ impl Calculus {
         found.ok_or(MathError::NoBivectorLogarithm)
     }
 
-    fn checked_log(&self, r: &[f64]) -> Option<Vec<f64>> {
-        self.principal_log(r).filter(|log| self.is_log(log, r))
-    }
-
-    /// Whether `exp(log) = R`.
+    /// Whether `exp(log) = R`. The rounding of a large R leaves its size, from `R~R = 1`, uncertain by
+    /// `ε|R|²`, which the halves of R that are not large feel.
     fn is_log(&self, log: &[f64], r: &[f64]) -> bool {
         let Ok(mut difference) = self.exp_bits(log) else { return false };
         add_scaled(&mut difference, r, -1.0);
-        norm(&difference) <= VERSOR_TOLERANCE * norm(r) * (1.0 + norm(log)).min(MOST_LENIENT)
+        let tolerance = VERSOR_TOLERANCE * (1.0 + norm(log)).min(MOST_LENIENT) + ROUNDING * norm(r);
+        norm(&difference) <= tolerance.min(MOST_TOLERANT) * norm(r)
     }
 
+    /// The end of the walk, unchecked; none where it has no start.
     fn principal_log(&self, r: &[f64]) -> Option<Vec<f64>> {
         if self.generators > 5 {
             return self.log_by_roots(r);
         }
         let f = part(r, |k| k == 2);
-        let mut unit = part(r, |k| k == 4);
-        let mut y = norm(&unit);
-        // Rounding of a simple rotor, which would only disturb it near −1.
-        if y <= ROUNDING * norm(r) && self.null == 0 {
-            y = 0.0;
+        let Some((unit, y)) = self.unit_and_component(r, &f) else {
+            return Some(scaled(&f, self.number_factor(r[0], &f, 1.0)?));
+        };
+        let q = self.scalar_product(&unit, &unit);
+        if q > SPLITS {
+            // In each half C is a number c, and `F² = λP` with `⟨F²⟩ = λ/2`.
+            let mut log = vec![0.0; r.len()];
+            for root in [q.sqrt(), -q.sqrt()] {
+                let half = self.half(&f, &unit, root);
+                add_scaled(&mut log, &half, self.number_factor(r[0] + y * root, &half, 2.0)?);
+            }
+            return Some(log);
         }
-        unit.iter_mut().for_each(|x| *x = if y > 0.0 { *x / y } else { 0.0 });
-        let ring = Ring { q: self.scalar_product(&unit, &unit) };
-        let square = self.product(&f, &f);
-        let along_unit: f64 = square.iter().zip(&unit).map(|(a, b)| a * b).sum();
-        let f_squared = Pair { x: square[0], y: along_unit };
-        let turns = ring.radius(f_squared) > ROUNDING * norm(&f).powi(2);
-        let factor = log_over_sinh(ring, Pair { x: r[0], y }, turns.then_some(f_squared))?;
-        let turned = self.product(&f, &unit);
-        Some(
-            (0..r.len())
-                .map(|b| if grade(b) == 2 { factor.x * f[b] + factor.y * turned[b] } else { 0.0 })
-                .collect(),
-        )
+        let ring = Ring { q };
+        if r[0] < 0.0
+            && let Some(plane) = self.unit_plane(ring, &f, &unit)
+        {
+            // Here 1 + C cancels. Turned back by a quarter in the unit plane, −R P, it does not.
+            let mut log = self.log_in_ring(&scaled(&self.product(r, &plane), -1.0))?;
+            add_scaled(&mut log, &plane, FRAC_PI_2);
+            return Some(log);
+        }
+        self.log_in_ring(r)
     }
 
-    /// Bivectors that commute with R, of square about −1, perpendicular to R's own.
+    /// The factor κ with `B = F κ` where `C = cosh B` is a number c, and `F² = sinh² B` is `multiple · ⟨F²⟩`.
+    fn number_factor(&self, c: f64, f: &[f64], multiple: f64) -> Option<f64> {
+        let scale = scale_of(f);
+        let f = scaled(f, 1.0 / scale);
+        let square = multiple * self.scalar_product(&f, &f);
+        let sinh = square.abs().sqrt() * scale;
+        if square.abs() <= ROUNDING * norm(&f).powi(2) {
+            (c > 0.0).then_some(1.0)
+        } else if square < 0.0 {
+            Some(sinh.atan2(c) / sinh)
+        } else {
+            (c > 0.0).then(|| sinh.asinh() / sinh)
+        }
+    }
+
+    /// The unit U along the part Q of grade 4, and `Q = yU`; none where it is rounding, for a simple rotor.
+    /// As `F∧F = 2⟨R⟩Q`, either gives the direction: that with less rounding is taken.
+    fn unit_and_component(&self, r: &[f64], f: &[f64]) -> Option<(Vec<f64>, f64)> {
+        let length = norm(f).powi(2);
+        let (unit, size, rounding) = if length < r[0].abs() {
+            let (unit, size) = unit_of_grade_4(&self.product(f, f));
+            (unit, size, ROUNDING * length)
+        } else {
+            let (unit, size) = unit_of_grade_4(r);
+            (unit, size, ROUNDING * norm(r))
+        };
+        (size > rounding).then(|| {
+            let y = dot(r, &unit);
+            (unit, y)
+        })
+    }
+
+    /// The logarithm of a rotor whose `1 + C` is not small, by the walk in the ring of its C.
+    fn log_in_ring(&self, r: &[f64]) -> Option<Vec<f64>> {
+        let f = part(r, |k| k == 2);
+        let (unit, y) = self.unit_and_component(r, &f).unwrap_or_else(|| (self.scalar(0.0), 0.0));
+        let ring = Ring { q: self.scalar_product(&unit, &unit) };
+        Some(self.times(&f, &unit, walk(ring, Pair { x: r[0], y })?))
+    }
+
+    /// `P = F/√(−F²)`, the bivector with `P² = −1` that is F times a pair; none where F does not turn
+    /// only, or `F²` is rounding. A Newton step, `P(3 + P²)/2`, makes it a unit to rounding.
+    fn unit_plane(&self, ring: Ring, f: &[f64], unit: &[f64]) -> Option<Vec<f64>> {
+        let square = self.square_in_ring(f, unit);
+        if ring.radius(square) <= ROUNDING * norm(f).powi(2) {
+            return None;
+        }
+        let plane = self.times(f, unit, ring.inverse(ring.sqrt(square.scale(-1.0))?));
+        let square = self.square_in_ring(&plane, unit);
+        Some(self.times(&plane, unit, square.plus(Pair { x: 3.0, y: 0.0 }).scale(0.5)))
+    }
+
+    /// `F²` of a bivector as a pair.
+    fn square_in_ring(&self, f: &[f64], unit: &[f64]) -> Pair {
+        let square = self.product(f, f);
+        Pair { x: square[0], y: dot(&square, unit) }
+    }
+
+    /// A bivector times a pair.
+    fn times(&self, f: &[f64], unit: &[f64], factor: Pair) -> Vec<f64> {
+        let mut out = part(&self.product(f, unit), |k| k == 2);
+        out.iter_mut().zip(f).for_each(|(o, f)| *o = factor.x * f + factor.y * *o);
+        out
+    }
+
+    /// Bivectors that commute with R, of square about −1: R's own, and others perpendicular to it.
     ///
     /// The condition `YR = RY` is linear in Y; its solutions are the eigenvectors of eigenvalue 0 of the
     /// matrix of `|YR − RY|²`.
     fn commuting_planes(&self, r: &[f64]) -> Vec<Vec<f64>> {
         let basis: Vec<usize> = (0..r.len()).filter(|&b| grade(b) == 2).collect();
-        let commutators: Vec<Vec<f64>> = basis
-            .iter()
-            .map(|&b| {
-                let mut plane = vec![0.0; r.len()];
-                plane[b] = 1.0;
-                let mut difference = self.product(&plane, r);
-                add_scaled(&mut difference, &self.product(r, &plane), -1.0);
-                difference
-            })
-            .collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-        let gram = commutators.iter().map(|a| commutators.iter().map(|b| dot(a, b)).collect()).collect();
-        let (values, vectors) = super::roots::symmetric_eigen(gram);
-        let f = part(r, |k| k == 2);
-        let own = dot(&f, &f);
-        let bound = VERSOR_TOLERANCE * norm(r).powi(2);
-        let commuting = values.iter().zip(vectors).filter(|(value, _)| **value <= bound);
-        commuting
-            .filter_map(|(_, components)| {
+        let commutator = |&b: &usize| {
+            let mut plane = vec![0.0; r.len()];
+            plane[b] = 1.0;
+            let mut difference = self.product(&plane, r);
+            add_scaled(&mut difference, &self.product(r, &plane), -1.0);
+            difference
+        };
+        let commutators: Vec<Vec<f64>> = basis.iter().map(commutator).collect();
+        let row = |a: &Vec<f64>| commutators.iter().map(|b| dot(a, b)).collect();
+        let (values, vectors) = symmetric_eigen(commutators.iter().map(row).collect());
+        let own = part(r, |k| k == 2);
+        let bound = ROUNDING * norm(r).powi(2);
+        let others =
+            values.iter().zip(vectors).filter(|(value, _)| **value <= bound).map(|(_, components)| {
                 let mut y = vec![0.0; r.len()];
                 basis.iter().zip(components).for_each(|(&b, c)| y[b] = c);
-                if own > bound {
-                    let along = dot(&y, &f) / own;
-                    add_scaled(&mut y, &f, -along);
+                if dot(&own, &own) > bound {
+                    let along = dot(&y, &own) / dot(&own, &own);
+                    add_scaled(&mut y, &own, -along);
                 }
-                let square = self.scalar_product(&y, &y);
-                (square < -1e-3).then(|| scaled(&y, 1.0 / (-square).sqrt()))
-            })
-            .collect()
+                y
+            });
+        let turning = |y: Vec<f64>| {
+            let square = self.scalar_product(&y, &y);
+            (square < -1e-3 * dot(&y, &y)).then(|| scaled(&y, 1.0 / (-square).sqrt()))
+        };
+        std::iter::once(own.clone()).chain(others).filter_map(turning).collect()
     }
 }
 
-/// The factor κ with `B = F κ`, for `C = cosh B` and, where it is more than rounding, `F² = sinh² B`.
-///
-/// With a negative real part `1 + C` cancels. Where `−F²` has a root S, so that B turns only, `F/S` is a
-/// unit, and turning back by a quarter, `R' = −R F/S = S − C F/S`, leaves the rest: `κ = (π/2 + κ')/S`.
-fn log_over_sinh(ring: Ring, c: Pair, f_squared: Option<Pair>) -> Option<Pair> {
-    if c.x < 0.0 {
-        if let Some(s) = f_squared.and_then(|square| ring.sqrt(square.scale(-1.0))) {
-            let over = ring.inverse(s);
-            let rest = walk(ring, s, ring.mul(c.scale(-1.0), over))?;
-            return Some(rest.plus(over.scale(FRAC_PI_2)));
-        }
-    }
-    walk(ring, c, Pair::ONE)
-}
-
-/// Halves `C = cosh B` until it is near 1; returns `phi` times the factor with `B = F · factor`.
-fn walk(ring: Ring, mut c: Pair, mut phi: Pair) -> Option<Pair> {
+/// The factor κ with `B = F κ` for `C = cosh B`: halves until C is near 1.
+fn walk(ring: Ring, mut c: Pair) -> Option<Pair> {
     let one_minus = |c: Pair| Pair { x: 1.0 - c.x, y: -c.y };
-    let mut halvings = 0;
-    while ring.radius(one_minus(c)) > NEAR {
-        c = ring.sqrt(c.plus(Pair::ONE).scale(0.5))?;
-        // F/(2 cosh) of half the argument, which doubles again: the factors 2 cancel.
-        phi = ring.mul(phi, ring.inverse(c));
-        halvings += 1;
-        if halvings > MOST_HALVINGS {
-            return None;
+    let mut factor = Pair::ONE;
+    for _ in 0..=MOST_HALVINGS {
+        if ring.radius(one_minus(c)) <= NEAR {
+            return Some(ring.mul(factor, ring.series(&ARCOSH, one_minus(c).scale(0.5))));
         }
+        c = ring.sqrt(c.plus(Pair::ONE).scale(0.5))?;
+        // B = 2 · B/2, with sinh(B/2) = F / 2 cosh(B/2): the factors 2 cancel.
+        factor = ring.mul(factor, ring.inverse(c));
     }
-    Some(ring.mul(phi, ring.series(&ARCOSH, one_minus(c).scale(0.5))))
+    None
 }
 
 /// The coefficients tⱼ of g.

@@ -212,3 +212,8 @@ fn add_scaled(a: &mut [f64], b: &[f64], s: f64) {
         *x += s * y;
     }
 }
+
+/// The sum of products of components.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -2,7 +2,11 @@
 //!
 //! With up to five generators a bivector has `B² = s + W`, W of grade 4, and `W²` is a number: complex
 //! numbers for q < 0, dual ones for q = 0, split ones for q > 0. Every function below is smooth in q, so
-//! that rotations, boosts, translations and all that lies between need no cases.
+//! that rotations, boosts, translations and all that lies between need no cases. Only where q is well
+//! above 0 the two numbers are better kept apart: one may be a large boost, the other a rotation.
+
+/// From this q on U splits the ring into two numbers without loss, by the idempotents `½(1 ± U/√q)`.
+pub(super) const SPLITS: f64 = 0.25;
 
 /// The ring of the pairs with `U² = q`.
 #[derive(Clone, Copy, Debug)]

@@ -3,9 +3,9 @@
 //! A blade `A = a1∧…∧ak` stands for the span of its vectors; no metric enters. To have a measure of what
 //! counts as the same direction, components are compared as lengths, basis vectors as orthonormal.
 
-use super::{Calculus, add_scaled, grade, scaled};
+use super::{Calculus, add_scaled, dot, grade, scaled};
 use crate::functions::MathError;
-use crate::values::norm;
+use crate::values::{norm, scale_of};
 
 /// The sine of the angle below which a direction counts as lying in a subspace, and the relative part
 /// of a multivector below which it counts as a blade.
@@ -35,20 +35,17 @@ impl Calculus {
 
     fn join_and_meet(&self, a: &[f64], b: &[f64]) -> Result<(Vec<f64>, Vec<f64>), MathError> {
         let (a, b) = (self.subspace(&self.read(a)?)?, self.subspace(&self.read(b)?)?);
-        let whole = extend(&a.vectors, &b.vectors, usize::MAX);
-        let outside = whole.len();
-        let whole = [a.vectors.clone(), whole].concat();
+        let whole = [&a.vectors[..], &extend(&a.vectors, &b.vectors, usize::MAX, SAME_DIRECTION)].concat();
         let common = a.vectors.len() + b.vectors.len() - whole.len();
-        debug_assert!(outside + common == b.vectors.len());
-        // What both lack and what one lacks leave the common part.
-        let lacking = extend(&a.vectors, &whole, whole.len() - a.vectors.len());
-        let other = extend(&b.vectors, &whole, whole.len() - b.vectors.len());
-        let lacking = [lacking.clone(), extend(&lacking, &other, other.len())].concat();
-        let shared = extend(&lacking, &whole, common);
+        // What A lacks of the whole and what B lacks of it together leave the common part.
+        let missing = |x: &Subspace| extend(&x.vectors, &whole, whole.len() - x.vectors.len(), 0.0);
+        let (from_a, from_b) = (missing(&a), missing(&b));
+        let missing = [&from_a[..], &extend(&from_a, &from_b, from_b.len(), 0.0)].concat();
+        let shared = extend(&missing, &whole, common, 0.0);
         let (of_a, of_b) = (a.vectors.len() - common, b.vectors.len() - common);
         let mut meet = self.wedge_of(&shared);
-        let first = self.wedge_of(&extend(&shared, &a.vectors, of_a));
-        let last = self.wedge_of(&extend(&shared, &b.vectors, of_b));
+        let first = self.wedge_of(&extend(&shared, &a.vectors, of_a, 0.0));
+        let last = self.wedge_of(&extend(&shared, &b.vectors, of_b, 0.0));
         let left = self.wedge_bits(&first, &meet);
         let sign = dot(&left, &a.blade) * dot(&self.wedge_bits(&meet, &last), &b.blade);
         let join = self.wedge_bits(&left, &last);
@@ -82,7 +79,7 @@ impl Calculus {
         if size == 0.0 {
             return Err(MathError::NoSubspace);
         }
-        let scale = crate::values::scale_of(m);
+        let scale = scale_of(m);
         let m: Vec<f64> = m.iter().map(|x| x / scale / (size / scale)).collect();
         let k = (0..m.len()).max_by(|&i, &j| m[i].abs().total_cmp(&m[j].abs())).map_or(0, grade);
         let contraction = |bits: usize| -> Vec<f64> {
@@ -91,7 +88,7 @@ impl Calculus {
             (0..self.generators).map(component).collect()
         };
         let lower = (0..m.len()).filter(|&bits| grade(bits) + 1 == k);
-        let vectors = extend(&[], &lower.map(contraction).collect::<Vec<_>>(), k as usize);
+        let vectors = extend(&[], &lower.map(contraction).collect::<Vec<_>>(), k as usize, 0.0);
         let blade = self.wedge_of(&vectors);
         let blade = scaled(&blade, 1f64.copysign(dot(&blade, &m)));
         let mut rest = m;
@@ -113,13 +110,9 @@ impl Calculus {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
 /// Up to `most` orthonormal vectors, perpendicular to the orthonormal `base`, that together with it span
-/// the candidates to within [`SAME_DIRECTION`]; the farthest first.
-fn extend(base: &[Vec<f64>], candidates: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
+/// the candidates to within `tolerance`; the farthest first.
+fn extend(base: &[Vec<f64>], candidates: &[Vec<f64>], most: usize, tolerance: f64) -> Vec<Vec<f64>> {
     let mut found: Vec<Vec<f64>> = Vec::new();
     while found.len() < most {
         let residual = |v: &Vec<f64>| {
@@ -133,11 +126,7 @@ fn extend(base: &[Vec<f64>], candidates: &[Vec<f64>], most: usize) -> Vec<Vec<f6
         };
         let farthest = candidates.iter().map(residual).max_by(|a, b| norm(a).total_cmp(&norm(b)));
         match farthest {
-            Some(v) if norm(&v) > SAME_DIRECTION => {
-                let unit = scaled(&v, 1.0 / norm(&v));
-                // What was left of a short one may lean on the others again.
-                found.push(unit);
-            }
+            Some(v) if norm(&v) > tolerance => found.push(scaled(&v, 1.0 / norm(&v))),
             _ => break,
         }
     }

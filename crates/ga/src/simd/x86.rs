@@ -1,16 +1,27 @@
 //! The paths of x86-64. `gather` and `scatter` return how many rows they did; the rest is left to others.
 
-use super::{Element, Kernel, LANES, Lane};
+use super::squares::squares;
+use super::{Element, Kernel, Lane};
 use std::arch::x86_64::*;
 
-#[target_feature(enable = "avx2")]
-pub(super) fn apply_avx2<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-    kernel.block(a, b, out);
+#[target_feature(enable = "avx2,fma")]
+pub(super) fn apply_avx2<const W: usize, K: Kernel<W>>(
+    kernel: &K,
+    a: &[Lane<W>],
+    b: &[Lane<W>],
+    out: &mut [Lane<W>],
+) {
+    kernel.fused_block(a, b, out);
 }
 
 #[target_feature(enable = "avx512f")]
-pub(super) fn apply_avx512<K: Kernel>(kernel: &K, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-    kernel.block(a, b, out);
+pub(super) fn apply_avx512<const W: usize, K: Kernel<W>>(
+    kernel: &K,
+    a: &[Lane<W>],
+    b: &[Lane<W>],
+    out: &mut [Lane<W>],
+) {
+    kernel.fused_block(a, b, out);
 }
 
 /// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own
@@ -118,71 +129,6 @@ fn transpose_avx512([r0, r1, r2, r3, r4, r5, r6, r7]: [__m512d; 8]) -> [__m512d;
     ]
 }
 
-/// Rows to lanes and back by square transposes of `$n` rows by `$n` columns. The last square of a long
-/// row overlaps the one before. A short row is read, or written, with the beginning of the next one,
-/// whose own numbers are written later; so a group is done only if that next one is there.
-macro_rules! squares {
-    ($feature:tt, $n:literal, $zero:ident, $load:ident, $store:ident, $transpose:ident, $gather:ident, $scatter:ident) => {
-        /// # Safety
-        /// The numbers fit the lanes, which are at least one.
-        #[target_feature(enable = $feature)]
-        pub(super) unsafe fn $gather<T: Element>(rows: &[T], lanes: &mut [Lane]) -> usize {
-            let size = lanes.len();
-            let last = size.saturating_sub($n);
-            let mut done = 0;
-            while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= LANES {
-                for column in (0..size).step_by($n).map(|column| column.min(last)) {
-                    let mut square = [$zero(); $n];
-                    for i in 0..$n {
-                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
-                        unsafe {
-                            let row = rows.as_ptr().add((done + i) * size + column);
-                            prefetch(row);
-                            square[i] = T::$load(row);
-                        }
-                    }
-                    let square = $transpose(square);
-                    for k in 0..$n {
-                        if k < size {
-                            // SAFETY: `done + $n <= LANES`.
-                            unsafe { f64::$store(lanes[column + k].0.as_mut_ptr().add(done), square[k]) };
-                        }
-                    }
-                }
-                done += $n;
-            }
-            done
-        }
-
-        /// # Safety
-        /// The numbers fit the lanes, which are at least one.
-        #[target_feature(enable = $feature)]
-        pub(super) unsafe fn $scatter<T: Element>(lanes: &[Lane], rows: &mut [T]) -> usize {
-            let size = lanes.len();
-            let last = size.saturating_sub($n);
-            let mut done = 0;
-            while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= LANES {
-                for column in (0..size).step_by($n).map(|column| column.min(last)) {
-                    let mut square = [$zero(); $n];
-                    for k in 0..$n {
-                        if k < size {
-                            // SAFETY: `done + $n <= LANES`.
-                            square[k] = unsafe { f64::$load(lanes[column + k].0.as_ptr().add(done)) };
-                        }
-                    }
-                    let square = $transpose(square);
-                    for i in 0..$n {
-                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
-                        unsafe { T::$store(rows.as_mut_ptr().add((done + i) * size + column), square[i]) };
-                    }
-                }
-                done += $n;
-            }
-            done
-        }
-    };
-}
-
 squares!("avx2", 4, _mm256_setzero_pd, load_4, store_4, transpose_avx2, gather_avx2, scatter_avx2);
 
 squares!("avx512f", 8, _mm512_setzero_pd, load_8, store_8, transpose_avx512, gather_squares, scatter_squares);
@@ -191,13 +137,13 @@ squares!("avx512f", 8, _mm512_setzero_pd, load_8, store_8, transpose_avx512, gat
 macro_rules! by_size {
     ($size:expr, $few:ident, $many:ident, $arguments:tt) => {
         match $size {
-            1 => $few::<T, 1> $arguments,
-            2 => $few::<T, 2> $arguments,
-            3 => $few::<T, 3> $arguments,
-            4 => $few::<T, 4> $arguments,
-            5 => $few::<T, 5> $arguments,
-            6 => $few::<T, 6> $arguments,
-            7 => $few::<T, 7> $arguments,
+            1 => $few::<T, W, 1> $arguments,
+            2 => $few::<T, W, 2> $arguments,
+            3 => $few::<T, W, 3> $arguments,
+            4 => $few::<T, W, 4> $arguments,
+            5 => $few::<T, W, 5> $arguments,
+            6 => $few::<T, W, 6> $arguments,
+            7 => $few::<T, W, 7> $arguments,
             _ => $many $arguments,
         }
     };
@@ -206,7 +152,7 @@ macro_rules! by_size {
 /// # Safety
 /// The numbers fit the lanes, which are at least one.
 #[target_feature(enable = "avx512f")]
-pub(super) unsafe fn gather_avx512<T: Element>(rows: &[T], lanes: &mut [Lane]) -> usize {
+pub(super) unsafe fn gather_avx512<T: Element, const W: usize>(rows: &[T], lanes: &mut [Lane<W>]) -> usize {
     // SAFETY: passed on.
     unsafe { by_size!(lanes.len(), gather_few, gather_squares, (rows, lanes)) }
 }
@@ -214,7 +160,7 @@ pub(super) unsafe fn gather_avx512<T: Element>(rows: &[T], lanes: &mut [Lane]) -
 /// # Safety
 /// The numbers fit the lanes, which are at least one.
 #[target_feature(enable = "avx512f")]
-pub(super) unsafe fn scatter_avx512<T: Element>(lanes: &[Lane], rows: &mut [T]) -> usize {
+pub(super) unsafe fn scatter_avx512<T: Element, const W: usize>(lanes: &[Lane<W>], rows: &mut [T]) -> usize {
     // SAFETY: passed on.
     unsafe { by_size!(lanes.len(), scatter_few, scatter_squares, (lanes, rows)) }
 }
@@ -225,7 +171,10 @@ pub(super) unsafe fn scatter_avx512<T: Element>(lanes: &[Lane], rows: &mut [T]) 
 /// # Safety
 /// The numbers fit the `SIZE` lanes.
 #[target_feature(enable = "avx512f")]
-unsafe fn gather_few<T: Element, const SIZE: usize>(rows: &[T], lanes: &mut [Lane]) -> usize {
+unsafe fn gather_few<T: Element, const W: usize, const SIZE: usize>(
+    rows: &[T],
+    lanes: &mut [Lane<W>],
+) -> usize {
     let whole = rows.len() / (8 * SIZE);
     for group in 0..whole {
         let mut registers = [_mm512_setzero_pd(); SIZE];
@@ -238,7 +187,7 @@ unsafe fn gather_few<T: Element, const SIZE: usize>(rows: &[T], lanes: &mut [Lan
             }
         }
         for (lane, &x) in lanes.iter_mut().zip(&pick(registers, &Picks::<SIZE>::GATHER)) {
-            // SAFETY: `group < LANES / 8`, since the numbers fit the lanes.
+            // SAFETY: `group < W / 8`, since the numbers fit the lanes.
             unsafe { _mm512_storeu_pd(lane.0.as_mut_ptr().add(group * 8), x) };
         }
     }
@@ -250,12 +199,15 @@ unsafe fn gather_few<T: Element, const SIZE: usize>(rows: &[T], lanes: &mut [Lan
 /// # Safety
 /// The numbers fit the `SIZE` lanes.
 #[target_feature(enable = "avx512f")]
-unsafe fn scatter_few<T: Element, const SIZE: usize>(lanes: &[Lane], rows: &mut [T]) -> usize {
+unsafe fn scatter_few<T: Element, const W: usize, const SIZE: usize>(
+    lanes: &[Lane<W>],
+    rows: &mut [T],
+) -> usize {
     let whole = rows.len() / (8 * SIZE);
     for group in 0..whole {
         let mut registers = [_mm512_setzero_pd(); SIZE];
         for (x, lane) in registers.iter_mut().zip(lanes) {
-            // SAFETY: `group < LANES / 8`, since the numbers fit the lanes.
+            // SAFETY: `group < W / 8`, since the numbers fit the lanes.
             *x = unsafe { _mm512_loadu_pd(lane.0.as_ptr().add(group * 8)) };
         }
         let registers = pick(registers, &Picks::<SIZE>::SCATTER);

@@ -1,0 +1,71 @@
+//! The turning of rows by square transposes, for instruction sets of any width.
+
+/// Rows to lanes and back by square transposes of `$n` rows by `$n` columns. The last square of a long
+/// row overlaps the one before. A short row is read, or written, with the beginning of the next one,
+/// whose own numbers are written later; so a group is done only if that next one is there.
+macro_rules! squares {
+    ($feature:tt, $n:literal, $zero:ident, $load:ident, $store:ident, $transpose:ident, $gather:ident, $scatter:ident) => {
+        /// # Safety
+        /// The numbers fit the lanes, which are at least one.
+        #[target_feature(enable = $feature)]
+        pub(super) unsafe fn $gather<T: Element, const W: usize>(rows: &[T], lanes: &mut [Lane<W>]) -> usize {
+            let size = lanes.len();
+            let last = size.saturating_sub($n);
+            let mut done = 0;
+            while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= W {
+                for column in (0..size).step_by($n).map(|column| column.min(last)) {
+                    let mut square = [$zero(); $n];
+                    for i in 0..$n {
+                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
+                        unsafe {
+                            let row = rows.as_ptr().add((done + i) * size + column);
+                            prefetch(row);
+                            square[i] = T::$load(row);
+                        }
+                    }
+                    let square = $transpose(square);
+                    for k in 0..$n {
+                        if k < size {
+                            // SAFETY: `done + $n <= W`.
+                            unsafe { f64::$store(lanes[column + k].0.as_mut_ptr().add(done), square[k]) };
+                        }
+                    }
+                }
+                done += $n;
+            }
+            done
+        }
+
+        /// # Safety
+        /// The numbers fit the lanes, which are at least one.
+        #[target_feature(enable = $feature)]
+        pub(super) unsafe fn $scatter<T: Element, const W: usize>(
+            lanes: &[Lane<W>],
+            rows: &mut [T],
+        ) -> usize {
+            let size = lanes.len();
+            let last = size.saturating_sub($n);
+            let mut done = 0;
+            while (done + $n - 1) * size + last + $n <= rows.len() && done + $n <= W {
+                for column in (0..size).step_by($n).map(|column| column.min(last)) {
+                    let mut square = [$zero(); $n];
+                    for k in 0..$n {
+                        if k < size {
+                            // SAFETY: `done + $n <= W`.
+                            square[k] = unsafe { f64::$load(lanes[column + k].0.as_ptr().add(done)) };
+                        }
+                    }
+                    let square = $transpose(square);
+                    for i in 0..$n {
+                        // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
+                        unsafe { T::$store(rows.as_mut_ptr().add((done + i) * size + column), square[i]) };
+                    }
+                }
+                done += $n;
+            }
+            done
+        }
+    };
+}
+
+pub(super) use squares;

@@ -1,0 +1,167 @@
+//! Full products in any algebra, by tiles of eight by eight blades.
+//!
+//! Write every blade as `l h`: `l` of the first three generators, `h` of the others. There are eight `l`,
+//! and all the blades with one `h` are a *coset*. In the product of two blades
+//!
+//! ```text
+//! l1 h1 l2 h2 = (−1)^(|h1| |l2|) (l1 l2) (h1 h2)
+//! ```
+//!
+//! for `l2` passes `h1` to the left, and any two different generators anticommute. So the products of a
+//! coset by a coset fall into one coset, and are, but for signs, the 8 × 8 products of the first three
+//! generators: a tile, written out here once. The signs are one of `h1 h2` for all of it, and one more for
+//! odd `l2` if `h1` is odd. What is left of an algebra is the short list of pairs of cosets.
+//!
+//! Generators of square +1 come first, those of square 0 last: with at least three that do not square to 0,
+//! the first three square to +1 or −1, and no product in a tile vanishes.
+
+use crate::simd::{Kernel, Lane};
+use crate::table::{Algebra, Signature};
+
+/// The sign of the product of two blades of three generators, the first `P` of which square to +1 and the
+/// others to −1.
+const fn sign<const P: usize>(l1: usize, l2: usize) -> i32 {
+    // Each generator of l2 passes those of l1 to its right; equal ones meet, and may square to −1.
+    let swaps = (l1 >> 1 & l2).count_ones() + (l1 >> 2 & l2).count_ones();
+    let negative = (l1 & l2 & (0b111 << P)).count_ones();
+    if (swaps + negative).is_multiple_of(2) { 1 } else { -1 }
+}
+
+/// A pair of cosets whose product is not zero.
+#[derive(Clone, Debug)]
+struct Pair {
+    a: usize,
+    b: usize,
+    out: usize,
+    /// The sign bits of the products with even and with odd `l2`.
+    signs: [u64; 2],
+}
+
+/// The full product of an algebra of four generators or more, at least three of which do not square to 0.
+#[derive(Clone, Debug)]
+pub(crate) struct Tiles {
+    /// How many of the first three generators square to +1.
+    positive: usize,
+    /// The components of each coset, in order of the bits of `l`.
+    cosets: Vec<[usize; 8]>,
+    /// In order of `out`.
+    pairs: Vec<Pair>,
+}
+
+impl Tiles {
+    /// The tiles of an algebra, if it is of the kind that has them.
+    pub fn new(algebra: &Algebra) -> Option<Tiles> {
+        let signature = algebra.signature();
+        let Signature { p, q, .. } = signature;
+        if signature.generators() < 4 || p + q < 3 {
+            return None;
+        }
+        let mut cosets = vec![[0; 8]; algebra.blades().len() / 8];
+        for (component, blade) in algebra.blades().iter().enumerate() {
+            cosets[blade.bits as usize / 8][blade.bits as usize % 8] = component;
+        }
+        let mut pairs = Vec::new();
+        for out in 0..cosets.len() {
+            for a in 0..cosets.len() {
+                let b = a ^ out;
+                let (high, _) = signature.blade_product(8 * a as u32, 8 * b as u32);
+                if high != 0 {
+                    let even = high < 0;
+                    let odd = even ^ (a.count_ones() % 2 == 1);
+                    pairs.push(Pair { a, b, out, signs: [even, odd].map(|minus| u64::from(minus) << 63) });
+                }
+            }
+        }
+        Some(Tiles { positive: p.min(3), cosets, pairs })
+    }
+
+    #[inline(always)]
+    fn multiply<const P: usize, const FUSED: bool, const W: usize>(
+        &self,
+        a: &[Lane<W>],
+        b: &[Lane<W>],
+        out: &mut [Lane<W>],
+    ) {
+        for pairs in self.pairs.chunk_by(|s, t| s.out == t.out) {
+            let mut sums = [Lane::filled(0.0); 8];
+            for pair in pairs {
+                let xs = self.cosets[pair.a].map(|component| &a[component]);
+                let ys = self.cosets[pair.b].map(|component| &b[component]);
+                tile::<P, FUSED, W>(xs, ys, pair.signs, &mut sums);
+            }
+            for (sum, &component) in sums.iter().zip(&self.cosets[pairs[0].out]) {
+                out[component] = *sum;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn block<const FUSED: bool, const W: usize>(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        match self.positive {
+            0 => self.multiply::<0, FUSED, W>(a, b, out),
+            1 => self.multiply::<1, FUSED, W>(a, b, out),
+            2 => self.multiply::<2, FUSED, W>(a, b, out),
+            _ => self.multiply::<3, FUSED, W>(a, b, out),
+        }
+    }
+}
+
+/// Does something for each `$l`, a constant from 0 to 7.
+macro_rules! each {
+    ($l:ident, $do:block) => {
+        each!(@ $l, $do, 0 1 2 3 4 5 6 7)
+    };
+    (@ $l:ident, $do:block, $($value:literal)*) => {
+        $({
+            const $l: usize = $value;
+            $do
+        })*
+    };
+}
+
+/// Adds the product of two cosets.
+#[inline(always)]
+fn tile<const P: usize, const FUSED: bool, const W: usize>(
+    a: [&Lane<W>; 8],
+    b: [&Lane<W>; 8],
+    signs: [u64; 2],
+    sums: &mut [Lane<W>; 8],
+) {
+    for row in 0..W {
+        let mut sum = [0.0; 8];
+        let mut y = [0.0; 8];
+        each!(L, {
+            sum[L] = sums[L].0[row];
+            y[L] = f64::from_bits(b[L].0[row].to_bits() ^ signs[L.count_ones() as usize % 2]);
+        });
+        each!(L1, {
+            let x = a[L1].0[row];
+            each!(L2, {
+                let x = if const { sign::<P>(L1, L2) } > 0 { x } else { -x };
+                sum[L1 ^ L2] = if FUSED { x.mul_add(y[L2], sum[L1 ^ L2]) } else { sum[L1 ^ L2] + x * y[L2] };
+            });
+        });
+        each!(L, {
+            sums[L].0[row] = sum[L];
+        });
+    }
+}
+
+impl<const W: usize> Kernel<W> for Tiles {
+    /// Always by blocks, which round as no other way does.
+    const FEW: usize = 0;
+
+    fn row(&self, _: &[f64], _: &[f64], _: &mut [f64]) {
+        unreachable!("no rows are few");
+    }
+
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        self.block::<false, W>(a, b, out);
+    }
+
+    #[inline(always)]
+    fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        self.block::<true, W>(a, b, out);
+    }
+}

@@ -1,0 +1,222 @@
+//! What holds for every element and signature: axioms, errors, grades.
+
+use crate::space::*;
+use polhode_ga::Multivector;
+use polhode_ga::functions::{Function, MathError};
+use polhode_ga::product::Grades;
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// `M M⁻¹ = 1` to a few ulps of the condition number, at any size.
+    #[test]
+    fn the_inverse_undoes(x in numbers(), e in -200.0..200.0f64) {
+        let size = 10f64.powf(e);
+        for (p, q, r) in signatures(5).chain([(6, 0, 0), (3, 3, 1)]) {
+            let space = Space::new(p, q, r);
+            let m = scaled(&x[..space.size()], size);
+            let Ok(inverse) = space.calculus.inverse(&m) else { continue };
+            let condition = norm(&m) * norm(&inverse) * (space.size() as f64).sqrt();
+            let one = space.scalar(1.0);
+            // The error of X is that of MX − 1 times the condition, and XM − 1 feels it.
+            let (right, left) = (space.product(&m, &inverse), space.product(&inverse, &m));
+            prop_assert!(distance(&right, &one) <= 8.0 * EPS * condition, "{p} {q} {r}: {condition}");
+            prop_assert!(distance(&left, &one) <= 8.0 * EPS * condition * condition, "{p} {q} {r}: {condition}");
+        }
+    }
+
+    /// `log(exp B) = B` for angles whose sum over the planes is below π, and `exp(log R) = R`.
+    #[test]
+    fn log_and_exp_undo_each_other(x in numbers(), e in -20.0..0.0f64) {
+        for (p, q, r) in NAMED {
+            let space = Space::new(p, q, r);
+            let b = scaled(&space.of_grade(2, &x), 10f64.powf(e));
+            // The sum of the angles of m planes is below √m |B| and √m < 2.
+            let b = scaled(&b, (1.2 / norm(&b)).min(1.0));
+            let exp = space.calculus.exp(&b).unwrap();
+            let log = space.calculus.log(&exp).unwrap();
+            prop_assert!(distance(&log, &b) <= 64.0 * EPS * norm(&b), "{p} {q} {r}: {:e}", distance(&log, &b) / norm(&b));
+        }
+    }
+
+    #[test]
+    fn exp_of_log_returns(x in numbers(), size in -50.0..50.0f64, angle in 0.0..10.0f64) {
+        for (p, q, r) in NAMED.into_iter().filter(|(p, q, r)| p + q + r <= 5) {
+            let space = Space::new(p, q, r);
+            let m = space.calculus.exp(&scaled(&space.of_grade(2, &x), angle)).unwrap();
+            let m = scaled(&m, 10f64.powf(size));
+            let log = match space.calculus.log(&m) {
+                Ok(log) => log,
+                // Boosts so large that the size is lost.
+                Err(MathError::NoLogarithm | MathError::NotVersor { .. }) => continue,
+                Err(e) => return Err(TestCaseError::fail(format!("{p} {q} {r}: {e}"))),
+            };
+            let back = space.calculus.exp(&log).unwrap();
+            // A rounded versor |R| times its size tells that size to ε|R|² only.
+            let length = norm(&m) / space.product(&m, &space.reverse(&m))[0].abs().sqrt();
+            let bound = 64.0 * EPS * (1.0 + norm(&log)) + 32.0 * EPS * length;
+            let error = distance(&back, &m) / norm(&m);
+            prop_assert!(error <= bound, "{p} {q} {r}: {error:e} {bound:e}");
+        }
+    }
+
+    /// Turned planes: `exp(S B ~S) = S exp(B) ~S` with the closed form of basis planes.
+    #[test]
+    fn turned_planes_have_the_closed_form(x in numbers(), angles in prop::array::uniform2(-40.0..40.0f64), near in -15.0..0.0f64) {
+        let space = Space::new(5, 0, 0);
+        let s = space.calculus.exp(&space.of_grade(2, &x)).unwrap();
+        for (u, v) in [(angles[0], angles[1]), (angles[0], angles[0] * (1.0 + 10f64.powf(near))), (angles[0], angles[0]), (angles[0], 10f64.powf(near))] {
+            let b = space.sum(&[(u, &[1, 2]), (v, &[3, 4])]);
+            let exp = space.product(&space.sum(&[(u.cos(), &[]), (u.sin(), &[1, 2])]), &space.sum(&[(v.cos(), &[]), (v.sin(), &[3, 4])]));
+            let turn = |m: &[f64]| space.product(&space.product(&s, m), &space.reverse(&s));
+            let error = distance(&space.calculus.exp(&turn(&b)).unwrap(), &turn(&exp));
+            prop_assert!(error <= 16.0 * EPS * (1.0 + norm(&b)), "{u} {v} {}", error / EPS / (1.0 + norm(&b)));
+        }
+    }
+}
+
+/// In G3 the functions of `functions` are another way to the same values.
+#[test]
+fn g3_has_one_set_of_functions() {
+    let space = Space::new(3, 0, 0);
+    let m = [0.7, 0.2, -1.3, 0.4, 1.1, -0.6, 0.9, 0.3];
+    let even = [0.7, 0.0, 0.0, 0.0, 1.1, -0.6, 0.9, 0.0];
+    for (f, m) in [(Function::Inverse, m), (Function::Exp, m), (Function::Log, even), (Function::Sqrt, even)]
+    {
+        let ours = space.calculus.apply(f, &m).unwrap();
+        let theirs = f.apply(Multivector(m)).unwrap().0;
+        assert!(distance(&ours, &theirs) <= 16.0 * EPS * norm(&theirs), "{f:?} {ours:?} {theirs:?}");
+    }
+}
+
+/// Boost and turn in planes that commute, both large: each has its closed form.
+/// Where the principal logarithm ends: a whole turn in a plane, alone or with what commutes with it.
+#[test]
+fn what_has_no_value_is_an_error() {
+    let spacetime = Space::new(1, 3, 0);
+    let projective = Space::new(3, 0, 1);
+    for scale in [1e-200, 1.0 / 3.0, 1e200] {
+        for (space, terms) in [
+            (&spacetime, vec![(scale, &[1][..]), (scale, &[2][..])]),
+            (&spacetime, vec![(scale, &[][..]), (scale, &[1][..])]),
+            (
+                &spacetime,
+                vec![
+                    (scale, &[][..]),
+                    (scale, &[1, 2][..]),
+                    (0.3 * scale, &[3][..]),
+                    (0.3 * scale, &[1, 2, 3][..]),
+                ],
+            ),
+            (&projective, vec![(scale, &[4][..])]),
+            (&projective, vec![(scale, &[4, 1][..]), (1.0, &[1, 2, 3, 4][..])]),
+            (&spacetime, vec![]),
+        ] {
+            let error = space.calculus.inverse(&space.sum(&terms)).unwrap_err();
+            assert!(
+                matches!(error, MathError::IllConditioned { reciprocal_condition: c } if c < 1e-14),
+                "{error}"
+            );
+        }
+        // A far translation has an inverse all the same, and so has a small number beside it.
+        let motor = projective.sum(&[(scale, &[]), (1e10 * scale, &[4, 1])]);
+        let inverse = projective.calculus.inverse(&motor).unwrap();
+        let expected = projective.sum(&[(1.0 / scale, &[]), (-1e10 / scale, &[4, 1])]);
+        assert!(distance(&inverse, &expected) <= 4.0 * EPS * norm(&expected));
+    }
+    let nearly = spacetime.calculus.inverse(&spacetime.sum(&[(1.0, &[]), (1.0 - 1e-10, &[1])])).unwrap();
+    assert!((nearly[0] * 2e-10 - 1.0).abs() < 1e-5);
+    let log = |space: &Space, terms: &[(f64, &[usize])]| space.calculus.log(&space.sum(terms));
+    assert_eq!(log(&spacetime, &[]), Err(MathError::NoLogarithm));
+    assert!(matches!(log(&spacetime, &[(1.0, &[1])]), Err(MathError::NotVersor { .. })));
+    assert!(matches!(log(&spacetime, &[(1.0, &[]), (0.5, &[1, 2, 3, 4])]), Err(MathError::NotVersor { .. })));
+    assert_eq!(spacetime.calculus.sqrt(&spacetime.scalar(0.0)).unwrap(), spacetime.scalar(0.0));
+    for f in [Function::Inverse, Function::Exp, Function::Log, Function::Sqrt] {
+        assert_eq!(spacetime.calculus.apply(f, &spacetime.scalar(f64::NAN)), Err(MathError::NotFinite));
+        assert_eq!(spacetime.calculus.apply(f, &spacetime.scalar(f64::INFINITY)), Err(MathError::NotFinite));
+    }
+    assert_eq!(
+        spacetime.calculus.exp(&spacetime.sum(&[(1e16, &[1, 2]), (1e16, &[3, 4])])),
+        Err(MathError::AngleTooLarge)
+    );
+    assert_eq!(projective.calculus.dual(&projective.scalar(1.0)), Err(MathError::DegenerateMetric));
+}
+
+/// Any element: `exp M exp(−M) = 1`, and the derivative rule `exp(M/2)² = exp M`.
+#[test]
+fn the_exponential_of_any_element() {
+    for (p, q, r) in signatures(5).chain([(6, 0, 0), (3, 3, 1)]) {
+        let space = Space::new(p, q, r);
+        let m: Vec<f64> =
+            (0..space.size()).map(|i| (7.3 * i as f64 + 1.0).sin() * 2.0 / space.size() as f64).collect();
+        let [exp, inverse, half] = [1.0, -1.0, 0.5].map(|x| space.calculus.exp(&scaled(&m, x)).unwrap());
+        let product = space.product(&exp, &inverse);
+        assert!(
+            distance(&product, &space.scalar(1.0)) <= 16.0 * EPS * norm(&exp) * norm(&inverse),
+            "{p} {q} {r}"
+        );
+        assert!(
+            distance(&space.product(&half, &half), &exp) <= 16.0 * EPS * norm(&half).powi(2),
+            "{p} {q} {r}"
+        );
+    }
+}
+
+/// Values keep to the grades that their types foretell.
+#[test]
+fn values_keep_to_their_grades() {
+    let functions = [Function::Inverse, Function::Exp, Function::Log, Function::Sqrt];
+    for (p, q, r) in signatures(5).chain([(6, 0, 0)]) {
+        let space = Space::new(p, q, r);
+        let blades = space.algebra.blades();
+        for grades in 1..1u16 << (p + q + r + 1) {
+            let grades = Grades(grades);
+            let component = |i: usize| (3.7 * i as f64 + 0.4).sin();
+            let of = |i: usize| if grades.contains(blades[i].grade()) { component(i) } else { 0.0 };
+            let m: Vec<f64> = (0..space.size()).map(of).collect();
+            for f in functions {
+                let kept = space.calculus.grades(f, grades);
+                let Ok(value) = space.calculus.apply(f, &m) else { continue };
+                let stray: Vec<f64> = (0..space.size())
+                    .filter(|&i| !kept.contains(blades[i].grade()))
+                    .map(|i| value[i])
+                    .collect();
+                let condition = norm(&m) * norm(&value);
+                assert!(
+                    norm(&stray) <= 64.0 * EPS * norm(&value) * (1.0 + condition),
+                    "{p} {q} {r} {grades:?} {f:?} {stray:?}"
+                );
+            }
+        }
+    }
+    let projective = Space::new(3, 0, 1).calculus;
+    assert_eq!(projective.grades(Function::Exp, Grades(0b100)), Grades(0b10101));
+    assert_eq!(projective.grades(Function::Log, Grades(0b10101)), Grades(0b101));
+    assert_eq!(projective.grades(Function::Inverse, Grades(0b10)), Grades(0b10));
+}
+
+/// A number added to M is a factor, however small: `exp(s + V) = e^s exp V`.
+#[test]
+fn scalars_become_factors() {
+    for (p, q, r) in [(3, 0, 0), (1, 3, 0), (3, 0, 1), (2, 2, 0), (4, 1, 0), (6, 0, 0)] {
+        let space = Space::new(p, q, r);
+        let general: Vec<f64> = (0..space.size()).map(|i| (7.3 * i as f64 + 1.0).sin()).collect();
+        for mut v in [general.clone(), space.of_grade(2, &general), space.of_grade(1, &general)] {
+            v[0] = 0.0;
+            let exp = space.calculus.exp(&v).unwrap();
+            for s in [-600.0, -50.0, 1.0, 300.0] {
+                v[0] = s;
+                let expected = scaled(&exp, f64::exp(s));
+                let error = distance(&space.calculus.exp(&v).unwrap(), &expected);
+                // The exponent of a boost is s added to a number, and rounded.
+                assert!(error <= (8.0 + s.abs()) * EPS * norm(&expected), "{p} {q} {r} {s}");
+            }
+        }
+    }
+    // Neither factor of e^(−720) e^(710) is in range with all its digits, the product is.
+    let spacetime = Space::new(1, 3, 0);
+    let exp =
+        spacetime.calculus.exp(&spacetime.sum(&[(-720.0, &[]), (710.0, &[1, 2]), (1.0, &[3, 4])])).unwrap();
+    assert!((exp[0] / (0.5 * f64::exp(-10.0) * f64::cos(1.0)) - 1.0).abs() <= 2.0 * EPS * 710.0, "{exp:?}");
+}

@@ -1,0 +1,6 @@
+//! Functions of multivectors in every signature, against the table and closed forms.
+
+mod closed_forms;
+mod functions;
+mod space;
+mod subspaces;

@@ -166,7 +166,8 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
         return _converted_foreign(given, what, dtype)
     wanted = np.dtype(dtype)
     if wanted.kind == "O":
-        return _exact(given.astype(object), what)
+        # Whole floats become integers, so that what is computed of them stays exact.
+        return kind_of(np.empty(0, dtype=object)).asarray(given)
     if wanted not in (np.float64, np.float32):
         raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
     try:

@@ -1,5 +1,6 @@
 """Batches: their shapes, results written to given arrays, shared memory, precision, threads and the pool."""
 
+import contextlib
 import itertools
 import math
 
@@ -253,10 +254,8 @@ def test_a_function_that_returns_its_own_array_does_not_let_it_be_written_to():
     own = numbers((2, 3), 4)
     kept = own.copy()
     A = ph.vector(np.zeros((2, 3))).map(lambda _: own)
-    try:
-        own[:] = 7  # either it may not be written to any more, or the value has its own copy
-    except ValueError:
-        pass
+    with contextlib.suppress(ValueError):  # either it may not be written to any more, or there is a copy
+        own[:] = 7
     assert np.array_equal(A.components, kept)
 
 
@@ -379,7 +378,7 @@ def test_results_held_together_have_memory_of_their_own():
 
 
 def test_large_results_begin_at_a_cache_line():
-    for rows in (20_000, 33_333, 123_457):
+    for rows in (40_000, 55_555, 123_457):  # from a megabyte on
         result = ph.vector(np.ones((rows, 3))) * e1
         assert result.components.ctypes.data % 64 == 0
         assert result.components.flags.c_contiguous

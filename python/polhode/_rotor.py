@@ -201,6 +201,10 @@ class Rotor(_native.Rotor, Multivector):
         """
         return _geometry.distance(self, other)
 
+    def astype(self, dtype: Any) -> Rotor:
+        """Return it with components of another type, of norm 1 in the precision of that."""
+        return Rotor.from_components(Multivector.astype(self, dtype)._data)
+
     # --- action and algebra
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:

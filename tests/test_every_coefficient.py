@@ -388,3 +388,17 @@ def test_exact_numbers_and_other_libraries_do_not_mix(kind, exact):
     for operate in (lambda: A * B, lambda: B + A, lambda: A == B, lambda: ph.stack([A, B])):
         with pytest.raises(TypeError, match="do not mix"):
             operate()
+
+
+@pytest.mark.parametrize("kind", ROUNDING, indirect=True)
+def test_closeness_at_the_ends_of_the_range(kind):
+    A = kind.random(14, (2,))
+    for size in (2.0**100, 2.0**-100):  # their squares are beyond the range of single precision
+        large = A * size
+        assert np.all(np.asarray(large.is_close(large * (1 + 4 * kind.eps), rtol=8 * kind.eps)))
+        assert not np.any(np.asarray(large.is_close(1.01 * large, rtol=1e-3)))
+        assert not np.any(np.asarray(large.is_close(-large)))
+    assert np.all(np.asarray((A * 2.0**-120).is_close(0 * A, atol=1e-6)))
+    infinite = A * float("inf")
+    assert not np.any(np.asarray(infinite.is_close(A)))
+    assert not np.any(np.asarray((A * float("nan")).is_close(A, atol=float("inf"))))

@@ -1,115 +1,82 @@
-"""Ours against peers, in one run on this machine. Prints a table; ratios count, absolute times are noisy."""
+"""Ours beside the peers, in one run on this machine: `python benchmarks/run.py [--quick]`.
+
+Prints the tables and writes them to build/bench-COMMIT.md, and the figures to build/bench-COMMIT.json. Ratios
+count; absolute times hold for this machine and this hour. A peer that is not installed is an empty column.
+"""
 
 from __future__ import annotations
 
-import platform
-import time
-from collections.abc import Callable
+import argparse
+from collections.abc import Iterator
 
 import numpy as np
-import scipy
-from scipy.integrate import solve_ivp
-from scipy.spatial.transform import Rotation
 
-import polhode as ph
+import algebras
+import batches
+import imports
+import machine
+import motion
+import report
+import single
+from contest import FULL, QUICK, Pace, Row
+from polhode._files import write_atomically
 
-ROWS = 1_000_000
-
-
-def seconds(work: Callable[[], object], repeat: int = 5) -> float:
-    """Return the best of several runs, each long enough to measure."""
-    start = time.perf_counter()
-    work()
-    once = time.perf_counter() - start
-    number = max(1, int(0.1 / max(once, 1e-9)))
-    best = float("inf")
-    for _ in range(repeat):
-        start = time.perf_counter()
-        for _ in range(number):
-            work()
-        best = min(best, (time.perf_counter() - start) / number)
-    return best
+SECTIONS = {
+    "One value": single.rows,
+    "Batches": batches.rows,
+    "Any signature": algebras.rows,
+    "Motion": motion.rows,
+    "Import, beyond NumPy": imports.rows,
+}
+SEED = 1
 
 
-def row(what: str, ours: float, peer: str, theirs: float, unit: float, name: str) -> None:
-    """Print one line of the table."""
-    print(
-        f"{what:<44}{ours / unit:>10.3g} {name:<6}{peer:<26}{theirs / unit:>10.3g}  {theirs / ours:>8.2f} x"
-    )
+def measured(rows: Iterator[Row], pace: Pace) -> list[Row]:
+    """Measure each row when it is built, and let its values go before the next."""
+    done = []
+    for row in rows:
+        row.measure(pace)
+        row.release()
+        done.append(row)
+    return done
 
 
-def products() -> None:
-    """Products and sandwiches, single and in batches."""
-    rng = np.random.default_rng(1)
-    a, b = ph.multivector(rng.standard_normal((2, ROWS, 8)))
-    signs = np.zeros((8, 8, 8))
-    basis = ph.multivector(np.eye(8))
-    for i in range(8):
-        signs[i] = (basis[i] * basis).components
+def main() -> None:
+    """Measure, print and write."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--quick", action="store_true", help="a first look: smaller batches, shorter runs")
+    pace = QUICK if parser.parse_args().quick else FULL
 
-    def einsum() -> object:
-        return np.einsum("ni,nj,ijk->nk", a.components, b.components, signs, optimize=True)
+    about, versions = machine.describe(), machine.versions()
+    one, all_cores = (machine.copy_bandwidth(threads, pace) for threads in (1, machine.cores()))
+    about["copy"] = f"{one / 1e9:.1f} GB/s on one core, {all_cores / 1e9:.1f} GB/s on all, read and written"
+    about["batch"] = f"{pace.batch} values, best of {pace.rounds} runs of {pace.span:g} s or more"
 
-    row(
-        "1M full products, ns each",
-        seconds(lambda: a * b),
-        "NumPy einsum",
-        seconds(einsum, 2),
-        1e-9 * ROWS,
-        "ns",
-    )
-    rotors = ph.Rotor.random(ROWS, rng)
-    vectors = ph.vector(rng.standard_normal((ROWS, 3)))
-    scipy_rotors, points = rotors.to_scipy(), np.array(vectors.components)
-    row(
-        "1M R v ~R, ns each",
-        seconds(lambda: rotors(vectors)),
-        "SciPy Rotation.apply",
-        seconds(lambda: scipy_rotors.apply(points)),
-        1e-9 * ROWS,
-        "ns",
-    )
-    x, one, turn = ph.vector([1.0, 2.0, 3.0]), Rotation.random(rng=rng), ph.Rotor.random(rng=rng)
-    point = np.array([1.0, 2.0, 3.0])
-    row(
-        "R v ~R, one",
-        seconds(lambda: turn(x)),
-        "SciPy Rotation.apply",
-        seconds(lambda: one.apply(point)),
-        1e-6,
-        "us",
-    )
+    page = []
 
+    def say(text: str) -> None:
+        print(text, flush=True)
+        page.append(text)
 
-def lagrange_top() -> None:
-    """The heavy top of i = (1, 1, 1/2), c3 = 2 to t = 100."""
-    moments, spin, c3 = np.array([1.0, 1.0, 0.5]), np.array([0.25, -0.5, 6.0]), 2.0
-    rotor = ph.Rotor.from_components([4.0, 2.0, 1.0, 0.0])
-    state = ph.State(rotor, spin)
-    inertia = ph.Inertia.from_principal_moments(*moments)
-    law = ph.torque.heavy([0.0, 0.0, c3])
+    say(f"# Benchmarks\n\n{report.facts(about)}\n- libraries: {', '.join(map(' '.join, versions.items()))}\n")
+    say(f"{report.LEGEND}\n")
+    sections = {}
+    for title, rows in SECTIONS.items():
+        sections[title] = measured(rows(np.random.default_rng(SEED), pace), pace)
+        say(report.section(title, sections[title], max(one, all_cores)))
+    everything = [row for rows in sections.values() for row in rows]
+    say(report.matrices(everything))
+    page.append(f"## What was timed\n\n{report.spellings(everything)}\n")
 
-    def right_side(_: float, y: np.ndarray) -> np.ndarray:
-        w, x, y_, z, *omega = y
-        up = np.array([2 * (x * z - w * y_), 2 * (y_ * z + w * x), 1 - 2 * (x * x + y_ * y_)])
-        rate = np.array(omega)
-        q = np.array([-x, -y_, -z]) @ rate, *(w * rate + np.cross([x, y_, z], rate))
-        torque = np.cross(up, [0.0, 0.0, c3]) - np.cross(rate, moments * rate)
-        return np.concatenate([0.5 * np.array(q), torque / moments])
-
-    start = np.concatenate([rotor.to_quaternion(order="wxyz"), spin])
-    ours = seconds(lambda: ph.simulate(inertia, state, [100.0], torque=law))
-    theirs = seconds(lambda: solve_ivp(right_side, (0, 100), start, "DOP853", rtol=1e-10, atol=1e-12), 1)
-    row("Lagrange top to t = 100, 1e-9 or better", ours, "SciPy DOP853 1e-10", theirs, 1e-3, "ms")
-    estimate = ph.simulate(inertia, state, [100.0], torque=law).certificate.error_estimate
-    print(f"{'':<44}(our error estimate: {estimate:.1e})")
+    target = machine.ROOT / "build" / f"bench-{about['commit']}"
+    target.parent.mkdir(exist_ok=True)
+    files = {
+        target.with_name(f"{target.name}.md"): "\n".join(page).encode(),
+        target.with_name(f"{target.name}.json"): report.data({**about, "versions": versions}, sections),
+    }
+    write_atomically(files)
+    print("Written to", " and ".join(str(path.relative_to(machine.ROOT)) for path in files))
 
 
 if __name__ == "__main__":
-    print(
-        f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, "
-        f"NumPy {np.__version__}, SciPy {scipy.__version__}, polhode {ph.__version__}"
-    )
-    print(f"{'':<44}{'polhode':>10}       {'peer':<26}{'':>10}     ratio")
-    products()
-    lagrange_top()
+    main()

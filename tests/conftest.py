@@ -1,9 +1,14 @@
 """A small scene; and property tests that are the same on every run, each derived from the test itself."""
 
+import os
+
 import pytest
 from hypothesis import settings
 
 from command_line import SCENE
+
+# clifford compiles its products when it is first used, for seconds; interpreted they are the same.
+os.environ.setdefault("NUMBA_DISABLE_JIT", "1")
 
 settings.register_profile("polhode", derandomize=True, database=None, deadline=None, max_examples=60)
 settings.load_profile("polhode")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import naive
-from polhode import _native
+import polhode as ph
 from polhode._generic import exact as elements
 from polhode._generic import layout, pytrees
 from polhode._generic.exact import Exact
@@ -197,7 +197,8 @@ def test_products_equal_the_oracle(floating, shapes):
             batch = np.broadcast_shapes(*shapes)
             assert got.shape == (*batch, 8)
             rows = [np.ascontiguousarray(np.broadcast_to(v, (*batch, v.shape[-1]))) for v in (a, b)]
-            data, mask = _native.product("geometric", rows[0], mask_a, rows[1], mask_b, math.prod(batch))
+            core = ph.Multivector._of(rows[0], mask_a) * ph.Multivector._of(rows[1], mask_b)
+            data, mask = core.components, core._mask
             expected = np.zeros((*batch, 8))
             expected[..., layout.indices(mask)] = data.reshape(*batch, data.shape[-1])
             assert np.array_equal(np.asarray(got), expected)

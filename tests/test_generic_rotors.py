@@ -5,6 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import polhode as ph
 from polhode import _native
 from polhode._generic import functions, rotors
 from polhode._generic.exact import Exact
@@ -54,7 +55,7 @@ def test_powers_and_products(floating):
     r, q = floating(c), floating(e)
     d = of(r)
     product = rotors.multiply(d, r, q)
-    data, _ = _native.product("geometric", c, 5, e, 5, len(c))
+    data = (ph.Multivector._of(c, 5) * ph.Multivector._of(e, 5)).components
     assert np.all(difference(product, data) <= 8 * EPS)
     assert np.all(difference(rotors.power(d, r, 2.0), rotors.multiply(d, r, r)) <= 32 * EPS)
     n = floating(np.linspace(-1, 1, len(c)))
@@ -73,7 +74,7 @@ def test_rotors_act_on_any_grades(left, right, floating):
         got = rotors.apply(of(r, m), r, m, mask)
         batch = np.broadcast_shapes(left, right)
         wide = [np.ascontiguousarray(np.broadcast_to(v, (*batch, v.shape[-1]))) for v in (c, value)]
-        core = _native.rotor_apply(*wide, mask, int(np.prod(batch))).reshape(*batch, size)
+        core = ph.Rotor._from_rows(wide[0])(ph.Multivector._of(wide[1], mask)).components
         assert got.shape == core.shape
         assert np.all(abs(np.asarray(got) - core) <= 32 * EPS * (1 + abs(core).max(initial=0)))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _generic, _native, _parts
-from polhode._arrays import Array, is_float, mapped
+from polhode._arrays import Array, is_float, mapped, new
 from polhode._coefficients import common, kind_of
 from polhode._products import coerced
 
@@ -170,6 +170,11 @@ def inverse(value: Multivector) -> Multivector:
 
 def exp(value: Multivector) -> Multivector:
     """``exp A``; a rotor of a bivector of 3-d space."""
+    data, space = value._data, value.algebra
+    if value._mask == _BIVECTOR and space.signature == (3, 0, 0) and is_float(data) and not value._is_one:
+        rotors = new((*value.shape, 4), data.dtype)
+        _native.rotor_exp(data, rotors)
+        return _native.Rotor._from_rows(rotors)
     result = _function("exp", value)
     if value._is_one:
         return result

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _euler, _generic, _geometry, _native
-from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, rows
+from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, new, rows
 from polhode._coefficients import as_coefficients, kind_of, reshaped, taken
 from polhode._extras import optional
 from polhode._joined import joins
@@ -229,7 +229,12 @@ class Rotor(_native.Rotor, Multivector):
         """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
         if self._is_one:
             return self._log_of_one()
-        return Multivector._of(_computed("log", self._data), _BIVECTOR)
+        data = self._data
+        if not is_float(data):
+            return Multivector._of(_generic.rotors.log(kind_of(data), data), _BIVECTOR)
+        result = new((*self.shape, 3), data.dtype)
+        _native.rotor_log(data, result)
+        return Multivector._of(result, _BIVECTOR)
 
     def inverse(self) -> Rotor:
         """``~R``."""
@@ -251,9 +256,23 @@ class Rotor(_native.Rotor, Multivector):
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
         if isinstance(n, int) and not is_float(self._data):
             return Rotor._from_rows(_generic.rotors.power(kind_of(self._data), self._data, n))
-        turn = self.log() * as_coefficients(n, "the power of a rotor")
+        powers = as_coefficients(n, "the power of a rotor")
+        if is_float(self._data) and is_float(powers) and not self._is_one:
+            return _powers(self, powers)
+        turn = self.log() * powers
         power: Rotor = turn.exp()
         return power
+
+
+def _powers(R: Rotor, n: Array) -> Rotor:
+    """Return ``exp(n log R)`` for a batch."""
+    if not np.isfinite(n).all():
+        raise ValueError(f"the power of a rotor must be finite, got {n[~np.isfinite(n)][0]}")
+    batch, dtype = common_batch(R.shape, n.shape), np.result_type(R._data, n)
+    data = rows(R._data.astype(dtype, copy=False), batch)
+    result = new((*batch, 4), dtype)
+    _native.rotor_power(data, rows(n[..., np.newaxis].astype(dtype, copy=False), batch), result)
+    return Rotor._from_rows(result)
 
 
 def _to_wxyz(order: str) -> list[int]:

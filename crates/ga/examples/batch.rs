@@ -3,6 +3,7 @@
 //! `cargo run --release -p polhode-ga --example batch [rows]`
 
 use polhode_ga::batch::{Element, multiply_adds, turn};
+use polhode_ga::maps;
 use polhode_ga::product::{Grades, Plan, Product};
 use polhode_ga::table::{Algebra, Signature};
 use polhode_ga::threads::Threads;
@@ -73,6 +74,14 @@ fn full(rows: usize, peak: f64, p: usize, q: usize, r: usize) {
     println!("{:<34}{ours:>8.2} ns{share:>20.0} % of the peak", format!("full * full, Cl({p},{q},{r})"));
 }
 
+/// exp of bivectors up to a full turn and beyond, and log of the rotors that it gives.
+fn exp_and_log(rows: usize) {
+    let mut b: Vec<f64> = numbers::<f64>(3 * rows).iter().map(|x| 4.0 * x).collect();
+    let mut r = vec![1.0; 4 * rows];
+    line::<f64>("exp", rows, 3, 4, || maps::exp(Threads::ONE, &b, &mut r).expect("finite"));
+    line::<f64>("log", rows, 4, 3, || maps::log(Threads::ONE, &r, &mut b).expect("finite"));
+}
+
 fn main() {
     let asked = std::env::args().nth(1).and_then(|rows| rows.parse().ok());
     for rows in asked.map_or(vec![1_000_000, 1_000], |rows| vec![rows]) {
@@ -88,6 +97,7 @@ fn main() {
         turning::<f64>("R v ~R", rows, rows);
         turning::<f32>("R v ~R, f32", rows, rows);
         turning::<f64>("one R, many v", rows, 1);
+        exp_and_log(rows);
     }
     let peak = peak();
     println!("1000 rows, peak {:.0} GFLOP/s", 2.0 * peak);

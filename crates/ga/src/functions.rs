@@ -104,7 +104,7 @@ impl fmt::Display for MathError {
             ),
             MathError::NotVersor { deviation } => write!(
                 f,
-                "no even versor (a product of an even number of vectors): M ~M is no number, or M not even \
+                "not an even versor (a product of an even number of vectors): M ~M is no number, or M not even \
                  (relative deviation {deviation:.1e}); logarithm and square root are known for versors only"
             ),
             MathError::NoBivectorLogarithm => {

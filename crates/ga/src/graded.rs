@@ -1,6 +1,6 @@
 //! A single value of G3 that carries its grades: what a dynamic language holds.
 
-use crate::product::{Grades, Plan, Product};
+use crate::product::{Engine, Grades, Plan, Product};
 use crate::rotor::Rotor;
 use crate::values::{Vector, geometric};
 
@@ -76,7 +76,7 @@ impl Graded {
     pub fn product(&self, product: Product, other: &Graded) -> Graded {
         let plan = Plan::g3(product, self.grades, other.grades);
         let mut out = Graded { components: [0.0; 8], grades: plan.grades };
-        if plan.is_geometric {
+        if matches!(plan.engine, Engine::Geometric) {
             // A sum that begins with 0, as in the plan, is never −0.
             out.components = geometric(self.components, other.components).map(|x| x + 0.0);
             return out;

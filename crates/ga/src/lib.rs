@@ -15,10 +15,10 @@
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`threads`], [`values`]
-//! (`Vector`, `Bivector`, `Trivector`, `Multivector`), [`graded`] (a value that carries its grades),
-//! [`rotor`] (rotations), [`functions`] (inverse, exp, log, square root), [`general`] (the same in any
-//! algebra; complements, join and meet), [`pauli`].
+//! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`maps`] (exp, log and
+//! powers over rows), [`threads`], [`values`] (`Vector`, `Bivector`, `Trivector`, `Multivector`),
+//! [`graded`] (a value that carries its grades), [`rotor`] (rotations), [`functions`] (inverse, exp, log,
+//! square root), [`general`] (the same in any algebra; complements, join and meet), [`pauli`].
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
@@ -29,8 +29,12 @@ pub mod compose;
 pub mod functions;
 pub mod general;
 pub mod graded;
+mod lanes_math;
+mod map;
+pub mod maps;
 pub mod pauli;
 pub mod product;
+mod reduction;
 pub mod rotor;
 mod simd;
 mod sweep;

@@ -175,7 +175,8 @@ impl Plan {
         let engine = if full && algebra.signature() == G3.signature() {
             Engine::Geometric
         } else {
-            Tiles::new(algebra).filter(|_| full).map_or(Engine::Terms, Engine::Tiles)
+            let tiles = if full { Tiles::new(algebra) } else { None };
+            tiles.map_or(Engine::Terms, Engine::Tiles)
         };
         Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found, engine }
     }

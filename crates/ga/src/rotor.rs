@@ -7,8 +7,8 @@
 //! `k = −e1e2`, and the rotor of the quaternion `w + xi + yj + zk` is `w − x e2e3 − y e3e1 − z e1e2`.
 
 use crate::functions::MathError;
+use crate::maps;
 use crate::values::{Bivector, Multivector, Vector, norm};
-use std::f64::consts::PI;
 use std::ops::{Mul, Neg};
 
 /// How far a matrix may be from a rotation and still be read as one: `max |MᵀM − 1|`.
@@ -59,8 +59,16 @@ impl Rotor {
         [self.scalar, x, y, z]
     }
 
-    /// `exp(B)`: turns by `−2|B|` in the plane of `B`, i.e. by `θ` in the plane `P` for `B = −Pθ/2`.
+    /// `exp(B)`: turns by `−2|B|` in the plane of `B`, i.e. by `θ` in the plane `P` for `B = −Pθ/2`. Each
+    /// component is within 2 ulps, however large the angle or near to a quarter turn.
     pub fn exp(b: Bivector) -> Rotor {
+        Rotor::from_unit_components(maps::exp_one(b.0))
+    }
+
+    /// `exp(B)` to a few roundings of its norm 1: a component that nearly vanishes may be off by many of
+    /// its own. For integrators, whose turns are many and small: the library's sine and cosine take them
+    /// in half the time of [`Rotor::exp`], which made whole runs a third slower.
+    pub fn exp_fast(b: Bivector) -> Rotor {
         let angle = b.norm();
         // sin x / x is 1 to rounding long before x underflows.
         let sinc = if angle == 0.0 { 1.0 } else { angle.sin() / angle };
@@ -186,15 +194,9 @@ impl Rotor {
     }
 
     /// `log R`, the bivector with `exp(log R) = R` and `|log R| <= π`: the whole double cover.
-    /// `log(−1) = π e1e2`, any plane being as good.
+    /// `log(−1) = π e1e2`, any plane being as good. Each component is within 2 ulps.
     pub fn log(self) -> Bivector {
-        let size = self.bivector.norm();
-        if size == 0.0 {
-            let half_turns = if self.scalar < 0.0 { PI } else { 0.0 };
-            return Bivector([0.0, 0.0, half_turns]);
-        }
-        // For a small b the quotient is 1/s to rounding; dividing first keeps subnormal b exact.
-        self.bivector / size * size.atan2(self.scalar)
+        Bivector(maps::log_one(self.components()))
     }
 
     /// The unit plane `B` and the angle `θ` in [0, 2π] with `R = exp(−Bθ/2)`. For `R = ±1`, e1e2.

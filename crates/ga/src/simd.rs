@@ -2,9 +2,10 @@
 //! the machine to work on them.
 //!
 //! The arithmetic of a [`Kernel`] is plain loops over lanes, compiled once for each [`Path`]. None fuses
-//! a product with a sum unless a kernel asks for it, so all give the same numbers bit for bit, on any
-//! machine; where one asks, the portable path rounds once more at each term. Only the turning of rows into
-//! lanes and back is written by hand, because compilers do it badly.
+//! a product with a sum unless a kernel asks for it (see [`Kernel::fused_block`]), so all give the same
+//! numbers bit for bit, on any machine; only that of large algebras asks where it changes the result: the
+//! portable path rounds once more at each term. Only the turning of rows into lanes and back is written by
+//! hand, because compilers do it badly.
 //!
 //! This module holds all the unsafe code of the crate.
 #![allow(unsafe_code)]
@@ -87,7 +88,9 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     /// compiles them for its own instructions.
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]);
 
-    /// The same where `mul_add` is one instruction; elsewhere it is a call, a hundred times slower.
+    /// The same where `mul_add` is one instruction; elsewhere it is a call, a hundred times slower. For sums
+    /// of many terms, and for kernels that find by it what they find otherwise in more steps: the rounding
+    /// errors of products.
     #[inline(always)]
     fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         self.block(a, b, out);
@@ -165,7 +168,8 @@ impl Path {
             (std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma"))
                 .then_some(Level::Avx2),
             #[cfg(target_arch = "x86_64")]
-            std::is_x86_feature_detected!("avx512f").then_some(Level::Avx512),
+            (std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("fma"))
+                .then_some(Level::Avx512),
             #[cfg(target_arch = "aarch64")]
             std::arch::is_aarch64_feature_detected!("neon").then_some(Level::Neon),
         ]

@@ -14,6 +14,11 @@ pub(crate) const STREAMED: usize = 16 << 20;
 /// A thread more pays from so many numbers for each on; they take three times as long as it takes to start.
 const SHARED: usize = 1 << 19;
 
+/// Whether factors and product together are too much for the caches.
+pub(crate) fn beyond_caches<T>(a: &[T], b: &[T], out: &[T]) -> bool {
+    size_of_val(a) + size_of_val(b) + size_of_val(out) >= STREAMED
+}
+
 /// Rows of a factor: one for all, or one for each.
 #[derive(Clone, Copy)]
 struct Factor<'a, T> {
@@ -118,8 +123,7 @@ pub(crate) fn sweep<T: Element, const W: usize, K: Kernel<W>>(
     let total = out.len() / nout;
     assert_eq!(out.len(), total * nout, "the result is not a whole number of rows");
     let (a, b) = (Factor::new(a, na, total), Factor::new(b, nb, total));
-    let bytes = size_of_val(a.data) + size_of_val(b.data) + size_of_val(out);
-    let streamed = path.streams() && bytes >= STREAMED;
+    let streamed = path.streams() && beyond_caches(a.data, b.data, out);
     threads.for_each_piece(SHARED / (na + nb + nout), nout, out, |rows, out| {
         let (a, b) = (a.piece(rows.clone()), b.piece(rows));
         sweep_piece(path, streamed, kernel, a, b, (out, nout));
@@ -138,8 +142,9 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W>>(
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(kernel, a, b, (out, nout));
     }
+    // What lies beyond the last rows is computed too; no function has difficulties with 1.
     let mut lanes =
-        vec![Lane::<W>::filled(0.0); a.size + b.size + nout + if streamed { nout + 2 } else { 0 }];
+        vec![Lane::<W>::filled(1.0); a.size + b.size + nout + if streamed { nout + 2 } else { 0 }];
     let (a_lanes, rest) = lanes.split_at_mut(a.size);
     let (b_lanes, rest) = rest.split_at_mut(b.size);
     let (out_lanes, buffer) = rest.split_at_mut(nout);

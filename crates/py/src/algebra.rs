@@ -1,11 +1,14 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, threads};
+use crate::arrays::{
+    Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, place, threads,
+};
 use crate::signature::Algebra;
-use numpy::PyArrayDyn;
+use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::batch::{Element, turn_threads};
 use polhode_ga::compose::compose;
 use polhode_ga::functions::Function;
+use polhode_ga::maps;
 use polhode_ga::product::Grades;
 use polhode_ga::table::G3;
 use polhode_ga::threads::Threads;
@@ -162,10 +165,57 @@ pub(crate) fn rotor_to_rotation_vector<'py>(py: Python<'py>, r: Rows<'py>) -> Ou
     map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).to_rotation_vector().0))
 }
 
-/// Bivectors −Bθ/2 of rotors.
+/// Fills `out` with the rotors `exp B` of rows of bivectors; both hold float64, or float32.
 #[pyfunction]
-pub(crate) fn rotor_log<'py>(py: Python<'py>, r: Rows<'py>) -> Out<'py> {
-    map_rows(py, &r, |c| Ok::<_, MathError>(Rotor::from_unit_components(c).log().0))
+pub(crate) fn rotor_exp(b: &Bound<'_, PyAny>, out: &Bound<'_, PyAny>) -> PyResult<()> {
+    if is_single(out) {
+        return map_to::<f32>((3, 4), b, out, maps::exp);
+    }
+    map_to::<f64>((3, 4), b, out, maps::exp)
+}
+
+/// Fills `out` with the bivectors −Bθ/2 of rows of rotors; both hold float64, or float32.
+#[pyfunction]
+pub(crate) fn rotor_log(r: &Bound<'_, PyAny>, out: &Bound<'_, PyAny>) -> PyResult<()> {
+    if is_single(out) {
+        return map_to::<f32>((4, 3), r, out, maps::log);
+    }
+    map_to::<f64>((4, 3), r, out, maps::log)
+}
+
+/// Fills `out` with `exp(n log R)` of rows of rotors and of one number n each; all hold float64, or float32.
+#[pyfunction]
+pub(crate) fn rotor_power<'py>(
+    r: &Bound<'py, PyAny>,
+    n: &Bound<'py, PyAny>,
+    out: &Bound<'py, PyAny>,
+) -> PyResult<()> {
+    if is_single(out) {
+        let n: Rows<'_, f32> = n.extract()?;
+        let n = numbers(&n)?;
+        return map_to::<f32>((4, 4), r, out, |t, r, out| maps::power(t, r, n, out));
+    }
+    let n: Rows<'_> = n.extract()?;
+    let n = numbers(&n)?;
+    map_to::<f64>((4, 4), r, out, |t, r, out| maps::power(t, r, n, out))
+}
+
+/// Fills an array from the rows of another of the same batch shape; an error names the batch index of the first
+/// row that is not finite.
+fn map_to<T: Element + numpy::Element>(
+    (size, filled): (usize, usize),
+    input: &Bound<'_, PyAny>,
+    out: &Bound<'_, PyAny>,
+    work: impl Fn(Threads, &[T], &mut [T]) -> Result<(), usize> + Sync,
+) -> PyResult<()> {
+    let input: Rows<'_, T> = input.extract()?;
+    let batch = input.shape().split_last().map_or(&[][..], |(_, batch)| batch);
+    let mut to: RowsToFill<'_, T> = out.extract()?;
+    let (from, to) = (numbers(&input)?, numbers_to_fill(&mut to)?);
+    check_rows(from.len(), size, to.len() / filled)?;
+    let threads = threads(to.len())?;
+    let failed = |row| bad(format!("{}{}", place(row, batch), MathError::NotFinite));
+    out.py().detach(|| work(threads, from, to)).map_err(failed)
 }
 
 /// Unit planes (3) and angles of rotors.

@@ -81,7 +81,7 @@ pub(crate) fn table<'py, const N: usize>(
 }
 
 /// `at index (2, 0): ` for row 4 of shape (…, 2); nothing for a single value.
-fn place(row: usize, batch: &[usize]) -> String {
+pub(crate) fn place(row: usize, batch: &[usize]) -> String {
     if batch.is_empty() {
         return String::new();
     }

@@ -16,9 +16,9 @@ mod signature;
 mod _native {
     #[pymodule_export]
     use crate::algebra::{
-        from_pauli, function, norm, product, rotor_apply, rotor_compose, rotor_from_components,
+        from_pauli, function, norm, product, rotor_apply, rotor_compose, rotor_exp, rotor_from_components,
         rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion, rotor_from_rotation_vector,
-        rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_to_matrix, rotor_to_quaternion,
+        rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_power, rotor_to_matrix, rotor_to_quaternion,
         rotor_to_rotation_vector, subspaces, to_pauli,
     };
 

@@ -180,7 +180,7 @@ impl Stepper {
     }
 
     fn turn_about_momentum(&self, state: &mut Phase, h: f64) {
-        state.rotor = state.rotor * Rotor::exp(state.momentum * (-0.5 * h / self.middle));
+        state.rotor = state.rotor * Rotor::exp_fast(state.momentum * (-0.5 * h / self.middle));
     }
 
     fn turn_about_axes(&self, state: &mut Phase, h: f64) {
@@ -194,7 +194,7 @@ impl Stepper {
         let half = 0.5 * self.kappa[which] * state.momentum.0[k] * h;
         let mut plane = Bivector::default();
         plane.0[k] = -half;
-        state.rotor = state.rotor * Rotor::exp(plane);
+        state.rotor = state.rotor * Rotor::exp_fast(plane);
         // ~q m q turns the other two components by −2 half; written out, the one about k is exact. The turn is
         // added to m: rounded cosines and sines would stretch it by the same at every step of a steady motion.
         let (sin, cos) = half.sin_cos();

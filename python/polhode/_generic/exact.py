@@ -149,7 +149,6 @@ def is_finite(x: Any) -> bool:
 
 _divide = np.frompyfunc(divide, 2, 1)
 _sqrt = np.frompyfunc(sqrt, 1, 1)
-_atan2 = np.frompyfunc(atan2, 2, 1)
 _call = np.frompyfunc(call, 2, 1)
 
 
@@ -223,10 +222,6 @@ class Exact:
     def cos(self, x: Array) -> Array:
         """Return the cosine."""
         return _call("cos", x)
-
-    def atan2(self, y: Array, x: Array) -> Array:
-        """Return the angle of the point (x, y)."""
-        return _atan2(y, x)
 
     def require(self, ok: Array, message: str) -> None:
         """Raise a ValueError, with the first index where `ok` is false."""

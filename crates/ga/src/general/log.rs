@@ -155,10 +155,10 @@ impl Calculus {
             return Some(log);
         }
         let ring = Ring { q };
-        if r[0] < 0.0
+        if r[0] < y.abs() * q.max(0.0).sqrt()
             && let Some(plane) = self.unit_plane(ring, &f, &unit)
         {
-            // Here 1 + C cancels. Turned back by a quarter in the unit plane, −R P, it does not.
+            // Where a number of C is negative, 1 + C cancels; turned back by a quarter, to −R P, it does not.
             let mut log = self.log_in_ring(&scaled(&self.product(r, &plane), -1.0))?;
             add_scaled(&mut log, &plane, FRAC_PI_2);
             return Some(log);

@@ -14,7 +14,7 @@ pub(super) fn apply_avx2<const W: usize, K: Kernel<W>>(
     kernel.fused_block(a, b, out);
 }
 
-#[target_feature(enable = "avx512f")]
+#[target_feature(enable = "avx512f,fma")]
 pub(super) fn apply_avx512<const W: usize, K: Kernel<W>>(
     kernel: &K,
     a: &[Lane<W>],

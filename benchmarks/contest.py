@@ -1,0 +1,129 @@
+"""One row of the table: several libraries doing the same work, checked equal, then timed in turns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from timeit import Timer
+from typing import Any
+
+import numpy as np
+
+OURS = "polhode"
+Read = Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How long to measure: the best of `rounds` runs of at least `span` seconds; rows in a batch."""
+
+    span: float
+    rounds: int
+    batch: int
+
+
+FULL = Pace(span=0.1, rounds=7, batch=1_000_000)
+QUICK = Pace(span=0.01, rounds=2, batch=100_000)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What one library runs: an expression, the names in it, and of how many results it is."""
+
+    code: str
+    names: dict[str, Any]
+    count: int
+
+
+@dataclass
+class Row:
+    """The same work by every library that can do it.
+
+    The first entry is the reference; a later one must give the same numbers to `tolerance` times the
+    largest of them, in our conventions: `read` translates its result. What a library lacks is a note.
+
+    Attributes
+    ----------
+    what, goal
+        The row's title, and the figure to reach.
+    count
+        Of how many results the work is; figures are per result.
+    unit
+        ``"ns"``, ``"us"`` or ``"ms"``.
+    traffic
+        Bytes per result that memory must move, inputs and outputs; 0 where memory is no limit.
+    """
+
+    what: str
+    goal: str = ""
+    count: int = 1
+    unit: str = "ns"
+    traffic: int = 0
+    tolerance: float = 1e-12
+    entries: dict[str, Entry] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    notes: dict[str, str] = field(default_factory=dict)
+    expected: Any = None
+
+    def enter(
+        self, library: str, code: str, names: dict[str, Any], read: Read, count: int | None = None
+    ) -> None:
+        """Add a library: `code`, over `names`, gives what `read` turns into an array (count, ...)."""
+        result = np.asarray(read(eval(code, dict(names))))
+        if self.expected is None:
+            self.expected = result
+        expected = self.expected if count is None else self.expected[:count]
+        size = np.abs(expected).max(initial=1e-300)
+        if result.shape != expected.shape:
+            raise ValueError(f"gives shape {result.shape}, not {expected.shape}")
+        if not (off := np.abs(result - expected).max(initial=0.0) / size) <= self.tolerance:
+            raise ValueError(f"disagrees by {off:.1e} of the largest")
+        self.entries[library] = Entry(code, names, self.count if count is None else count)
+
+    @contextmanager
+    def peer(self, library: str) -> Iterator[None]:
+        """Around a peer's set-up and entry: whatever fails is a note, and its place in the table is empty."""
+        try:
+            yield
+        except ImportError as error:
+            self.notes[library] = f"not installed ({error})"
+        except Exception as error:
+            self.notes[library] = f"{type(error).__name__}: {error}".splitlines()[0]
+
+    @contextmanager
+    def planned(self) -> Iterator[None]:
+        """Around an entry of ours that this version may not have."""
+        try:
+            yield
+        except (AttributeError, TypeError) as error:
+            self.notes[OURS] = f"not available ({error})"
+
+    def measure(self, pace: Pace) -> None:
+        """Time all entries in turns, so that a disturbance meets all alike; keep each one's best."""
+        timers = {
+            library: Timer(entry.code, globals=dict(entry.names)) for library, entry in self.entries.items()
+        }
+        numbers = {library: _enough(timer, pace.span) for library, timer in timers.items()}
+        for _ in range(pace.rounds):
+            for library, timer in timers.items():
+                each = timer.timeit(numbers[library]) / (numbers[library] * self.entries[library].count)
+                self.seconds[library] = min(each, self.seconds.get(library, np.inf))
+
+    def release(self) -> None:
+        """Let go of the values, which may be large; expressions and figures stay."""
+        self.expected = None
+        self.entries = {name: replace(entry, names={}) for name, entry in self.entries.items()}
+
+    def ahead(self) -> float | None:
+        """Return how many times longer the fastest peer takes than we do."""
+        peers = [seconds for library, seconds in self.seconds.items() if library != OURS]
+        return min(peers) / self.seconds[OURS] if peers and OURS in self.seconds else None
+
+
+def _enough(timer: Timer, span: float) -> int:
+    """Return how many runs last `span` seconds."""
+    number = 1
+    while (taken := timer.timeit(number)) < span / 2:
+        number = max(2 * number, min(100 * number, round(number * span / max(taken, 1e-9))))
+    return number

@@ -26,10 +26,10 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
         raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
     if dtype is not None:
         return _converted(values, what, dtype)
+    if isinstance(values, np.ndarray) and hasattr(values, "mask"):
+        raise TypeError(f"{what} is a masked array; fill it, or take its compressed values")
     if is_float(values):
         return values
-    if isinstance(values, np.ma.MaskedArray):
-        raise TypeError(f"{what} is a masked array; fill it, or take its compressed values")
     if isinstance(values, list | tuple):
         strange = [leaf for leaf in _leaves(values) if type(leaf) not in _PLAIN]
         special = any(not isinstance(leaf, np.ndarray | np.generic) for leaf in strange)

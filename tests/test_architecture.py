@@ -66,6 +66,13 @@ def test_python_modules_form_no_circle():
         visit(name, ())
 
 
+def test_the_package_does_not_use_the_strategies_for_tests():
+    used = {
+        path.name for path in PACKAGE.rglob("*.py") if "strategies" in module_imports(path, {"strategies"})
+    }
+    assert not used
+
+
 def test_importing_needs_numpy_only():
     allowed = {"numpy", "polhode", "__future__"}
     import sys

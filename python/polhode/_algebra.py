@@ -129,8 +129,8 @@ class Algebra(_native.Algebra):
         """Return the names of the basis elements of some grades; that of the scalar is empty."""
         return _names(self, mask)
 
-    def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int64]]:
-        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0."""
+    def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
+        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0; small, so float32 stays so."""
         return _reverse_squares(self, mask)
 
     def _complement(self, right: bool) -> list[tuple[int, float]]:
@@ -181,8 +181,8 @@ def _name(bits: int, sign: int, dimension: int) -> str:
 
 
 @functools.cache
-def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np.int64]]:
-    signs = np.zeros(len(algebra._indices(mask)), dtype=np.int64)
+def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
+    signs = np.zeros(len(algebra._indices(mask)), dtype=np.int8)
     terms, _ = algebra._terms("scalar", mask, mask)
     grades = _grade_of(algebra)[algebra._indices(mask)]
     for a, _b, _out, sign in terms:

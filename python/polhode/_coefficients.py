@@ -18,14 +18,16 @@ _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     """Return an array of coefficients: of floats where they are enough, else of the kind that they are.
 
-    Float32 and float64 arrays stay as they are. Other real numbers become float64, but integers that
-    float64 cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other
-    libraries stay theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
+    NumPy's float32 and float64 stay as they are. Other real numbers become float64, but integers that float64
+    cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other libraries stay
+    theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
     """
     if isinstance(values, _native.Multivector):
         raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
     if dtype is not None:
         return _converted(values, what, dtype)
+    if isinstance(values, np.ndarray) and hasattr(values, "mask"):
+        raise TypeError(f"{what} is a masked array; fill it, or take its compressed values")
     if is_float(values):
         return values
     if isinstance(values, list | tuple):
@@ -43,7 +45,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
         return _exact(array, what)
     if array.dtype.kind in "iu" and not _fits_floats(array):
         return _exact(array.astype(object), what)
-    return as_floats(array, what)
+    return array if is_float(array) else as_floats(array, what)
 
 
 def namespace(array: Any) -> Any:
@@ -55,6 +57,18 @@ def namespace(array: Any) -> Any:
 def kind_of(*values: Any) -> Any:
     """Return the arithmetic that serves arrays which are not all of NumPy floats."""
     return _generic.coefficients.of(*values)
+
+
+def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
+    """Return the same elements in another shape."""
+    return array.reshape(shape) if isinstance(array, np.ndarray) else kind_of(array).reshape(array, shape)
+
+
+def taken(array: Any, places: list[int]) -> Any:
+    """Return some components, in this order."""
+    if isinstance(array, np.ndarray):
+        return array[..., places]
+    return kind_of(array).stack([array[..., k] for k in places])
 
 
 def tell_jax() -> None:
@@ -84,6 +98,8 @@ def scalars(value: Any, like: Any) -> Any:
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
+        if value.dtype.kind in "iu" and is_float(like):  # rounded as they are, whatever their values
+            return as_floats(value, "scalar")[..., None]
     elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
     return as_coefficients(value, "scalar")[..., None]
@@ -147,13 +163,26 @@ def _converted(values: Any, what: str, dtype: Any) -> Any:
     """Return coefficients of the type asked for."""
     given = as_coefficients(values, what)
     if not isinstance(given, np.ndarray):
-        return given.astype(dtype)
+        return _converted_foreign(given, what, dtype)
     wanted = np.dtype(dtype)
     if wanted.kind == "O":
-        return _exact(given.astype(object), what)
+        # Whole floats become integers, so that what is computed of them stays exact.
+        return kind_of(np.empty(0, dtype=object)).asarray(given)
     if wanted not in (np.float64, np.float32):
         raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
     try:
         return given.astype(wanted, copy=False)
     except (TypeError, OverflowError) as error:
         raise TypeError(f"{what} does not become {wanted}: {error}") from error
+
+
+def _converted_foreign(given: Any, what: str, dtype: Any) -> Any:
+    """Return an array of another library in a floating type of it, given by itself or by NumPy's name."""
+    xp = namespace(given)
+    try:
+        wanted = getattr(xp, np.dtype(dtype).name, None)
+    except TypeError:  # it is a type of the library's own
+        wanted = dtype
+    if wanted is None or not xp.isdtype(wanted, "real floating"):
+        raise TypeError(f"{what} of a {type(given).__name__} of {xp.__name__} does not become {dtype}")
+    return xp.astype(given, wanted)

@@ -62,13 +62,19 @@ def power(value: Multivector, n: Any) -> Multivector:
         base = base * base
 
 
+def as_precise(value: Multivector, like: Multivector) -> Multivector:
+    """Return a value of float64 in single precision, if the other is of it."""
+    return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
+
+
 def norm_squared(value: Multivector) -> Any:
     """``⟨A ~A⟩``, of the batch shape."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data):
         with np.errstate(over="ignore"):
             return (np.square(data) * signs).sum(axis=-1)[()]
-    return value.scalar_product(~value)._data[..., 0]
+    square = value.scalar_product(~value)._data[..., 0]
+    return square[()] if isinstance(square, np.ndarray) else square
 
 
 def norm(value: Multivector) -> Any:
@@ -143,7 +149,10 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     """Return the inverse or the exponential of other coefficients in other algebras."""
     algebra = value.algebra
     if name not in ("inverse", "exp"):
-        raise TypeError(f"{name} in {algebra} needs floats, got {value.dtype}; convert with .astype(float)")
+        raise TypeError(
+            f"{name} in {algebra} needs NumPy floats, got {type(value._data).__name__} of {value.dtype}; "
+            "convert exact numbers with .astype(float), other arrays with np.asarray(A.components)"
+        )
     mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
     terms, _ = algebra._terms("geometric", everything, everything)
     full = _parts.with_grades(value, everything)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
@@ -10,6 +12,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._algebra import algebra
+from polhode._arrays import is_float
 from polhode._coefficients import as_coefficients
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
@@ -50,6 +53,13 @@ def from_dict(fields: Mapping[str, Any]) -> Multivector:
     missing = _KEYS - set(fields)
     if missing:
         raise ValueError(f"a value needs the fields {sorted(_KEYS)}; missing: {sorted(missing)}")
+    try:
+        return _restored(fields)
+    except (TypeError, ArithmeticError) as error:
+        raise ValueError(f"the fields do not make a value: {error}") from error
+
+
+def _restored(fields: Mapping[str, Any]) -> Multivector:
     signature, grades = list(fields["algebra"]), list(fields["grades"])
     if len(signature) != 3:
         raise ValueError(f"an algebra is three counts (p, q, r), got {signature}")
@@ -59,16 +69,22 @@ def from_dict(fields: Mapping[str, Any]) -> Multivector:
     mask = sum(1 << k for k in grades)
     if fields["dtype"] not in _DTYPES:
         raise ValueError(f"dtype must be one of {', '.join(_DTYPES)}, got {fields['dtype']!r}")
-    numbers = np.frompyfunc(_number, 1, 1)(np.array(fields["components"], dtype=object))
-    shape = (*fields["shape"], len(space._indices(mask)))
-    if numbers.size != np.prod(shape):
+    numbers = np.asarray(np.frompyfunc(_number, 1, 1)(np.array(fields["components"], dtype=object)))
+    shape = (*map(operator.index, fields["shape"]), len(space._indices(mask)))
+    if numbers.size != math.prod(shape):
         raise ValueError(f"grades {grades} and shape {fields['shape']} do not fit {numbers.size} components")
     data = as_coefficients(numbers, "a component", _DTYPES[fields["dtype"]]).reshape(shape)
+    if not isinstance(fields["rotor"], bool):
+        raise ValueError(f"rotor must be true or false, got {fields['rotor']!r}")
     if not fields["rotor"]:
         return Multivector._of(data, mask, space)
     if space is not algebra(3) or grades != [0, 2]:
         raise ValueError(f"a rotor is of Cl(3) with grades [0, 2], got {space} with {grades}")
-    return Rotor.from_components(data)
+    unit = Rotor.from_components(data)
+    # Dividing by a norm that is 1 but for rounding would change the last bits.
+    rounding = 32 * np.finfo(data.dtype if is_float(data) else float).eps
+    same = unit.is_close(Multivector._of(data, mask), rtol=rounding)
+    return Rotor._from_rows(data) if np.all(same) else unit
 
 
 def _number(x: Any) -> Any:

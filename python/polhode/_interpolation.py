@@ -40,7 +40,8 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
     w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
     if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
         raise ValueError(f"weights must be {R.shape[0]} finite numbers >= 0, not all 0, got {w.tolist()}")
-    values, vectors = np.linalg.eigh((w[:, np.newaxis] * R.components).T @ R.components)
+    rows = as_floats(np.asarray(R.components, dtype=float), "a component")
+    values, vectors = np.linalg.eigh((w[:, np.newaxis] * rows).T @ rows)
     if values[3] - values[2] <= 8 * np.finfo(float).eps * values[3]:
         raise ValueError("the rotors have no mean: two attitudes are equally close to all of them")
     best = vectors[:, 3]

@@ -42,6 +42,7 @@ class Multivector(_native.Multivector):
 
     __slots__ = ()
     __array_ufunc__ = None  # NumPy arrays leave mixed operations to this class
+    __sympy__ = False  # and so do expressions of SymPy, which are not to convert it
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -110,6 +111,8 @@ class Multivector(_native.Multivector):
         # The Ellipsis keeps the index off the component axis.
         rest: tuple[Any, ...] = () if any(part is Ellipsis for part in parts) else (Ellipsis,)
         try:
+            if not isinstance(self._data, np.ndarray):
+                _parts.check_index(self.shape, parts)
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
             raise IndexError(f"{error} (batch shape {self.shape})") from None
@@ -132,12 +135,6 @@ class Multivector(_native.Multivector):
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise TypeError("a multivector does not become an array by itself; take its .components")
-
-    def _sympy_(self) -> Any:
-        """Tell SymPy that this is no expression, so that ``x*e1`` comes to this class."""
-        from sympy import SympifyError
-
-        raise SympifyError(type(self).__name__)
 
     def __repr__(self) -> str:
         return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
@@ -229,12 +226,12 @@ class Multivector(_native.Multivector):
 
         A TypeError where I has no inverse, as in Cl(3,0,1); `right_complement` takes its place there.
         """
-        return self * self.algebra._inverse_of_I()
+        return self * _functions.as_precise(self.algebra._inverse_of_I(), self)
 
     def undual(self) -> Multivector:
         """``A I``, the inverse of `dual`."""
         self.algebra._inverse_of_I()
-        return self * self.algebra.I
+        return self * _functions.as_precise(self.algebra.I, self)
 
     def right_complement(self) -> Multivector:
         """Return what is missing from the whole space: linear, ``E ∧ rc(E) = I`` for basis elements E.

@@ -11,6 +11,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Shape, is_float
 from polhode._coefficients import common, kind_of, namespace
+from polhode._coefficients import reshaped as coefficients_reshaped
 from polhode._products import coerced, common_algebra
 
 if TYPE_CHECKING:
@@ -76,6 +77,12 @@ def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     return _native.Multivector._of(changed, value._mask, value.algebra)
 
 
+def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
+    """Raise an IndexError where a plain index is out of range, which JAX would take for the last one."""
+    if all(part is None or part is Ellipsis or isinstance(part, int | np.integer | slice) for part in index):
+        np.broadcast_to(np.int8(0), shape)[index]
+
+
 def reshaped(value: Multivector, shape: tuple[Any, ...]) -> Multivector:
     """Return a batch of another shape."""
     if len(shape) == 1 and not hasattr(shape[0], "__index__"):
@@ -90,7 +97,7 @@ def reshaped(value: Multivector, shape: tuple[Any, ...]) -> Multivector:
         lengths[lengths.index(-1)] = count // known
     if np.prod(lengths) != np.prod(value.shape):
         raise ValueError(f"a batch of shape {value.shape} cannot be reshaped to {tuple(lengths)}")
-    return value._like(data.reshape((*lengths, data.shape[-1])))
+    return value._like(coefficients_reshaped(data, (*lengths, data.shape[-1])))
 
 
 def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:

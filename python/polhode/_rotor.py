@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _euler, _generic, _geometry, _native
 from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, new, rows
-from polhode._coefficients import as_coefficients, common, kind_of
+from polhode._coefficients import as_coefficients, kind_of, reshaped, taken
 from polhode._extras import optional
 from polhode._joined import joins
 from polhode._multivector import Multivector
@@ -104,10 +104,8 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
         """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
-        places = _to_wxyz(order)
         given = _components(q, 4, "quaternion")
-        wxyz = common(*(given[..., k, None] for k in places))
-        return Rotor._from_rows(_computed("from_quaternion", *wxyz))
+        return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
 
     @staticmethod
     def from_rotation_vector(v: Any) -> Rotor:
@@ -154,14 +152,14 @@ class Rotor(_native.Rotor, Multivector):
 
     def to_matrix(self) -> Any:
         """Rotation matrices (..., 3, 3) acting on columns."""
-        return _computed("to_matrix", self._data).reshape((*self.shape, 3, 3))
+        return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
         """Quaternions (..., 4), Hamilton's and active; the order must be said."""
         if _to_wxyz(order)[0] == 0:
             return _computed("to_quaternion", self._data)
         wxyz = _computed("to_quaternion", self._data)
-        return wxyz[..., np.argsort(_to_wxyz(order))]
+        return taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
         """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
@@ -202,6 +200,10 @@ class Rotor(_native.Rotor, Multivector):
         A float, or an array of the batch shape; accurate however close the attitudes are.
         """
         return _geometry.distance(self, other)
+
+    def astype(self, dtype: Any) -> Rotor:
+        """Return it with components of another type, of norm 1 in the precision of that."""
+        return Rotor.from_components(Multivector.astype(self, dtype)._data)
 
     # --- action and algebra
 
@@ -252,6 +254,8 @@ class Rotor(_native.Rotor, Multivector):
 
     def __pow__(self, n: Any) -> Rotor:
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
+        if isinstance(n, int) and not is_float(self._data):
+            return Rotor._from_rows(_generic.rotors.power(kind_of(self._data), self._data, n))
         powers = as_coefficients(n, "the power of a rotor")
         if is_float(self._data) and is_float(powers) and not self._is_one:
             return _powers(self, powers)

@@ -44,7 +44,10 @@ def joined(left: Multivector, right: Multivector, name: str) -> Multivector:
         raise TypeError(f"{name} needs blades, got {type(right).__name__}")
     algebra = common_algebra(left, right)
     if not (is_float(left._data) and is_float(right._data)):
-        raise TypeError(f"{name} needs floats, got {left.dtype} and {right.dtype}; use .astype(float)")
+        raise TypeError(
+            f"{name} needs NumPy floats, got {left.dtype} and {right.dtype}; convert exact numbers with "
+            ".astype(float), other arrays with np.asarray(A.components)"
+        )
     batch = common_batch(left.shape, right.shape)
     everything = algebra._all
     a, b = (

@@ -65,7 +65,8 @@ def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
     value = coerced(M)
     if value is None:
         raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
-    numbers: Array = mapped(_native.to_pauli, _of_3d(value, "to_pauli").astype(float)._with_grades(_ALL))
+    eight = _of_3d(value, "to_pauli")._with_grades(_ALL)
+    numbers: Array = mapped(_native.to_pauli, as_coefficients(np.asarray(eight), "a component", float))
     return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode import _comparison, _format, _functions, _native, _parts, _subspaces
+from polhode import _comparison, _functions, _native, _parts
 from polhode._arrays import Shape
 from polhode._coefficients import as_coefficients
 from polhode._joined import joins
@@ -137,6 +137,8 @@ class Multivector(_native.Multivector):
         raise TypeError("a multivector does not become an array by itself; take its .components")
 
     def __repr__(self) -> str:
+        from polhode import _format
+
         return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
 
     # --- the values behind the methods
@@ -238,10 +240,14 @@ class Multivector(_native.Multivector):
 
         Needs no metric, so that it serves where I has no inverse.
         """
+        from polhode import _subspaces
+
         return _subspaces.complement(self, right=True)
 
     def left_complement(self) -> Multivector:
         """``lc(E) ∧ E = I`` for basis elements E: the inverse of `right_complement`."""
+        from polhode import _subspaces
+
         return _subspaces.complement(self, right=False)
 
     # --- subspaces
@@ -251,6 +257,8 @@ class Multivector(_native.Multivector):
 
         Of grade r + s − n: where two blades span the whole space, what they have in common.
         """
+        from polhode import _subspaces
+
         return _subspaces.regressive(self, other)
 
     def join(self, other: Multivector) -> Multivector:
@@ -259,6 +267,8 @@ class Multivector(_native.Multivector):
         Directions within 1e-10 of a subspace count as lying in it. Components are compared as lengths, the
         basis vectors as orthonormal, whatever the metric. A ValueError for values that are no blades.
         """
+        from polhode import _subspaces
+
         return _subspaces.joined(self, other, "join")
 
     def meet(self, other: Multivector) -> Multivector:
@@ -267,6 +277,8 @@ class Multivector(_native.Multivector):
         Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``, so that
         M is a positive multiple of ``A∨B`` where A and B span the whole space. Tolerance as for `join`.
         """
+        from polhode import _subspaces
+
         return _subspaces.joined(self, other, "meet")
 
     # --- sizes

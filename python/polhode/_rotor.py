@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from polhode import _euler, _generic, _geometry, _native
+from polhode import _generic, _native
 from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, new, rows
 from polhode._coefficients import as_coefficients, kind_of, reshaped, taken
 from polhode._extras import optional
@@ -138,6 +138,8 @@ class Rotor(_native.Rotor, Multivector):
         For one axis a single angle needs no array.
         """
         total: Any = Rotor.identity()
+        from polhode import _euler
+
         for turn in _euler.rotation_vectors(seq, angles, degrees):
             total = Rotor.from_rotation_vector(turn) * total
         result: Rotor = total
@@ -184,6 +186,8 @@ class Rotor(_native.Rotor, Multivector):
         difference of the others is determined: the third angle is then 0, and the three angles give the
         attitude as ever, so nothing is lost and nothing is warned of.
         """
+        from polhode import _euler
+
         return _euler.to_euler(self, seq, degrees)
 
     def plane_angle(self) -> tuple[Multivector, Any]:
@@ -199,6 +203,8 @@ class Rotor(_native.Rotor, Multivector):
 
         A float, or an array of the batch shape; accurate however close the attitudes are.
         """
+        from polhode import _geometry
+
         return _geometry.distance(self, other)
 
     def astype(self, dtype: Any) -> Rotor:

@@ -109,6 +109,8 @@ def batch_shape(shape: Any) -> Shape:
 
 def joined(*parts: Array) -> Array:
     """Broadcast the batches together and lay the components side by side in the last axis."""
+    if len(parts) == 1:
+        return np.ascontiguousarray(parts[0])
     batch = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
     wide = [np.broadcast_to(part, (*batch, part.shape[-1])) for part in parts]
     return np.ascontiguousarray(np.concatenate(wide, axis=-1))

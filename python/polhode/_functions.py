@@ -86,18 +86,11 @@ def norm(value: Multivector) -> Any:
         kind = kind_of(data)
         return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
     if min(signs) > 0 and len(signs) <= 8:
-        return mapped(_native.norm, _padded(data))[..., 0][()]
+        return mapped(_native.norm, data)[..., 0][()]
     # In units of the largest component, so that nothing overflows.
     unit = np.abs(data).max(axis=-1, keepdims=True)
     unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
     return (np.sqrt(np.abs((np.square(data / unit) * signs).sum(axis=-1))) * unit[..., 0])[()]
-
-
-def _padded(data: Array) -> Array:
-    """Return rows of eight: zeros follow."""
-    wide = np.zeros((*data.shape[:-1], 8), dtype=data.dtype)
-    wide[..., : data.shape[-1]] = data
-    return wide
 
 
 def normalized(value: Multivector) -> Multivector:

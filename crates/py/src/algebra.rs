@@ -95,10 +95,27 @@ pub(crate) fn subspaces<'py>(
     }
 }
 
-/// Euclidean norms of the rows, without overflow on the way; the last axis has length 1.
+/// Euclidean norms of rows of up to eight numbers, without overflow on the way; the last axis has length 1.
 #[pyfunction]
 pub(crate) fn norm<'py>(py: Python<'py>, m: Rows<'py>) -> Out<'py> {
-    map_rows(py, &m, |c: [f64; 8]| Ok::<_, MathError>([Multivector(c).norm()]))
+    match m.shape().last() {
+        Some(1) => norms::<1>(py, &m),
+        Some(2) => norms::<2>(py, &m),
+        Some(3) => norms::<3>(py, &m),
+        Some(4) => norms::<4>(py, &m),
+        Some(5) => norms::<5>(py, &m),
+        Some(6) => norms::<6>(py, &m),
+        Some(7) => norms::<7>(py, &m),
+        _ => norms::<8>(py, &m),
+    }
+}
+
+fn norms<'py, const K: usize>(py: Python<'py>, m: &Rows<'py>) -> Out<'py> {
+    map_rows(py, m, |c: [f64; K]| {
+        let mut full = [0.0; 8];
+        full[..K].copy_from_slice(&c);
+        Ok::<_, MathError>([Multivector(full).norm()])
+    })
 }
 
 /// Rotors from components, normalised.

@@ -2,6 +2,8 @@
 
 import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -20,6 +22,18 @@ def test_scenes_run(text, tmp_path):
     path.write_text(text)
     trajectory = ph.Scene.read(path).run()
     assert trajectory.certificate.worst < 1e-10
+
+
+def test_the_algebra_page_runs_and_prints_what_it_says():
+    for needed in ("jax", "sympy"):
+        pytest.importorskip(needed)
+    page = (ROOT / "docs/algebra.md").read_text()
+    code = "\n".join(re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL))
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == re.findall(r"^print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
 
 
 def test_there_are_scenes():

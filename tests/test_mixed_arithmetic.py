@@ -106,6 +106,57 @@ def test_single_precision_meets_others_as_in_numpy():
         assert size.dtype == np.float32
 
 
+def test_functions_beyond_single_precision_are_errors():
+    a = ph.vector(np.array([[1, 0, 0], [1e-45, 0, 0]], np.float32))
+    with pytest.raises(
+        ValueError, match=r"index \(1,\) of norm 1.4\d*e-45 has no inverse in the range of float32"
+    ):
+        a.inverse()
+    with pytest.raises(ValueError, match="has no exp in the range of float32"):
+        ph.scalar(np.float32(100)).exp()
+    largest = ph.vector(np.array([3e38, 3e38, 0], np.float32))
+    assert largest.norm() == np.inf  # as sums and products are
+    assert largest.normalized().dtype == np.float32
+
+
+def test_numbers_of_python_do_not_raise_the_precision_of_rotors():
+    plane = (e1 ^ e2).astype(np.float32)
+    R = ph.Rotor.from_plane_angle(plane, 0.5)
+    for value in (
+        R,
+        R**2,
+        R**0.5,
+        R.sqrt(),
+        ph.slerp(R, R * R, 0.5),
+        ph.stack([R, R]) ** 2,
+        R.log(),
+        R.inverse(),
+    ):
+        assert value.dtype == np.float32
+    assert (R ** np.float64(2)).dtype == np.float64
+    assert (R ** np.array([1.0, 2.0])).dtype == np.float64
+
+
+def test_changed_components_are_coefficients():
+    a = ph.vector([1.5, 2.5, -3.5])
+    assert a.map(lambda c: c.astype(int)).dtype == np.float64
+    assert a.map(lambda c: c.astype(np.float16)).dtype == np.float64
+    assert a.map(lambda c: c.astype(np.float32)).dtype == np.float32
+    assert types(a.map(lambda c: c.astype(int).astype(object))) == {int}
+    for bad in (
+        lambda c: c > 0,
+        lambda c: c * 1j,
+        lambda c: c.astype(str),
+        lambda c: None,
+        lambda c: c[:2],
+        float,
+    ):
+        with pytest.raises(TypeError):
+            a.map(bad)
+    with pytest.raises(TypeError, match="coefficient at index"):
+        a.astype(object).map(str)
+
+
 def test_a_number_beyond_single_precision_is_told():
     a = ph.vector(np.array([1, 2, 3], np.float32))
     with pytest.warns(RuntimeWarning, match="overflow"):

@@ -105,6 +105,13 @@ def scalars(value: Any, like: Any) -> Any:
     return as_coefficients(value, "scalar")[..., None]
 
 
+def number_like(value: Any, what: str, like: Any) -> Any:
+    """Return coefficients (…); numbers of Python take the precision of `like`, if that is of floats."""
+    if is_float(like) and type(value) in (int, float):
+        return as_floats(value, what).astype(like.dtype)
+    return as_coefficients(value, what)
+
+
 def foreign_kind(value: Any) -> Any:
     """Return the arithmetic of a value that is neither a number nor an array of NumPy; else None."""
     try:

@@ -384,6 +384,16 @@ def test_values_pass_through_the_transformations_of_jax(jnp):
 # --- nothing changes what others hold
 
 
+def test_values_do_not_share_the_arrays_of_other_libraries():
+    strict = pytest.importorskip("array_api_strict")
+    array = strict.asarray([1.0, -0.0, 3.0])
+    values = [ph.vector(array), ph.scalar(array), ph.multivector(strict.ones(8))]
+    array[0] = 9.0
+    assert repr(values[0]) == "e1 + 3 e3"
+    assert np.signbit(np.asarray(values[0].components)[1])
+    assert float(values[1].components[0, 0]) == 1
+
+
 def test_no_operation_changes_its_operands():
     arrays = [np.arange(1.0, 9.0), np.array([F(1, k) for k in range(1, 9)], dtype=object)]
     for array in arrays:

@@ -59,6 +59,14 @@ def kind_of(*values: Any) -> Any:
     return _generic.coefficients.of(*values)
 
 
+def duplicate(array: Any) -> Any:
+    """Return the same numbers in memory that nobody else writes to. JAX's arrays are never written to."""
+    if isinstance(array, np.ndarray):
+        return np.array(array, order="C")
+    # A product, unlike a copy, is followed by the derivatives of other libraries.
+    return array if namespace(array).__name__ == "jax.numpy" else array * 1
+
+
 def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
     """Return the same elements in another shape."""
     return array.reshape(shape) if isinstance(array, np.ndarray) else kind_of(array).reshape(array, shape)

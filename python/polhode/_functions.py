@@ -66,6 +66,8 @@ def power(value: Multivector, n: Any) -> Multivector:
 
 def as_precise(value: Multivector, like: Multivector) -> Multivector:
     """Return a value of float64 in single precision, if the other is of it."""
+    if like._is_one:
+        return value
     return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
 
 

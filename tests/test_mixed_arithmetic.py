@@ -381,6 +381,26 @@ def test_values_pass_through_the_transformations_of_jax(jnp):
     assert moved.algebra is C
 
 
+def test_dask_arrays_stay_lazy_and_give_the_same():
+    da = pytest.importorskip("dask.array")
+    numbers = np.arange(12.0).reshape(4, 3) + 1
+    lazy, plain = ph.vector(da.from_array(numbers, chunks=(2, 3))), ph.vector(numbers)
+    for operate in (
+        lambda a: a * e1,
+        lambda a: e1 + a,
+        lambda a: a / a.norm(),
+        lambda a: a.inverse(),
+        lambda a: (a / 9).dual().exp(),
+        lambda a: (a / 9).dual().exp()(a),
+        lambda a: a.reshape(2, 2)[1],
+    ):
+        got, expected = operate(lazy), operate(plain)
+        assert type(got) is type(expected)
+        assert isinstance(got.components, da.Array)
+        # Different formulas of as many roundings, of numbers below 12·|a|.
+        assert np.allclose(np.asarray(got.components), expected.components, rtol=0, atol=64 * 2.0**-52 * 12)
+
+
 # --- nothing changes what others hold
 
 

@@ -21,12 +21,12 @@ samples = 11
 """
 
 
-def polhode(*arguments, cwd=None, **options):
-    """The finished process; whatever happened, no traceback."""
+def polhode(*arguments, cwd=None, through=(), **options):
+    """The finished process, started through another program; whatever happened, no traceback."""
     options.setdefault("stdout", subprocess.PIPE)
     options.setdefault("encoding", "utf-8")
     done = subprocess.run(
-        [POLHODE, *arguments],
+        [*through, POLHODE, *arguments],
         cwd=cwd,
         stderr=subprocess.PIPE,
         timeout=60,

@@ -3,9 +3,9 @@
 import json
 import os
 import re
-import resource
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -209,14 +209,14 @@ def test_a_directory_without_permission(scene, tmp_path):
     assert "permission" in done.stderr
 
 
-def limit_files(size):
-    """Let no file grow beyond this, as on a disk that is full."""
-
-    def apply():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
-    return apply
+# A program that lets no file grow beyond its first argument, as on a disk that is full, and becomes another.
+LIMITED = """
+import os, resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+size = int(sys.argv[1])
+resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+os.execv(sys.argv[2], sys.argv[2:])
+"""
 
 
 # 4 kB stop the data (about 18 kB), 32 kB stop the figures.
@@ -227,7 +227,9 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
     for file in ("out.nc", "out-motion.png", "out-polhode.png"):
         (tmp_path / file).write_bytes(f"older {file}".encode())
         older[file] = (tmp_path / file).read_bytes()
-    done = polhode("run", scene, "-o", tmp_path / "out.nc", preexec_fn=limit_files(size))
+    done = polhode(
+        *("run", scene, "-o", tmp_path / "out.nc"), through=[sys.executable, "-c", LIMITED, str(size)]
+    )
     assert done.returncode == 1
     assert f"cannot write {tmp_path / name}" in done.stderr
     assert "too large" in done.stderr.lower()

@@ -1,5 +1,6 @@
 //! Between NumPy arrays and fixed-size rows.
 
+use crate::pool;
 use numpy::{
     Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
     PyUntypedArrayMethods,
@@ -7,6 +8,7 @@ use numpy::{
 use polhode_ga::threads::Threads;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 /// An array of float64 whose last axis holds the components, contiguous.
 pub(crate) type Rows<'py, T = f64> = PyReadonlyArrayDyn<'py, T>;
@@ -100,25 +102,18 @@ pub(crate) fn place(row: usize, batch: &[usize]) -> String {
 pub(crate) fn map_rows<'py, const IN: usize, const OUT: usize, E: std::fmt::Display + Send>(
     py: Python<'py>,
     input: &Rows<'py>,
-    f: impl Fn([f64; IN]) -> Result<[f64; OUT], E> + Sync + Send,
+    f: impl Fn([f64; IN]) -> Result<[f64; OUT], E> + Sync,
 ) -> Out<'py> {
     let shape = input.shape();
     let batch = match shape.split_last() {
         Some((&last, batch)) if last == IN => batch,
         _ => return Err(bad(format!("expected {IN} components in the last axis, got shape {shape:?}"))),
     };
-    let data = numbers(input)?;
-    let result: Result<Vec<f64>, (usize, E)> = py.detach(|| {
-        let mut out = Vec::with_capacity(data.len() / IN * OUT);
-        for (row, values) in data.as_chunks::<IN>().0.iter().enumerate() {
-            out.extend(f(*values).map_err(|e| (row, e))?);
-        }
-        Ok(out)
-    });
-    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
-    let mut out_shape = batch.to_vec();
-    out_shape.push(OUT);
-    PyArray1::from_vec(py, out).reshape(out_shape)
+    let rows = numbers(input)?.as_chunks::<IN>().0;
+    fill_rows(py, (batch, OUT), 1 << 13, |row, out: &mut [f64]| {
+        out.copy_from_slice(&f(rows[row])?);
+        Ok::<(), E>(())
+    })
 }
 
 /// Applies a function of rows of one length, from arrays of one shape, to all rows, which give rows of that
@@ -137,15 +132,47 @@ pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
     for (slot, input) in data.iter_mut().zip(inputs) {
         *slot = numbers(input)?;
     }
-    let count = data[0].len() / size;
-    let result: Result<Vec<f64>, (usize, E)> = py.detach(|| {
-        let mut out = Vec::with_capacity(count * size);
-        for row in 0..count {
-            let rows = data.map(|numbers| &numbers[row * size..(row + 1) * size]);
-            out.extend(f(rows).map_err(|error| (row, error))?);
+    fill_rows(py, (batch, size), 1 << 6, |row, out: &mut [f64]| {
+        out.copy_from_slice(&f(data.map(|numbers| &numbers[row * size..(row + 1) * size]))?);
+        Ok::<(), E>(())
+    })
+}
+
+/// A new array of a batch of rows of `size` numbers, each row filled by a function of its number. Threads take
+/// at least `least` rows, and Python may interrupt after some times as many. An error names the batch index of
+/// the first row that has one.
+fn fill_rows<'py, E: std::fmt::Display + Send>(
+    py: Python<'py>,
+    (batch, size): (&[usize], usize),
+    least: usize,
+    f: impl Fn(usize, &mut [f64]) -> Result<(), E> + Sync,
+) -> Out<'py> {
+    let shape: Vec<usize> = batch.iter().copied().chain([size]).collect();
+    let array = pool::array(py, &shape)?;
+    let mut target = array.readwrite();
+    let out = target.as_slice_mut()?;
+    let threads = threads(out.len())?;
+    for (part, piece) in out.chunks_mut(16 * least * size).enumerate() {
+        let first = part * 16 * least;
+        let failure: Mutex<Option<(usize, E)>> = Mutex::new(None);
+        py.detach(|| {
+            threads.for_each_piece(least, size, piece, |rows, piece| {
+                for (row, out) in rows.zip(piece.chunks_exact_mut(size)) {
+                    if let Err(error) = f(first + row, out) {
+                        let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
+                        if failure.as_ref().is_none_or(|(earlier, _)| row < *earlier) {
+                            *failure = Some((row, error));
+                        }
+                        return;
+                    }
+                }
+            });
+        });
+        if let Some((row, error)) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(bad(format!("{}{error}", place(first + row, batch))));
         }
-        Ok(out)
-    });
-    let out = result.map_err(|(row, e)| bad(format!("{}{e}", place(row, batch))))?;
-    PyArray1::from_vec(py, out).reshape(shape.to_vec())
+        py.check_signals()?;
+    }
+    drop(target);
+    Ok(array)
 }

@@ -4,7 +4,8 @@
 //! This module holds all the unsafe code of the crate: a buffer lends out its memory.
 #![allow(unsafe_code)]
 
-use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use crate::arrays::{Array, Out};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyBufferError;
 use pyo3::ffi;
 use pyo3::prelude::*;
@@ -31,6 +32,20 @@ pub(crate) struct Buffer {
     memory: Option<Memory>,
     bytes: usize,
     size: usize,
+}
+
+/// Arrays of fewer bytes the allocator keeps itself.
+const LARGE: usize = 1 << 20;
+
+/// A new array of numbers, whatever they are; a large one of the pool's memory.
+pub(crate) fn array<'py>(py: Python<'py>, shape: &[usize]) -> Out<'py> {
+    let count = shape.iter().product::<usize>();
+    if count * 8 < LARGE {
+        return Ok(PyArrayDyn::zeros(py, shape, false));
+    }
+    let memory = Bound::new(py, buffer(py, count * 8)?)?;
+    let line: Array<'py> = py.import("numpy")?.getattr("frombuffer")?.call1((memory,))?.extract()?;
+    line.reshape(shape)
 }
 
 /// Memory of `bytes` bytes, which may hold anything.

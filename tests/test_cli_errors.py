@@ -221,7 +221,6 @@ os.execv(sys.argv[2], sys.argv[2:])
 
 # 4 kB stop the data (about 18 kB), 32 kB stop the figures.
 @pytest.mark.parametrize(("size", "name"), [(4096, "out.nc"), (32768, "out-motion.png")])
-@pytest.mark.filterwarnings("ignore:os.fork")  # JAX, if other tests use it, has threads; the child calls exec
 def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
     older = {}
     for file in ("out.nc", "out-motion.png", "out-polhode.png"):

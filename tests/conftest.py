@@ -1,6 +1,7 @@
 """A small scene; and property tests that are the same on every run, each derived from the test itself."""
 
 import os
+import sys
 
 import pytest
 from hypothesis import settings
@@ -20,3 +21,11 @@ def scene(tmp_path):
     path = tmp_path / "small.toml"
     path.write_text(SCENE)
     return path
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _forget_what_jax_compiled():
+    """Thousands of small programs otherwise fill gigabytes."""
+    yield
+    if "jax" in sys.modules:
+        sys.modules["jax"].clear_caches()

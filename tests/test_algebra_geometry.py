@@ -237,6 +237,19 @@ def test_null_values_have_no_inverse_and_no_size():
         light.inverse()
 
 
+def test_null_directions_do_not_count_in_sizes():
+    for far in (1e200, 1e-200, np.inf):
+        assert PGA.vector([3, 4, 0, far]).norm() == 5
+        assert PGA.vector([3, 4, 0, far]).norm_squared() == 25
+        assert PGA.vector([[3e-170, 4e-170, 0, far]]).norm() == 5e-170
+    unit = PGA.vector([3e-10, 4e-10, 0, 1e10]).normalized()
+    assert near(unit, PGA.vector([0.6, 0.8, 0, 2e19]), 4, 2e19)
+    assert near(unit.right_complement().left_complement(), unit, 1)
+    with pytest.raises(ValueError, match="has no direction"):
+        PGA.vector([3, 4, 0, np.inf]).normalized()
+    assert np.isnan(PGA.vector([np.nan, 4, 0, 1]).norm())
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("name", ["inverse", "exp", "log"])
 def test_functions_of_the_non_finite_are_errors(bad, name):

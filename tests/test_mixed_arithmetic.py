@@ -106,6 +106,57 @@ def test_single_precision_meets_others_as_in_numpy():
         assert size.dtype == np.float32
 
 
+def test_functions_beyond_single_precision_are_errors():
+    a = ph.vector(np.array([[1, 0, 0], [1e-45, 0, 0]], np.float32))
+    with pytest.raises(
+        ValueError, match=r"index \(1,\) of norm 1.4\d*e-45 has no inverse in the range of float32"
+    ):
+        a.inverse()
+    with pytest.raises(ValueError, match="has no exp in the range of float32"):
+        ph.scalar(np.float32(100)).exp()
+    largest = ph.vector(np.array([3e38, 3e38, 0], np.float32))
+    assert largest.norm() == np.inf  # as sums and products are
+    assert largest.normalized().dtype == np.float32
+
+
+def test_numbers_of_python_do_not_raise_the_precision_of_rotors():
+    plane = (e1 ^ e2).astype(np.float32)
+    R = ph.Rotor.from_plane_angle(plane, 0.5)
+    for value in (
+        R,
+        R**2,
+        R**0.5,
+        R.sqrt(),
+        ph.slerp(R, R * R, 0.5),
+        ph.stack([R, R]) ** 2,
+        R.log(),
+        R.inverse(),
+    ):
+        assert value.dtype == np.float32
+    assert (R ** np.float64(2)).dtype == np.float64
+    assert (R ** np.array([1.0, 2.0])).dtype == np.float64
+
+
+def test_changed_components_are_coefficients():
+    a = ph.vector([1.5, 2.5, -3.5])
+    assert a.map(lambda c: c.astype(int)).dtype == np.float64
+    assert a.map(lambda c: c.astype(np.float16)).dtype == np.float64
+    assert a.map(lambda c: c.astype(np.float32)).dtype == np.float32
+    assert types(a.map(lambda c: c.astype(int).astype(object))) == {int}
+    for bad in (
+        lambda c: c > 0,
+        lambda c: c * 1j,
+        lambda c: c.astype(str),
+        lambda c: None,
+        lambda c: c[:2],
+        float,
+    ):
+        with pytest.raises(TypeError):
+            a.map(bad)
+    with pytest.raises(TypeError, match="coefficient at index"):
+        a.astype(object).map(str)
+
+
 def test_a_number_beyond_single_precision_is_told():
     a = ph.vector(np.array([1, 2, 3], np.float32))
     with pytest.warns(RuntimeWarning, match="overflow"):
@@ -330,7 +381,37 @@ def test_values_pass_through_the_transformations_of_jax(jnp):
     assert moved.algebra is C
 
 
+def test_dask_arrays_stay_lazy_and_give_the_same():
+    da = pytest.importorskip("dask.array")
+    numbers = np.arange(12.0).reshape(4, 3) + 1
+    lazy, plain = ph.vector(da.from_array(numbers, chunks=(2, 3))), ph.vector(numbers)
+    for operate in (
+        lambda a: a * e1,
+        lambda a: e1 + a,
+        lambda a: a / a.norm(),
+        lambda a: a.inverse(),
+        lambda a: (a / 9).dual().exp(),
+        lambda a: (a / 9).dual().exp()(a),
+        lambda a: a.reshape(2, 2)[1],
+    ):
+        got, expected = operate(lazy), operate(plain)
+        assert type(got) is type(expected)
+        assert isinstance(got.components, da.Array)
+        # Different formulas of as many roundings, of numbers below 12·|a|.
+        assert np.allclose(np.asarray(got.components), expected.components, rtol=0, atol=64 * 2.0**-52 * 12)
+
+
 # --- nothing changes what others hold
+
+
+def test_values_do_not_share_the_arrays_of_other_libraries():
+    strict = pytest.importorskip("array_api_strict")
+    array = strict.asarray([1.0, -0.0, 3.0])
+    values = [ph.vector(array), ph.scalar(array), ph.multivector(strict.ones(8))]
+    array[0] = 9.0
+    assert repr(values[0]) == "e1 + 3 e3"
+    assert np.signbit(np.asarray(values[0].components)[1])
+    assert float(values[1].components[0, 0]) == 1
 
 
 def test_no_operation_changes_its_operands():

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._coefficients import as_coefficients
+from polhode._coefficients import as_coefficients, duplicate
 from polhode._joined import joins
 from polhode._multivector import Multivector
 
@@ -91,8 +91,7 @@ class Algebra(_native.Algebra):
 
     def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:
         data = as_coefficients(x, what, dtype)
-        data = data.copy() if isinstance(data, np.ndarray) else data
-        return Multivector._of(data[..., None], 1 << grade, self)
+        return Multivector._of(duplicate(data)[..., None], 1 << grade, self)
 
     def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
         return self._wrapped(components, what, math.comb(self.dimension, k), 1 << k, dtype, copy)
@@ -109,8 +108,10 @@ class Algebra(_native.Algebra):
             raise ValueError(
                 f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}"
             )
-        if isinstance(data, np.ndarray):
-            data = np.array(data, order="C") if copy else data.view()
+        if copy:
+            data = duplicate(data)
+        elif isinstance(data, np.ndarray):
+            data = data.view()
         return Multivector._of(data, mask, self)
 
     # --- what values ask
@@ -151,6 +152,8 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     for count in (p, q, r):
         if isinstance(count, bool) or operator.index(count) < 0:
             raise ValueError(f"the signature needs three counts >= 0, got {p}, {q}, {r}")
+    if p + q + r > 8:
+        raise ValueError(f"an algebra has at most 8 generators, got {p} + {q} + {r}")
     return _algebra(operator.index(p), operator.index(q), operator.index(r))
 
 

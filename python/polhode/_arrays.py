@@ -63,7 +63,8 @@ def is_float(data: Any) -> bool:
 def mapped(f: Callable[[Array], Array], data: Any) -> Any:
     """Return f of float64 rows; of float32 rows, computed in float64 and rounded."""
     result = f(np.ascontiguousarray(data, dtype=np.float64))
-    return result.astype(data.dtype, copy=False)
+    with np.errstate(over="ignore"):
+        return result.astype(data.dtype, copy=False)
 
 
 def new(shape: Shape, dtype: Any) -> Array:

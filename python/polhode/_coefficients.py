@@ -59,6 +59,14 @@ def kind_of(*values: Any) -> Any:
     return _generic.coefficients.of(*values)
 
 
+def duplicate(array: Any) -> Any:
+    """Return the same numbers in memory that nobody else writes to. JAX's arrays are never written to."""
+    if isinstance(array, np.ndarray):
+        return np.array(array, order="C")
+    # A product, unlike a copy, is followed by the derivatives of other libraries.
+    return array if namespace(array).__name__ == "jax.numpy" else array * 1
+
+
 def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
     """Return the same elements in another shape."""
     return array.reshape(shape) if isinstance(array, np.ndarray) else kind_of(array).reshape(array, shape)
@@ -103,6 +111,13 @@ def scalars(value: Any, like: Any) -> Any:
     elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
     return as_coefficients(value, "scalar")[..., None]
+
+
+def number_like(value: Any, what: str, like: Any) -> Any:
+    """Return coefficients (…); numbers of Python take the precision of `like`, if that is of floats."""
+    if is_float(like) and type(value) in (int, float):
+        return as_floats(value, what).astype(like.dtype)
+    return as_coefficients(value, what)
 
 
 def foreign_kind(value: Any) -> Any:

@@ -15,6 +15,8 @@ from polhode._products import coerced
 if TYPE_CHECKING:
     from polhode._multivector import Multivector
 
+Signs = np.ndarray[Any, np.dtype[np.int8]]
+
 _BIVECTOR, _EVEN = 0b0100, 0b0101
 
 
@@ -64,6 +66,8 @@ def power(value: Multivector, n: Any) -> Multivector:
 
 def as_precise(value: Multivector, like: Multivector) -> Multivector:
     """Return a value of float64 in single precision, if the other is of it."""
+    if like._is_one:
+        return value
     return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
 
 
@@ -72,7 +76,8 @@ def norm_squared(value: Multivector) -> Any:
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data):
         with np.errstate(over="ignore"):
-            return (np.square(data) * signs).sum(axis=-1)[()]
+            counted, signs = _counted(data, signs)
+            return (np.square(counted) * signs).sum(axis=-1)[()]
     square = value.scalar_product(~value)._data[..., 0]
     return square[()] if isinstance(square, np.ndarray) else square
 
@@ -87,10 +92,26 @@ def norm(value: Multivector) -> Any:
         return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
     if min(signs) > 0 and len(signs) <= 8:
         return mapped(_native.norm, data)[..., 0][()]
-    # In units of the largest component, so that nothing overflows.
-    unit = np.abs(data).max(axis=-1, keepdims=True)
-    unit = np.where(np.isfinite(unit) & (unit > 0), unit, 1.0)
-    return (np.sqrt(np.abs((np.square(data / unit) * signs).sum(axis=-1))) * unit[..., 0])[()]
+    unit, size = _unit_and_size(data, signs)
+    return (size * unit)[..., 0][()]
+
+
+def _counted(data: Array, signs: Signs) -> tuple[Array, Signs]:
+    """Return the components of ``E ~E`` not 0, which make up the size, and those signs."""
+    if signs.all():
+        return data, signs
+    # In C order, as sums depend on the order of memory.
+    return np.ascontiguousarray(data[..., signs != 0]), signs[signs != 0]
+
+
+def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
+    """Return the largest component that counts, and the norm in units of it."""
+    counted, signs = _counted(data, signs)
+    unit = np.abs(counted).max(axis=-1, keepdims=True, initial=0)
+    unit = np.where(np.isfinite(unit) & (unit > 0), unit, np.ones_like(unit))
+    squares = np.square(counted / unit) * signs
+    with np.errstate(invalid="ignore"):  # inf − inf
+        return unit, np.sqrt(np.abs(squares.sum(axis=-1, keepdims=True)))
 
 
 def normalized(value: Multivector) -> Multivector:
@@ -101,13 +122,11 @@ def normalized(value: Multivector) -> Multivector:
             return value._like(_generic.functions.normalized(kind_of(data), data))
         return value / coerced(norm(value), value)
     # Scaling by the largest component first keeps subnormal values accurate.
-    largest = np.abs(data).max(axis=-1, keepdims=True)
-    usable = np.isfinite(largest) & (largest > 0)
-    scaled = data / np.where(usable, largest, 1)
-    size = np.sqrt(np.abs((np.square(scaled) * signs).sum(axis=-1, keepdims=True)))
+    unit, size = _unit_and_size(data, signs)
     # Where squares cancel, a size below this is rounding.
-    _require((usable & (size > 8 * np.finfo(data.dtype).eps))[..., 0], "has no direction (norm {})", value)
-    return value._like(scaled / size)
+    usable = np.isfinite(data).all(axis=-1) & (size > 8 * np.finfo(data.dtype).eps)[..., 0]
+    _require(usable, "has no direction (norm {})", value)
+    return value._like(data / unit / size)
 
 
 def _require(ok: Any, what: str, value: Multivector) -> None:
@@ -131,6 +150,8 @@ def _function(name: str, value: Multivector) -> Multivector:
             return _native.function(algebra, name, rows)[..., algebra._indices(mask)]
 
         result = mapped(native, _parts.with_grades(value, algebra._all))
+        in_range = np.isfinite(result).all(axis=-1)
+        _require(in_range, f"of norm {{}} has no {name} in the range of {data.dtype}; scale it", value)
     elif algebra.signature == (3, 0, 0):
         result, mask = getattr(_generic.functions, name)(kind_of(data), data, value._mask)
     else:

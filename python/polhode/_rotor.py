@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, new, rows
-from polhode._coefficients import as_coefficients, kind_of, reshaped, taken
+from polhode._coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._extras import optional
 from polhode._joined import joins
 from polhode._multivector import Multivector
@@ -73,7 +73,8 @@ class Rotor(_native.Rotor, Multivector):
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
         """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
-        plane, angle = one_grade(B, 2, "the plane")._data, as_coefficients(theta, "angle")
+        plane = one_grade(B, 2, "the plane")._data
+        angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
             angle = angle[..., np.newaxis]  # a column, beside the plane
         return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
@@ -262,7 +263,7 @@ class Rotor(_native.Rotor, Multivector):
         """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
         if isinstance(n, int) and not is_float(self._data):
             return Rotor._from_rows(_generic.rotors.power(kind_of(self._data), self._data, n))
-        powers = as_coefficients(n, "the power of a rotor")
+        powers = number_like(n, "the power of a rotor", self._data)
         if is_float(self._data) and is_float(powers) and not self._is_one:
             return _powers(self, powers)
         turn = self.log() * powers

@@ -29,7 +29,7 @@ def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
 
     Real numbers become float64, float32 stays; fractions, SymPy expressions, integers beyond 2⁵³ and
     arrays of objects stay exact; arrays of JAX and others stay theirs. `dtype` converts (``np.float32``,
-    ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of a NumPy array.
+    ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of floats in C order.
     """
     return _G3.vector(xyz, dtype=dtype, copy=copy)
 

@@ -70,7 +70,8 @@ def test_log_and_sqrt_at_one_and_minus_one(mask, s):
     curvature = second(lambda m: function("log", mask)(m)[0])(one)
     signs = np.array([-1, -1, -1, -1, 1, 1, 1, 1])[indices]
     assert close(curvature, np.diag(signs))
-    assert np.isfinite(second(lambda m: function("sqrt", mask)(m).sum())(one)).all()
+    if mask == EVEN:  # of all grades it takes long to compile
+        assert np.isfinite(second(lambda m: function("sqrt", mask)(m).sum())(one)).all()
 
 
 def test_sizes_at_zero():

@@ -70,3 +70,5 @@ def _as_floats(data: Any) -> Any:
         raise TypeError(
             "is_close needs numbers; simplify the difference of symbolic values and compare it with =="
         ) from None
+    except OverflowError:
+        raise ValueError("is_close needs numbers within 1.8e308; compare exact ones with ==") from None

@@ -138,10 +138,8 @@ def _require(ok: Any, what: str, value: Multivector) -> None:
     raise ValueError(f"{place} {what.format(np.asarray(norm(value))[index])}")
 
 
-def _function(name: str, value: Multivector) -> Multivector:
+def function(name: str, value: Multivector) -> Multivector:
     """Return a function of any value: native over floats, else by the generic formulas."""
-    if value._is_one:
-        return value._function_of_one(name)
     algebra, data = value.algebra, value._data
     if is_float(data):
         mask = algebra._grades_of_function(name, value._mask)
@@ -177,35 +175,17 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     return kind_of(rows).stack([rows[..., i] for i in algebra._indices(mask)]), mask
 
 
-def inverse(value: Multivector) -> Multivector:
-    """``A⁻¹``."""
-    return _function("inverse", value)
-
-
 def exp(value: Multivector) -> Multivector:
     """``exp A``; a rotor of a bivector of 3-d space."""
-    data, space = value._data, value.algebra
-    if value._mask == _BIVECTOR and space.signature == (3, 0, 0) and is_float(data) and not value._is_one:
+    data, in_space = value._data, value.algebra.signature == (3, 0, 0)
+    if value._mask == _BIVECTOR and in_space and is_float(data):
         rotors = new((*value.shape, 4), data.dtype)
         _native.rotor_exp(data, rotors)
         return _native.Rotor._from_rows(rotors)
-    result = _function("exp", value)
-    if value._is_one:
-        return result
-    is_rotor = result._mask == _EVEN and value.algebra.signature == (3, 0, 0)
-    if is_rotor and not value._held() & ~_BIVECTOR:
+    result = function("exp", value)
+    if result._mask == _EVEN and in_space and not value._held() & ~_BIVECTOR:
         return _native.Rotor._from_rows(result._data)
     return result
-
-
-def log(value: Multivector) -> Multivector:
-    """Return a logarithm."""
-    return _function("log", value)
-
-
-def sqrt(value: Multivector) -> Multivector:
-    """Return a square root."""
-    return _function("sqrt", value)
 
 
 def projected(value: Multivector, blade: Multivector) -> Multivector:

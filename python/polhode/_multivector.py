@@ -298,31 +298,10 @@ class Multivector(_native.Multivector):
         """``A/|A|``; zero and non-finite values are an error."""
         return _functions.normalized(self)
 
-    # --- functions
+    # --- functions, where they are not native
 
-    def inverse(self) -> Multivector:
-        """``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``)."""
-        return _functions.inverse(self)
-
-    def exp(self) -> Multivector:
-        """``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
-
-        A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
-        """
-        return _functions.exp(self)
-
-    def log(self) -> Multivector:
-        """Return a logarithm: ``exp(log A) = A``.
-
-        Even elements (scalar and bivector) have an even one, so that ``log(−1) = π e1∧e2``; others the
-        principal one. A ValueError, with the batch index, where A is singular. In other algebras: of
-        rotors and motors, times a positive number.
-        """
-        return _functions.log(self)
-
-    def sqrt(self) -> Multivector:
-        """Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``."""
-        return _functions.sqrt(self)
+    def _function(self, name: str) -> Multivector:
+        return _functions.exp(self) if name == "exp" else _functions.function(name, self)
 
     # --- geometry
 

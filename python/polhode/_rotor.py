@@ -232,10 +232,8 @@ class Rotor(_native.Rotor, Multivector):
         _native.rotor_apply(a, b, value._mask, result)
         return value._like(result)
 
-    def log(self) -> Multivector:
-        """Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``."""
-        if self._is_one:
-            return self._log_of_one()
+    def _log(self) -> Multivector:
+        """Return the logarithm, where it is not native."""
         data = self._data
         if not is_float(data):
             return Multivector._of(_generic.rotors.log(kind_of(data), data), _BIVECTOR)

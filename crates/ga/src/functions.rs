@@ -177,14 +177,21 @@ pub enum Function {
 }
 
 impl Function {
+    /// Every function.
+    pub const ALL: [Function; 4] = [Function::Inverse, Function::Exp, Function::Log, Function::Sqrt];
+
     /// The function of this name: `inverse`, `exp`, `log`, `sqrt`.
     pub fn from_name(name: &str) -> Option<Function> {
-        match name {
-            "inverse" => Some(Function::Inverse),
-            "exp" => Some(Function::Exp),
-            "log" => Some(Function::Log),
-            "sqrt" => Some(Function::Sqrt),
-            _ => None,
+        Function::ALL.into_iter().find(|f| f.name() == name)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Function::Inverse => "inverse",
+            Function::Exp => "exp",
+            Function::Log => "log",
+            Function::Sqrt => "sqrt",
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::arrays::bad;
 use crate::signature::{Algebra, g3};
-use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::{Graded, Multivector as FullMultivector, Rotor as UnitRotor};
@@ -103,6 +103,13 @@ fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
 }
 
 impl Multivector {
+    /// A single value that is held as an array of float64: its row, grades and algebra.
+    fn row<'py>(&self, py: Python<'py>) -> Option<(PyReadonlyArray1<'py, f64>, Grades, &Py<Algebra>)> {
+        let Held::Many { data, grades, algebra } = &self.held else { return None };
+        let row = data.bind(py).cast::<PyArray1<f64>>().ok()?.try_readonly().ok()?;
+        Some((row, *grades, algebra))
+    }
+
     fn single(&self) -> Option<&Graded> {
         match &self.held {
             Held::One(graded) => Some(graded),
@@ -130,7 +137,9 @@ fn product<'py>(
     fallback: impl FnOnce() -> Object<'py>,
 ) -> Object<'py> {
     let py = left.py();
-    let Some(a) = left.get().single() else { return fallback() };
+    let Some(a) = left.get().single() else {
+        return product_of_rows(left, product, right).unwrap_or_else(fallback);
+    };
     match operand(right) {
         Operand::Value(b, unit) => {
             if unit && left.get().unit && product == Product::Geometric {
@@ -141,6 +150,27 @@ fn product<'py>(
         Operand::Number(x) => one(py, a.product(product, &scalar(x))),
         Operand::Other => fallback(),
     }
+}
+
+/// The product of two single values of another algebra, rows of float64.
+fn product_of_rows<'py>(
+    left: &Bound<'py, Multivector>,
+    product: Product,
+    right: &Bound<'py, PyAny>,
+) -> Option<Object<'py>> {
+    let py = left.py();
+    let (a, ga, algebra) = left.get().row(py)?;
+    let (b, gb, other) = right.cast::<Multivector>().ok()?.get().row(py)?;
+    if !algebra.is(other) {
+        return None;
+    }
+    let plan = algebra.get().plan_of(product, ga, gb).ok()?;
+    let out = PyArray1::zeros(py, plan.sizes.2, false);
+    let mut target = out.readwrite();
+    plan.run(a.as_slice().ok()?, b.as_slice().ok()?, target.as_slice_mut().ok()?);
+    target.make_nonwriteable();
+    let data = out.into_any().unbind();
+    Some(wrap(py, Held::Many { data, grades: plan.grades, algebra: algebra.clone_ref(py) }, false))
 }
 
 /// `A + B` and `A − B` here for single values.
@@ -181,6 +211,22 @@ fn named<'py>(
 ) -> Object<'py> {
     let general = || left.call_method1(intern!(left.py(), "_named"), (kind.name(), right, out));
     if out.is_some() { general() } else { product(left, kind, right, general) }
+}
+
+/// A function here for single values; by the method `_function` of the Python half for all others. Of a
+/// bivector, `exp` is a Rotor.
+fn function<'py>(value: &Bound<'py, Multivector>, f: Function) -> Object<'py> {
+    let py = value.py();
+    let Some(value) = value.get().single() else {
+        return value.call_method1(intern!(py, "_function"), (f.name(),));
+    };
+    let full = value.full();
+    let grades = f.grades(value.grades());
+    let result = Graded::new(&f.apply(FullMultivector(full)).map_err(bad)?.0, Grades::ALL);
+    let result = result.unwrap_or_default().with_grades(grades);
+    let others = [full[0], full[1], full[2], full[3], full[7]];
+    let unit = f == Function::Exp && grades == Grades::EVEN && others == [0.0; 5];
+    wrap(py, Held::One(result), unit)
 }
 
 #[pymethods]
@@ -238,19 +284,6 @@ impl Multivector {
             Some(value) => one(py, value),
             None => Ok(py.None().into_bound(py)),
         }
-    }
-
-    /// `inverse`, `exp`, `log` or `sqrt` of a single value; of a bivector, `exp` is a Rotor.
-    fn _function_of_one<'py>(&self, py: Python<'py>, name: &str) -> Object<'py> {
-        let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
-        let value = self.single().ok_or_else(|| bad("not a single value of 3-d space"))?;
-        let full = value.full();
-        let grades = f.grades(value.grades());
-        let result = Graded::new(&f.apply(FullMultivector(full)).map_err(bad)?.0, Grades::ALL);
-        let result = result.unwrap_or_default().with_grades(grades);
-        let others = [full[0], full[1], full[2], full[3], full[7]];
-        let unit = f == Function::Exp && grades == Grades::EVEN && others == [0.0; 5];
-        wrap(py, Held::One(result), unit)
     }
 
     /// The norm of a single value.
@@ -339,6 +372,32 @@ impl Multivector {
             Some(a) => wrap(slf.py(), Held::One(a.reverse()), slf.get().unit),
             None => slf.call_method0(intern!(slf.py(), "_reversed")),
         }
+    }
+
+    /// ``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``).
+    fn inverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Inverse)
+    }
+
+    /// ``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
+    ///
+    /// A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
+    fn exp<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Exp)
+    }
+
+    /// Return a logarithm: ``exp(log A) = A``.
+    ///
+    /// Even elements (scalar and bivector) have an even one, so that ``log(−1) = π e1∧e2``; others the
+    /// principal one. A ValueError, with the batch index, where A is singular. In other algebras: of
+    /// rotors and motors, times a positive number.
+    fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Log)
+    }
+
+    /// Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``.
+    fn sqrt<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Sqrt)
     }
 
     /// ``A B``, the geometric product by name.
@@ -434,11 +493,15 @@ impl Rotor {
         wrap(py, held(py, data, Grades::EVEN, None)?, true)
     }
 
-    /// The logarithm of a single rotor.
-    fn _log_of_one<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
-        let value = slf.as_super().get().single().ok_or_else(|| bad("not a single rotor"))?;
-        let log = Graded::new(&unit_rotor(value).log().0, Grades::BIVECTOR);
-        one(slf.py(), log.unwrap_or_default())
+    /// Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``.
+    fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        match slf.as_super().get().single() {
+            Some(value) => {
+                let log = Graded::new(&unit_rotor(value).log().0, Grades::BIVECTOR);
+                one(slf.py(), log.unwrap_or_default())
+            }
+            None => slf.call_method0(intern!(slf.py(), "_log")),
+        }
     }
 
     fn __call__<'py>(slf: &Bound<'py, Self>, x: &Bound<'py, PyAny>) -> Object<'py> {

@@ -40,7 +40,11 @@ impl Algebra {
     /// The plan of a product, made once.
     pub fn plan(&self, name: &str, ga: u16, gb: u16) -> PyResult<Arc<Plan>> {
         let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
-        let (ga, gb) = (self.check(ga)?, self.check(gb)?);
+        self.plan_of(product, self.check(ga)?, self.check(gb)?)
+    }
+
+    /// The plan of a product for grades of this algebra, made once.
+    pub fn plan_of(&self, product: Product, ga: Grades, gb: Grades) -> PyResult<Arc<Plan>> {
         let mut plans = self.plans.lock().map_err(bad)?;
         let plan = plans
             .entry((product, ga, gb))

@@ -227,6 +227,18 @@ def test_values_do_not_share_the_callers_array():
     assert not R.components.flags.writeable
 
 
+def test_a_mapped_value_has_coefficients():
+    A = ph.vector([[1.5, 2, 3]])
+    assert A.map(np.rint).dtype == A.map(lambda c: c.astype(int)).dtype == np.float64
+    for f in (np.isnan, lambda c: 1j * c, lambda c: c.astype(str)):
+        with pytest.raises(TypeError, match="what the function returns must be real numbers"):
+            A.map(f)
+    exact = ph.vector([1, 2, 3], dtype=object)
+    for f in (lambda _: 1j, str, lambda _: None):
+        with pytest.raises(TypeError, match=r"what the function returns must be real numbers .*index \(0,\)"):
+            exact.map(f)
+
+
 def test_in_place_operators_make_new_values():
     value = before = e1
     value += e2

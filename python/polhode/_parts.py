@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Shape, is_float
-from polhode._coefficients import common, kind_of, namespace
+from polhode._coefficients import as_coefficients, common, kind_of, namespace
 from polhode._coefficients import reshaped as coefficients_reshaped
 from polhode._products import coerced, common_algebra
 
@@ -74,7 +74,9 @@ def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     changed = np.frompyfunc(f, 1, 1)(data) if data.dtype == object else f(data)
     if getattr(changed, "shape", None) != data.shape:
         raise TypeError(f"the function must return one component for each, got {type(changed).__name__}")
-    return _native.Multivector._of(changed, value._mask, value.algebra)
+    changed = as_coefficients(changed, "what the function returns")
+    own = np.array(changed) if isinstance(changed, np.ndarray) else changed  # it may be the function's array
+    return _native.Multivector._of(own, value._mask, value.algebra)
 
 
 def check_index(shape: Shape, index: tuple[Any, ...]) -> None:

@@ -115,7 +115,8 @@ class Multivector(_native.Multivector):
                 _parts.check_index(self.shape, parts)
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
-            raise IndexError(f"{error} (batch shape {self.shape})") from None
+            remedy = "" if self.shape else "; the numbers of a single value are its .components"
+            raise IndexError(f"{error} (batch shape {self.shape}){remedy}") from None
         return self._like(picked)
 
     def __iter__(self) -> Iterator[Multivector]:
@@ -135,6 +136,12 @@ class Multivector(_native.Multivector):
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise TypeError("a multivector does not become an array by itself; take its .components")
+
+    def __array_function__(self, function: Any, *_: object) -> Any:
+        # np.array_equal would otherwise be False, and others name no remedy.
+        raise TypeError(
+            f"np.{function.__name__} does not take multivectors; use their own methods, or their .components"
+        )
 
     def __repr__(self) -> str:
         from polhode import _format

@@ -95,6 +95,8 @@ class Algebra(_native.Algebra):
         return Multivector._of(data[..., None], 1 << grade, self)
 
     def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
+        if k > self.dimension:
+            raise ValueError(f"{self} has grades 0 to {self.dimension}, no {what}")
         return self._wrapped(components, what, math.comb(self.dimension, k), 1 << k, dtype, copy)
 
     def _wrapped(
@@ -149,8 +151,12 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     ``algebra(4, 1)`` the conformal one; ``algebra(1, 3)`` that of space-time.
     """
     for count in (p, q, r):
+        if not hasattr(count, "__index__"):
+            raise TypeError(f"the signature needs three whole numbers, such as algebra(3, 0, 1), got {count!r}")
         if isinstance(count, bool) or operator.index(count) < 0:
             raise ValueError(f"the signature needs three counts >= 0, got {p}, {q}, {r}")
+    if max(map(operator.index, (p, q, r))) > 8:  # counts of any size, which the compiled core does not take
+        raise ValueError(f"an algebra has at most 8 generators, got {p} + {q} + {r}")
     return _algebra(operator.index(p), operator.index(q), operator.index(r))
 
 

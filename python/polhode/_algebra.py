@@ -152,7 +152,7 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     """
     for count in (p, q, r):
         if not hasattr(count, "__index__"):
-            raise TypeError(f"the signature needs three whole numbers, such as algebra(3, 0, 1), got {count!r}")
+            raise TypeError(f"the signature needs three whole numbers, as in algebra(3, 0, 1), got {count!r}")
         if isinstance(count, bool) or operator.index(count) < 0:
             raise ValueError(f"the signature needs three counts >= 0, got {p}, {q}, {r}")
     if max(map(operator.index, (p, q, r))) > 8:  # counts of any size, which the compiled core does not take

@@ -35,6 +35,11 @@ def with_grades(value: Multivector, mask: int) -> Any:
     return kind.stack([data[..., place[i]] if i in place else zero for i in wanted])
 
 
+def over_grades(value: Multivector, mask: int) -> Any:
+    """Return the components of the grades in `mask` to be read: a copy only where grades are missing."""
+    return value._data if value._mask == mask else with_grades(value, mask)
+
+
 def held(value: Multivector) -> int:
     """Return the grades, as bits, in which some component is not zero; all where that is not known."""
     data = value._data
@@ -52,7 +57,7 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
         return NotImplemented
     algebra = common_algebra(left, other)
     mask = left._mask | other._mask
-    a, b = common(with_grades(left, mask), with_grades(other, mask))
+    a, b = common(over_grades(left, mask), over_grades(other, mask))
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         return _native.Multivector._of(combine(a, b), mask, algebra)
 

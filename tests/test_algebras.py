@@ -219,9 +219,9 @@ def test_text():
         ((9,), ValueError, "8"),
         ((4, 4, 1), ValueError, "8"),
         ((10**30,), ValueError, "at most 8"),
-        ((1.5,), TypeError, "integer"),
-        (("3",), TypeError, "integer"),
-        ((None,), TypeError, "integer"),
+        ((1.5,), TypeError, "whole numbers.*got 1.5"),
+        (("3",), TypeError, "whole numbers.*got '3'"),
+        ((None,), TypeError, "whole numbers.*got None"),
     ],
 )
 def test_signatures_that_are_none(arguments, error, message):
@@ -265,7 +265,8 @@ def test_algebras_do_not_mix():
         (lambda: CGA.k_vector(6, np.ones(5)), r"Cl\(4,1\) has grades 0 to 5, got 6"),
         (lambda: CGA.k_vector(-1, np.ones(5)), r"got -1"),
         (lambda: CGA.scalar(1.0).grade(6), r"Cl\(4,1\) has grades 0 to 5, got 6"),
-        (lambda: ph.algebra(1).bivector([1.0]), r"needs 0 components"),
+        (lambda: ph.algebra(1).bivector([1.0]), r"Cl\(1\) has grades 0 to 1, no bivector"),
+        (lambda: ph.algebra(0).vector([]), r"Cl\(0\) has grades 0 to 0, no vector"),
     ],
 )
 def test_wrong_components_are_errors(make, message):

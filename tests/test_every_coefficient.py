@@ -392,6 +392,16 @@ def test_exact_numbers_and_other_libraries_do_not_mix(kind, exact):
             operate()
 
 
+@pytest.mark.parametrize("kind", ["jax", "array-api-strict"], indirect=True)
+def test_large_whole_numbers_are_rounded_beside_floats(kind):
+    a = ph.vector(kind.array([1.0, 2.0, 3.0]))
+    for number in (10**20, -(2**53) - 1, np.array(2**53 + 1)):
+        for product in (number * a, a * number):
+            assert np.all(np.asarray(product.components) == np.asarray((float(number) * a).components))
+    with pytest.raises(ValueError, match="beyond the range of float64"):
+        10**400 * a
+
+
 @pytest.mark.parametrize("kind", ROUNDING, indirect=True)
 def test_closeness_at_the_ends_of_the_range(kind):
     A = kind.random(14, (2,))

@@ -171,6 +171,23 @@ def test_distances_are_distances(Q, R, S):
     assert abs((Q * R).distance(Q * S) - R.distance(S)) <= 64 * EPS
 
 
+def test_distances_of_other_arrays_have_derivatives():
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        v = jax.numpy.asarray([[0.1, 0.2, 0.3], [0.0, 0.0, 6.0]])
+
+        def distance(x):
+            return ph.Rotor.from_rotation_vector(x).distance(ph.Rotor.identity())
+
+        found = jax.jit(jax.vmap(distance))(v)
+        assert np.all(abs(found - np.array([np.sqrt(0.14), 2 * np.pi - 6])) <= 16 * EPS)
+        assert np.all(abs(jax.grad(distance)(v[0]) - v[0] / np.sqrt(0.14)) <= 16 * EPS)
+        assert np.all(jax.grad(distance)(np.zeros(3)) == 0)
+        R, S = ph.Rotor.from_rotation_vector(v), ph.Rotor.random(2, 1)
+        native = ph.Rotor.from_rotation_vector(np.array(v)).distance(S)
+        assert np.all(abs(R.distance(S) - native) <= 16 * EPS)
+
+
 def test_distances_over_batches():
     R, S = ph.Rotor.random((3, 1), 1), ph.Rotor.random((2,), 2)
     apart = R.distance(S)

@@ -361,6 +361,13 @@ def test_jax_keeps_its_default_precision():
         assert value.dtype == np.float32
 
 
+def test_shapes_without_numbers_have_a_text(jnp):
+    import jax
+
+    text = repr(jax.eval_shape(lambda v: v * v, ph.vector(jnp.ones((2, 3)))))
+    assert text.startswith("Multivector of shape (2,) over (1, e2∧e3, e3∧e1, e1∧e2):\nShapeDtypeStruct")
+
+
 def test_values_pass_through_the_transformations_of_jax(jnp):
     import jax
 

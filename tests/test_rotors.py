@@ -215,6 +215,15 @@ def test_what_stays_a_rotor_and_what_does_not():
     assert isinstance(R(S), ph.Rotor)
 
 
+@pytest.mark.parametrize("points", [np.ones(3), np.ones((2, 3)), [1, 2, 3], 2.0], ids=repr)
+@pytest.mark.parametrize("shape", [(), (2,)])
+def test_what_is_no_multivector_is_not_turned(points, shape):
+    # Of an array of points each number would be a scalar, which no rotation changes.
+    for turn in (random_rotors(shape), random_rotors(shape).apply):
+        with pytest.raises(TypeError, match=r"turns multivectors, got .*wrap arrays with ph\.vector"):
+            turn(points)
+
+
 def test_random_rotors_are_uniform_and_repeatable():
     R = ph.Rotor.random((20_000,), 19)
     assert same(R, ph.Rotor.random(20_000, np.random.default_rng(19)))

@@ -155,7 +155,7 @@ def test_indexing_errors_name_the_batch_shape():
     for index in [2, (0, 3), (0, 0, 0), "x", 1.5]:
         with pytest.raises(IndexError, match=r"batch shape \(2, 3\)"):
             A[index]
-    with pytest.raises(IndexError, match=r"batch shape \(\)"):
+    with pytest.raises(IndexError, match=r"batch shape \(\)\); .*components"):
         e1[0]
 
 
@@ -225,6 +225,32 @@ def test_values_do_not_share_the_callers_array():
     assert np.all(ph.vector([1, 1, 1]) == A)
     assert np.all(s == 1)
     assert not R.components.flags.writeable
+
+
+def test_a_mapped_value_has_coefficients():
+    A = ph.vector([[1.5, 2, 3]])
+    assert A.map(np.rint).dtype == A.map(lambda c: c.astype(int)).dtype == np.float64
+    for f in (np.isnan, lambda c: 1j * c, lambda c: c.astype(str)):
+        with pytest.raises(TypeError, match="what the function returns must be real numbers"):
+            A.map(f)
+    exact = ph.vector([1, 2, 3], dtype=object)
+    for f in (lambda _: 1j, str, lambda _: None):
+        with pytest.raises(TypeError, match=r"what the function returns must be real numbers .*index \(0,\)"):
+            exact.map(f)
+
+
+def test_functions_of_numpy_do_not_take_values():
+    A, R = ph.vector(np.ones((2, 3))), ph.Rotor.identity()
+    for f, *given in (
+        (np.sum, A),
+        (np.dot, R, e1),
+        (np.array_equal, A, A),
+        (np.allclose, A, np.ones(2)),
+        (np.stack, [e1, e2]),
+        (np.linalg.norm, A),
+    ):
+        with pytest.raises(TypeError, match=rf"np\.{f.__name__} does not take multivectors.*components"):
+            f(*given)
 
 
 def test_in_place_operators_make_new_values():

@@ -94,6 +94,8 @@ class Algebra(_native.Algebra):
         return Multivector._of(duplicate(data)[..., None], 1 << grade, self)
 
     def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
+        if k > self.dimension:
+            raise ValueError(f"{self} has grades 0 to {self.dimension}, no {what}")
         return self._wrapped(components, what, math.comb(self.dimension, k), 1 << k, dtype, copy)
 
     def _wrapped(
@@ -150,6 +152,8 @@ def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     ``algebra(4, 1)`` the conformal one; ``algebra(1, 3)`` that of space-time.
     """
     for count in (p, q, r):
+        if not hasattr(count, "__index__"):
+            raise TypeError(f"the signature needs three whole numbers, as in algebra(3, 0, 1), got {count!r}")
         if isinstance(count, bool) or operator.index(count) < 0:
             raise ValueError(f"the signature needs three counts >= 0, got {p}, {q}, {r}")
     if p + q + r > 8:

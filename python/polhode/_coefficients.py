@@ -101,12 +101,14 @@ def scalars(value: Any, like: Any) -> Any:
     """Return a number or an array as coefficients (…, 1) that go with those of `like`; else None."""
     if isinstance(value, bool | np.bool_ | list | tuple | str | bytes):
         return None
-    if type(value) in (int, float) and is_float(like):
-        return as_floats(value, "scalar")[np.newaxis].astype(like.dtype)  # as a number in NumPy
+    floating = like is not None and like.dtype != object
+    if type(value) in (int, float) and floating:
+        number = as_floats(value, "scalar")[np.newaxis]
+        return number.astype(like.dtype) if is_float(like) else number  # as a number in NumPy
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
-        if value.dtype.kind in "iu" and is_float(like):  # rounded as they are, whatever their values
+        if value.dtype.kind in "iu" and floating:  # rounded as they are, whatever their values
             return as_floats(value, "scalar")[..., None]
     elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None

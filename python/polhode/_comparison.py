@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode._arrays import is_float
 from polhode._coefficients import common, namespace
-from polhode._parts import with_grades
+from polhode._parts import over_grades
 
 if TYPE_CHECKING:
     from polhode._multivector import Multivector
@@ -57,7 +57,7 @@ def _length(xp: Any, x: Any) -> Any:
 
 def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
     mask = a._mask | b._mask
-    left, right = with_grades(a, mask), with_grades(b, mask)
+    left, right = over_grades(a, mask), over_grades(b, mask)
     if is_float(left) and is_float(right):
         return left, right
     return common(left, right)

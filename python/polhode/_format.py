@@ -44,7 +44,7 @@ def value(name: str, data: Any, blades: Sequence[str]) -> str:
     """Return the ``repr``: the value itself, or the first and last values of a batch."""
     batch = tuple(data.shape[:-1])
     try:
-        array = np.asarray(data)
+        array = np.asarray(data).reshape(data.shape)
     except Exception:  # traced or lazy arrays have no numbers to show; each library has its own error
         basis = ", ".join(blade or "1" for blade in blades)
         return f"{name} of shape {batch} over ({basis}):\n{data!r}"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._coefficients import kind_of
 from polhode._multivector import Multivector
 from polhode._values import bivector, one_grade, vector
 
@@ -61,8 +62,18 @@ def distance(R: Rotor, S: Rotor) -> Any:
     """
     if not isinstance(S, type(R)):
         raise TypeError(f"distance goes between rotors, got {type(S).__name__}")
+    kind = kind_of(R._data, S._data)
+    if not (kind.native or kind.exact):  # arrays of another library stay theirs, with their derivatives
+        return _foreign_distance(kind, R, S)
     one, other = R.astype(float), S.astype(float)
     cosine = (~one).scalar_product(other).components[..., 0]
     nearer = other * np.where(cosine < 0, -1.0, 1.0)
     sine = (~one * (nearer - one)).grade(2).norm()
     return (2 * np.arctan2(sine, np.abs(cosine)))[()]
+
+
+def _foreign_distance(kind: Any, R: Rotor, S: Rotor) -> Any:
+    cosine = (~R).scalar_product(S).components[..., 0]
+    nearer = S * kind.where(cosine < 0, kind.zeros_like(cosine) - 1.0, 1.0)
+    sine = (~R * (nearer - R)).grade(2).norm()
+    return 2.0 * kind.atan2(sine, abs(cosine))

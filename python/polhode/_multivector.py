@@ -115,7 +115,8 @@ class Multivector(_native.Multivector):
                 _parts.check_index(self.shape, parts)
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
-            raise IndexError(f"{error} (batch shape {self.shape})") from None
+            remedy = "" if self.shape else "; the numbers of a single value are its .components"
+            raise IndexError(f"{error} (batch shape {self.shape}){remedy}") from None
         return self._like(picked)
 
     def __iter__(self) -> Iterator[Multivector]:
@@ -124,6 +125,10 @@ class Multivector(_native.Multivector):
     def reshape(self, *shape: Any) -> Multivector:
         """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
         return _parts.reshaped(self, shape)
+
+    def sum(self, axis: int | tuple[int, ...] | None = None) -> Multivector:
+        """Return the sum of a batch over some of its axes, or all; of rotors, no rotor."""
+        return _parts.summed(self, axis)
 
     def __float__(self) -> float:
         if self._mask != 1 or self.shape:
@@ -135,6 +140,12 @@ class Multivector(_native.Multivector):
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise TypeError("a multivector does not become an array by itself; take its .components")
+
+    def __array_function__(self, function: Any, *_: object) -> Any:
+        # np.array_equal would otherwise be False, and others name no remedy.
+        raise TypeError(
+            f"np.{function.__name__} does not take multivectors; use their own methods, or their .components"
+        )
 
     def __repr__(self) -> str:
         from polhode import _format
@@ -290,7 +301,8 @@ class Multivector(_native.Multivector):
     def norm(self) -> Any:
         """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape.
 
-        Where squares may be negative, ``√abs⟨A ~A⟩``.
+        Where squares may be negative, ``√abs⟨A ~A⟩``. At zero, where it has no derivative, those of JAX are
+        0; of its square they are right by `norm_squared` only.
         """
         return _functions.norm(self)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Shape, is_float
-from polhode._coefficients import as_coefficients, common, kind_of, namespace
+from polhode._coefficients import as_coefficients, common, duplicate, kind_of, namespace
 from polhode._coefficients import reshaped as coefficients_reshaped
 from polhode._products import coerced, common_algebra
 
@@ -35,6 +35,11 @@ def with_grades(value: Multivector, mask: int) -> Any:
     return kind.stack([data[..., place[i]] if i in place else zero for i in wanted])
 
 
+def over_grades(value: Multivector, mask: int) -> Any:
+    """Return the components of the grades in `mask` to be read: a copy only where grades are missing."""
+    return value._data if value._mask == mask else with_grades(value, mask)
+
+
 def held(value: Multivector) -> int:
     """Return the grades, as bits, in which some component is not zero; all where that is not known."""
     data = value._data
@@ -52,7 +57,7 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
         return NotImplemented
     algebra = common_algebra(left, other)
     mask = left._mask | other._mask
-    a, b = common(with_grades(left, mask), with_grades(other, mask))
+    a, b = common(over_grades(left, mask), over_grades(other, mask))
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         return _native.Multivector._of(combine(a, b), mask, algebra)
 
@@ -75,7 +80,8 @@ def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
     if getattr(changed, "shape", None) != data.shape:
         raise TypeError(f"the function must return one component for each, got {type(changed).__name__}")
     changed = as_coefficients(changed, "what the function returns")
-    return _native.Multivector._of(changed, value._mask, value.algebra)
+    own = duplicate(changed)  # it may be the function's array
+    return _native.Multivector._of(own, value._mask, value.algebra)
 
 
 def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
@@ -111,6 +117,15 @@ def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:
         raise ValueError(f"stack needs values of one batch shape, got {_listed(shapes)}")
     axis = _batch_axis(axis, len(next(iter(shapes))) + 1)
     return build(namespace(parts[0]).stack(parts, axis=axis))
+
+
+def summed(value: Multivector, axis: int | tuple[int, ...] | None) -> Multivector:
+    """Return the sum over batch axes; over all for None."""
+    count = len(value.shape)
+    chosen = tuple(range(count)) if axis is None else axis if isinstance(axis, tuple) else (axis,)
+    axes = tuple(_batch_axis(k, count) for k in chosen)
+    total = namespace(value._data).sum(value._data, axis=axes)
+    return _native.Multivector._of(total, value._mask, value.algebra)
 
 
 def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:

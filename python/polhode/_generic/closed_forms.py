@@ -106,7 +106,7 @@ def unit_row(m: Row) -> Row:
     """The row divided by its length; as it is where that proves to be 1."""
     square = sum(x * x for x in m)
     if is_zero(square):
-        raise ValueError("has no direction (norm 0)")
+        raise ValueError("the multivector has no direction (norm 0)")
     if is_zero(square - 1):
         return m
     norm = sqrt(square)

@@ -124,7 +124,7 @@ def normalized(d: Coefficients, data: Array) -> Array:
         with np.errstate(all="ignore"):
             parts = components(data)
             largest = d.length(parts)
-            d.require((largest > 0) & (largest < math.inf), "has no direction")
+            d.require((largest > 0) & (largest < math.inf), "the multivector has no direction")
             return d.stack(d.direction(parts, [math.nan] * len(parts)))
     return by_rows(closed_forms.unit_row, data, list(range(data.shape[-1])))
 

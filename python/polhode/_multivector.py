@@ -81,11 +81,11 @@ class Multivector(_native.Multivector):
         """The components' type: float64, float32, object (exact or symbolic), or that of another library."""
         return self._data.dtype
 
-    def grade(self, k: int) -> Multivector:
-        """Return the part of grade k; zero if it holds none."""
+    def _grade(self, k: int) -> Multivector:
+        """Return the part of grade k, where it is not native."""
         n = self.algebra.dimension
         if operator.index(k) not in range(n + 1):
-            space = "3-d space" if n == 3 else str(self.algebra)
+            space = "3-d space" if self.algebra.signature == (3, 0, 0) else str(self.algebra)
             raise ValueError(f"{space} has grades 0 to {n}, got {k}")
         return self._part(1 << k)
 
@@ -335,14 +335,13 @@ class Multivector(_native.Multivector):
 
         return reflected(self, n)
 
-    # --- comparison
+    # --- comparison, where it is not native
 
-    def __eq__(self, other: object) -> Any:
-        """Exact equality of all components: a bool, or an array of the batch shape."""
+    def _equals(self, other: object) -> Any:
         right = coerced(other, self)
         return NotImplemented if right is None else _comparison.equal(self, right)
 
-    def __ne__(self, other: object) -> Any:
+    def _differs(self, other: object) -> Any:
         right = coerced(other, self)
         return NotImplemented if right is None else _comparison.negated(_comparison.equal(self, right))
 

@@ -10,7 +10,7 @@ use polhode_ga::{Graded, Multivector as FullMultivector, Rotor as UnitRotor};
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyInt, PyList, PyTuple, PyType};
+use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyTuple, PyType};
 
 type Object<'py> = PyResult<Bound<'py, PyAny>>;
 
@@ -229,6 +229,16 @@ fn function<'py>(value: &Bound<'py, Multivector>, f: Function) -> Object<'py> {
     wrap(py, Held::One(result), unit)
 }
 
+/// Whether two single values have the same components; None if one is no single value.
+fn equal(left: &Bound<'_, Multivector>, right: &Bound<'_, PyAny>) -> Option<bool> {
+    let a = left.get().single()?.full();
+    match operand(right) {
+        Operand::Value(b, _) => Some(a == b.full()),
+        Operand::Number(x) => Some(a == scalar(x).full()),
+        Operand::Other => None,
+    }
+}
+
 #[pymethods]
 impl Multivector {
     #[new]
@@ -371,6 +381,30 @@ impl Multivector {
         match slf.get().single() {
             Some(a) => wrap(slf.py(), Held::One(a.reverse()), slf.get().unit),
             None => slf.call_method0(intern!(slf.py(), "_reversed")),
+        }
+    }
+
+    /// Return the part of grade k; zero if it holds none.
+    fn grade<'py>(slf: &Bound<'py, Self>, k: &Bound<'py, PyAny>) -> Object<'py> {
+        let whole: Option<u16> = k.cast_exact::<PyInt>().ok().and_then(|k| k.extract().ok());
+        match (slf.get().single(), whole) {
+            (Some(value), Some(k @ 0..=3)) => one(slf.py(), value.with_grades(Grades(1 << k))),
+            _ => slf.call_method1(intern!(slf.py(), "_grade"), (k,)),
+        }
+    }
+
+    /// Exact equality of all components: a bool, or an array of the batch shape.
+    fn __eq__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        match equal(slf, other) {
+            Some(same) => Ok(PyBool::new(slf.py(), same).to_owned().into_any()),
+            None => slf.call_method1(intern!(slf.py(), "_equals"), (other,)),
+        }
+    }
+
+    fn __ne__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        match equal(slf, other) {
+            Some(same) => Ok(PyBool::new(slf.py(), !same).to_owned().into_any()),
+            None => slf.call_method1(intern!(slf.py(), "_differs"), (other,)),
         }
     }
 

@@ -7,9 +7,11 @@ mod arrays;
 mod bodies;
 mod motion;
 mod multivector;
+mod operators;
 mod pool;
 mod scene;
 mod signature;
+mod value;
 
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
@@ -28,11 +30,11 @@ mod _native {
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
 
     #[pymodule_export]
-    use crate::multivector::{Multivector, Rotor};
-    #[pymodule_export]
     use crate::pool::{Buffer, buffer};
     #[pymodule_export]
     use crate::signature::{Algebra, g3_object};
+    #[pymodule_export]
+    use crate::value::{Multivector, Rotor};
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};

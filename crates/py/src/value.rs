@@ -54,7 +54,10 @@ pub(crate) fn one_rotor(py: Python<'_>, rotor: UnitRotor) -> Object<'_> {
 
 /// A Python float or int (not a bool) as a number.
 pub(crate) fn number(x: &Bound<'_, PyAny>) -> Option<f64> {
-    if x.cast::<PyFloat>().is_ok() || x.cast_exact::<PyInt>().is_ok() { x.extract().ok() } else { None }
+    match x.cast::<PyFloat>() {
+        Ok(x) => Some(x.value()),
+        Err(_) => x.cast_exact::<PyInt>().ok()?.extract().ok(),
+    }
 }
 
 /// The single value that an operand is, if it is one.

@@ -9,7 +9,7 @@ import numpy as np
 
 from polhode import _generic, _native, _parts
 from polhode._arrays import Array, is_float, mapped, new
-from polhode._coefficients import common, kind_of
+from polhode._coefficients import common, kind_of, taken
 from polhode._products import coerced
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def divided(value: Multivector, other: Any) -> Multivector:
         return value * divisor.inverse()
     if isinstance(divisor._data, np.ndarray):
         zeros = np.argwhere(divisor._data[..., 0] == 0)
-        if zeros.size or (len(zeros) and not divisor.shape):
+        if len(zeros):
             index = tuple(int(i) for i in zeros[0])
             raise ZeroDivisionError(
                 "division of a multivector by zero" + (f" at index {index}" if index else "")
@@ -147,7 +147,7 @@ def function(name: str, value: Multivector) -> Multivector:
         def native(rows: Array) -> Array:
             return _native.function(algebra, name, rows)[..., algebra._indices(mask)]
 
-        result = mapped(native, _parts.with_grades(value, algebra._all))
+        result = mapped(native, _parts.over_grades(value, algebra._all))
         in_range = np.isfinite(result).all(axis=-1)
         _require(in_range, f"of norm {{}} has no {name} in the range of {data.dtype}; scale it", value)
     elif algebra.signature == (3, 0, 0):
@@ -167,12 +167,12 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
         )
     mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
     terms, _ = algebra._terms("geometric", everything, everything)
-    full = _parts.with_grades(value, everything)
+    full = _parts.over_grades(value, everything)
     if name == "exp":
         rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full)
     else:
         rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full)
-    return kind_of(rows).stack([rows[..., i] for i in algebra._indices(mask)]), mask
+    return taken(rows, algebra._indices(mask)), mask
 
 
 def exp(value: Multivector) -> Multivector:

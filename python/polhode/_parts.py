@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -64,13 +64,16 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
 
 def signed(value: Multivector, negative: Callable[[int], bool]) -> Multivector:
     """Return the value with the sign of some grades changed."""
-    algebra, data = value.algebra, value._data
-    grades = algebra._grade_of[algebra._indices(value._mask)]
-    signs = [-1 if negative(int(k)) else 1 for k in grades]
+    grades = value.algebra._grade_of[value.algebra._indices(value._mask)]
+    return value._like(with_signs(value._data, [-1 if negative(int(k)) else 1 for k in grades]))
+
+
+def with_signs(data: Any, signs: Sequence[float]) -> Any:
+    """Return components, those with a negative sign changed."""
     if is_float(data):
-        return value._like(np.where(np.array(signs) < 0, -data, data))
+        return np.where(np.array(signs) < 0, -data, data)
     parts = [data[..., k] if sign > 0 else -data[..., k] for k, sign in enumerate(signs)]
-    return value._like(kind_of(data).stack(parts))
+    return kind_of(data).stack(parts)
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
@@ -166,7 +169,7 @@ def _unified(
     for item in items:
         algebra = common_algebra(items[0], item)
         mask |= item._mask
-    parts = list(common(*(with_grades(item, mask) for item in items)))
+    parts = list(common(*(over_grades(item, mask) for item in items)))
     if all(isinstance(item, _native.Rotor) for item in items):
         return parts, {item.shape for item in items}, _native.Rotor._from_rows
     return parts, {item.shape for item in items}, lambda data: _native.Multivector._of(data, mask, algebra)

@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._arrays import Array, Shape, common_batch, is_float, new, rows
-from polhode._coefficients import scalars
+from polhode._coefficients import kind_of, scalars
 
 if TYPE_CHECKING:
     from polhode._multivector import Multivector
@@ -24,20 +24,24 @@ def product(name: str, left: Multivector, right: Multivector, out: Any = None) -
         if out is not None:
             raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
         terms, _ = algebra._terms(name, left._mask, right._mask)
-        kind = _generic.coefficients.of(a, b)
+        kind = kind_of(a, b)
         result = _generic.products.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
         if rotors:
             return _native.Rotor._from_rows(_generic.rotors.from_components(kind, result))
         return _native.Multivector._of(result, mask, algebra)
-    batch = common_batch(left.shape, right.shape)
-    dtype = np.result_type(a, b)
-    a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
-    result = result_array((*batch, size), dtype, (a, b), out)
+    batch, a, b = aligned(a, b)
+    result = result_array((*batch, size), a.dtype, (a, b), out)
     if rotors:
         _native.rotor_compose(a, b, result)
         return _native.Rotor._from_rows(result)
     _native.product(algebra, name, a, left._mask, b, right._mask, result)
     return _native.Multivector._of(result, mask, algebra)
+
+
+def aligned(a: Array, b: Array) -> tuple[Shape, Array, Array]:
+    """Return the common batch shape of two arrays of floats, and their rows in the precision of both."""
+    batch, dtype = common_batch(a.shape[:-1], b.shape[:-1]), np.result_type(a, b)
+    return batch, rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
 
 
 def result_array(shape: Shape, dtype: Any, operands: tuple[Array, ...], out: Any) -> Array:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from polhode import _generic, _native
-from polhode._arrays import Array, Shape, batch_shape, common_batch, is_float, joined, mapped, new, rows
+from polhode._arrays import Array, Shape, batch_shape, is_float, joined, mapped, new
 from polhode._coefficients import as_coefficients, kind_of, number_like, reshaped, taken
 from polhode._extras import optional
 from polhode._joined import joins
 from polhode._multivector import Multivector
-from polhode._products import common_algebra, result_array
+from polhode._products import aligned, common_algebra, result_array
 from polhode._values import one_grade
 
 if TYPE_CHECKING:
@@ -141,9 +141,9 @@ class Rotor(_native.Rotor, Multivector):
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
         For one axis a single angle needs no array.
         """
-        total: Any = Rotor.identity()
         from polhode import _euler
 
+        total: Any = Rotor.identity()
         for turn in _euler.rotation_vectors(seq, angles, degrees):
             total = Rotor.from_rotation_vector(turn) * total
         result: Rotor = total
@@ -162,10 +162,9 @@ class Rotor(_native.Rotor, Multivector):
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
         """Quaternions (..., 4), Hamilton's and active; the order must be said."""
-        if _to_wxyz(order)[0] == 0:
-            return _computed("to_quaternion", self._data)
+        wxyz_first = _to_wxyz(order)[0] == 0
         wxyz = _computed("to_quaternion", self._data)
-        return taken(wxyz, [1, 2, 3, 0])
+        return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
         """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
@@ -229,9 +228,8 @@ class Rotor(_native.Rotor, Multivector):
                 raise TypeError(f"out needs operands of floats, got {self.dtype} and {X.dtype}")
             kind = kind_of(a, b)
             return X._like(_generic.rotors.apply(kind, kind.asarray(a), kind.asarray(b), X._mask))
-        batch, dtype = common_batch(self.shape, X.shape), np.result_type(a, b)
-        a, b = rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
-        result = result_array((*batch, b.shape[-1]), dtype, (a, b), out)
+        batch, a, b = aligned(a, b)
+        result = result_array((*batch, b.shape[-1]), a.dtype, (a, b), out)
         _native.rotor_apply(a, b, X._mask, result)
         return X._like(result)
 
@@ -276,10 +274,9 @@ def _powers(R: Rotor, n: Array) -> Rotor:
     """Return ``exp(n log R)`` for a batch."""
     if not np.isfinite(n).all():
         raise ValueError(f"the power of a rotor must be finite, got {n[~np.isfinite(n)][0]}")
-    batch, dtype = common_batch(R.shape, n.shape), np.result_type(R._data, n)
-    data = rows(R._data.astype(dtype, copy=False), batch)
-    result = new((*batch, 4), dtype)
-    _native.rotor_power(data, rows(n[..., np.newaxis].astype(dtype, copy=False), batch), result)
+    batch, data, exponents = aligned(R._data, n[..., np.newaxis])
+    result = new((*batch, 4), data.dtype)
+    _native.rotor_power(data, exponents, result)
     return Rotor._from_rows(result)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import common_batch, is_float
-from polhode._coefficients import kind_of
-from polhode._parts import with_grades
+from polhode._coefficients import taken
+from polhode._parts import over_grades, with_signs
 from polhode._products import coerced, common_algebra
 
 if TYPE_CHECKING:
@@ -18,16 +18,12 @@ if TYPE_CHECKING:
 
 def complement(value: Multivector, right: bool) -> Multivector:
     """Return the right or left complement: a permutation of the components, with signs."""
-    algebra, n, data = value.algebra, value.algebra.dimension, value._data
+    algebra, n = value.algebra, value.algebra.dimension
     mask = sum(1 << n - k for k in value.grades)
     images = algebra._complement(right)
     source = {images[i][0]: (place, images[i][1]) for place, i in enumerate(algebra._indices(value._mask))}
-    taken = [source[i] for i in algebra._indices(mask)]
-    if is_float(data):
-        signs = np.array([sign for _, sign in taken], dtype=data.dtype)
-        return value._of(data[..., [place for place, _ in taken]] * signs, mask, algebra)
-    parts = [data[..., place] if sign > 0 else -data[..., place] for place, sign in taken]
-    return value._of(kind_of(data).stack(parts), mask, algebra)
+    places, signs = zip(*(source[i] for i in algebra._indices(mask)), strict=True)
+    return value._of(with_signs(taken(value._data, list(places)), signs), mask, algebra)
 
 
 def regressive(left: Multivector, other: Any) -> Multivector:
@@ -52,12 +48,10 @@ def joined(left: Multivector, right: Multivector, name: str) -> Multivector:
     everything = algebra._all
     a, b = (
         np.ascontiguousarray(
-            np.broadcast_to(with_grades(value, everything), (*batch, algebra.size)), dtype=np.float64
+            np.broadcast_to(over_grades(value, everything), (*batch, algebra.size)), dtype=np.float64
         )
         for value in (left, right)
     )
     dtype = np.result_type(left._data, right._data)
-    result = _native.subspaces(algebra, name, a, b)
-    held = (result != 0).reshape(-1, algebra.size).any(axis=0)
-    mask = int(np.bitwise_or.reduce(1 << algebra._grade_of[held], initial=0)) or 1
-    return left._of(result[..., algebra._indices(mask)].astype(dtype), mask, algebra)
+    result = left._of(_native.subspaces(algebra, name, a, b), everything, algebra)
+    return result._part(result._held() or 1).astype(dtype)

@@ -164,7 +164,7 @@ fn in_range(m: Multivector) -> Result<Multivector, MathError> {
 }
 
 /// A function of one multivector, and the grades its values may hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Function {
     /// [`Multivector::inverse`].
     Inverse,

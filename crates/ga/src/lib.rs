@@ -18,7 +18,8 @@
 //! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`maps`] (exp, log and
 //! powers over rows), [`threads`], [`values`] (`Vector`, `Bivector`, `Trivector`, `Multivector`),
 //! [`graded`] (a value that carries its grades), [`rotor`] (rotations), [`functions`] (inverse, exp, log,
-//! square root), [`general`] (the same in any algebra; complements, join and meet), [`pauli`].
+//! square root), [`general`] (the same in any algebra; complements, join and meet), [`pauli`], [`formula`]
+//! (the language of the handout), [`diagnostic`] (errors that show their place in a text).
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
@@ -26,6 +27,8 @@
 pub mod batch;
 mod complex;
 pub mod compose;
+pub mod diagnostic;
+pub mod formula;
 pub mod functions;
 pub mod general;
 pub mod graded;

@@ -8,13 +8,12 @@
 //! (closed forms), [`mesh`] (triangle meshes and their files); [`free`] (the free top, exact), [`regime`], [`elliptic`],
 //! [`symmetric_top`],
 //! [`torque`] (laws and what they conserve), [`splitting`] (steps), [`simulate`] (runs), [`certificate`] (what they conserved); [`units`] and
-//! [`scene`] (what a person writes in a scene file), [`diagnostic`] (errors that show their place in a file).
+//! [`scene`] (what a person writes in a scene file).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
 pub mod body;
 pub mod certificate;
-pub mod diagnostic;
 mod double_double;
 mod eigen;
 pub mod elliptic;
@@ -33,9 +32,9 @@ pub mod torque;
 pub mod units;
 
 pub use body::{Body, BodyError};
-pub use diagnostic::Diagnostic;
 pub use inertia::Inertia;
 pub use mesh::TriangleMesh;
+pub use polhode_ga::diagnostic::Diagnostic;
 pub use scene::Scene;
 pub use simulate_error::SimulateError;
 pub use solids::{Amount, Solid};

@@ -2,12 +2,12 @@
 
 use super::{BodySpec, Scene};
 use crate::body::{Body, BodyError};
-use crate::diagnostic::Diagnostic;
 use crate::inertia::Inertia;
 use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
 use crate::simulate::check_moments;
 use crate::solids::Amount;
 use crate::torque::Torque;
+use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Rotor, Vector};
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! The table `[initial]`: how the body stands and turns at the beginning.
 
 use super::reader::{Form, Reader, Table, Value};
-use crate::diagnostic::quote;
 use crate::units::Quantity;
+use polhode_ga::diagnostic::quote;
 use polhode_ga::{Bivector, Rotor, Vector};
 use toml::de::DeValue;
 

@@ -43,10 +43,10 @@ mod run;
 #[cfg(test)]
 mod tests;
 
-use crate::diagnostic::Diagnostic;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use initial::SpinFrame;
+use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Bivector, Rotor, Vector};
 use reader::{Reader, Table, Value};
 pub use run::Run;

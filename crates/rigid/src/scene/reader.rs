@@ -1,7 +1,7 @@
 //! Walks a TOML tree and collects everything that is wrong with it.
 
-use crate::diagnostic::{alternatives, list, nearest, quote};
 use crate::units::{self, Quantity};
+use polhode_ga::diagnostic::{alternatives, list, nearest, quote};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};

@@ -2,7 +2,7 @@
 
 use super::split_digits;
 use super::table::{Dimension, Unit, find_unit};
-use crate::diagnostic::quote;
+use polhode_ga::diagnostic::quote;
 
 /// A product of powers of units: `10^ten · numerator / denominator` SI units.
 #[derive(Clone, Copy)]

@@ -14,8 +14,8 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use crate::diagnostic::quote;
 use factor::{Factor, Problem};
+use polhode_ga::diagnostic::quote;
 use std::fmt;
 use table::{ANGLE, Dimension, FREQUENCY, LENGTH, MASS, TIME, near_unit};
 

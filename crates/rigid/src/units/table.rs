@@ -1,6 +1,6 @@
 //! The units: their names, their dimensions and what they are in SI.
 
-use crate::diagnostic::nearest;
+use polhode_ga::diagnostic::nearest;
 use std::f64::consts::{PI, TAU};
 
 /// Powers of metre, kilogram, second and radian.

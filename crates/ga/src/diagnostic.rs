@@ -74,6 +74,11 @@ fn char_boundary(text: &str, index: usize) -> usize {
     (0..=index.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
 }
 
+/// The line of `text` where the bytes `span` begin, with carets under them: three lines, each after a newline.
+pub fn marked(text: &str, span: Range<usize>) -> String {
+    Diagnostic::at(Path::new(""), text, span, "").excerpt
+}
+
 /// The line with carets under `marked` characters, at least one, that have `before` others before them.
 fn excerpt(line: &str, number: usize, before: usize, marked: usize) -> String {
     let length = line.chars().count();
@@ -122,7 +127,7 @@ fn glyph(c: char) -> (std::iter::RepeatN<char>, usize) {
 }
 
 /// A person's text between backticks for a message: cut when long, control characters escaped.
-pub(crate) fn quote(text: &str) -> String {
+pub fn quote(text: &str) -> String {
     let cut: String = text.chars().take(QUOTED).flat_map(visible).collect();
     let rest = if text.chars().nth(QUOTED).is_some() { "…" } else { "" };
     format!("`{cut}{rest}`")
@@ -135,19 +140,19 @@ fn visible(c: char) -> impl Iterator<Item = char> {
 }
 
 /// `` `a`, `b`, `c` ``.
-pub(crate) fn list(names: &[&str]) -> String {
+pub fn list(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     quoted.join(", ")
 }
 
 /// `` `a` `` alone, otherwise `` one of `a`, `b`, `c` ``.
-pub(crate) fn alternatives(names: &[&str]) -> String {
+pub fn alternatives(names: &[&str]) -> String {
     let several = if names.len() > 1 { "one of " } else { "" };
     several.to_owned() + &list(names)
 }
 
 /// The name that `word` probably stands for: equal but for case, or within one edit per three letters.
-pub(crate) fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+pub fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let letters = word.chars().count();
     if letters > QUOTED {
         return None;

@@ -1,0 +1,105 @@
+//! Formulas as on paper: one small language for the shell, Python, scenes, torques and the browser.
+//!
+//! ```text
+//! equation = sum { "=" sum }
+//! sum      = [ "-" ] product { ( "+" | "-" ) product }
+//! product  = tight { [ "*" | "/" ] tight }             juxtaposition is the geometric product
+//! tight    = prefix { ( "∧" "^" | "·" "|" | "×" | "⨯" | "⌋" | "⌊" ) prefix }
+//! prefix   = { "~" | "-" } postfix
+//! postfix  = primary { "^" integer | superscript | "~" | "†" | "'" }
+//! primary  = number | name | name "(" sum { "," sum } ")" | "(" sum ")" | "⟨" sum "⟩" [ "_" grades ]
+//!          | "Σ" [ "_" index ] product
+//! ```
+//!
+//! The products of the third line of operators bind tighter than the geometric product, as in the handout:
+//! `I a∧b` is `I (a∧b)`. They are not associative with each other, so that `a·b∧c` is refused; `a∧b∧c` is not.
+//! One-letter names, with subscripts, primes and tildes, may run together: `RaR̃` is `R a ~R`. A longer word
+//! is one name where that name is bound. What the names stand for therefore decides how a text is read, and
+//! [`parse`] is given the [`Names`].
+//!
+//! Text becomes a [`Tree`] with spans, the tree a [`Program`] of steps whose grades are known ([`compile`]). Every
+//! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
+//! [`MAX_DEPTH`].
+
+mod names;
+mod number;
+mod program;
+mod tree;
+
+pub use names::{Definition, Meaning, Names, Type};
+pub use number::Number;
+pub use program::{Id, Input, InputKind, Op, Program, Step};
+pub use tree::{Kind, Named, Node, Span, Tight, Tree};
+
+use crate::diagnostic::marked;
+use crate::functions::Function;
+use crate::general::Calculus;
+use crate::product::Grades;
+use crate::table::{self, G3};
+use std::fmt;
+
+/// Most names, numbers and operations in a formula, definitions written out.
+pub const MAX_NODES: usize = 10_000;
+
+/// Most brackets within each other.
+pub const MAX_DEPTH: usize = 100;
+
+/// Why a text is no formula, or a formula has no value, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error {
+    /// What is wrong, and what to do.
+    pub message: String,
+    /// Where in the text, in bytes.
+    pub span: Span,
+}
+
+impl Error {
+    pub(crate) fn new(span: Span, message: impl Into<String>) -> Error {
+        Error { message: message.into(), span }
+    }
+
+    /// The message, and the place in the text with a caret.
+    pub fn shown(&self, text: &str) -> String {
+        format!("{}{}", self.message, marked(text, self.span.start..self.span.end))
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// The algebra a formula is about.
+#[derive(Clone, Copy)]
+pub struct Space<'a> {
+    /// Its table.
+    pub algebra: &'a table::Algebra,
+    /// Its functions; 3-d space has its own.
+    calculus: Option<&'a Calculus>,
+}
+
+impl<'a> Space<'a> {
+    /// 3-d space.
+    pub fn g3() -> Space<'static> {
+        Space { algebra: &G3, calculus: None }
+    }
+
+    /// Any algebra, with its functions.
+    pub fn new(algebra: &'a table::Algebra, calculus: &'a Calculus) -> Space<'a> {
+        let own = algebra.signature() == G3.signature();
+        Space { algebra, calculus: (!own).then_some(calculus) }
+    }
+
+    /// Whether it is 3-d space.
+    pub fn is_g3(self) -> bool {
+        self.calculus.is_none()
+    }
+
+    /// The grades of a function's values.
+    pub(crate) fn grades(self, f: Function, g: Grades) -> Grades {
+        self.calculus.map_or_else(|| f.grades(g), |calculus| calculus.grades(f, g))
+    }
+}

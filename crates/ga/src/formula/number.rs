@@ -1,0 +1,145 @@
+//! Numbers as they are written: `2`, `0.25`, `1e-3`, `½`.
+
+use std::fmt;
+
+/// A number, with its exact value where that is a ratio of two whole numbers of 64 bits.
+///
+/// Over floats `value` counts; over fractions and symbols `0.1` is the tenth that was written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    /// The nearest float.
+    pub value: f64,
+    /// Numerator and denominator, in lowest terms, the denominator positive.
+    pub ratio: Option<(i64, i64)>,
+}
+
+impl Number {
+    /// The ratio of two whole numbers; `None` if the second is 0 or the lowest terms need more than 64 bits.
+    pub fn ratio(numerator: i128, denominator: i128) -> Option<Number> {
+        if denominator == 0 {
+            return None;
+        }
+        let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()) as i128;
+        let (n, d) = (numerator / divisor * denominator.signum(), (denominator / divisor).abs());
+        let (n, d) = (i64::try_from(n).ok()?, i64::try_from(d).ok()?);
+        // The quotient of two floats is the nearest to the ratio only where both are exact.
+        let exact = n.unsigned_abs() <= 1 << 53 && d <= 1 << 53;
+        exact.then(|| Number { value: n as f64 / d as f64, ratio: Some((n, d)) })
+    }
+
+    /// A whole number.
+    pub fn whole(n: i32) -> Number {
+        Number { value: f64::from(n), ratio: Some((i64::from(n), 1)) }
+    }
+
+    /// A float that is not taken for a ratio, such as π.
+    pub fn float(value: f64) -> Number {
+        Number { value, ratio: None }
+    }
+
+    /// What the text of a decimal number stands for; `None` if it is none, or beyond the floats.
+    pub fn decimal(text: &str) -> Option<Number> {
+        let value: f64 = text.parse().ok().filter(|x: &f64| x.is_finite())?;
+        let ratio = decimal_ratio(text).and_then(|n| n.ratio);
+        Some(Number { value, ratio })
+    }
+
+    /// The number with the other sign.
+    pub fn negated(self) -> Number {
+        Number { value: -self.value, ratio: self.ratio.map(|(n, d)| (-n, d)) }
+    }
+
+    /// The product of two numbers.
+    pub fn times(self, other: Number) -> Number {
+        let exact = self.ratio.zip(other.ratio).and_then(|((a, b), (c, d))| {
+            Number::ratio(i128::from(a) * i128::from(c), i128::from(b) * i128::from(d))
+        });
+        exact.unwrap_or(Number::float(self.value * other.value))
+    }
+
+    /// The quotient of two numbers; `None` if the second is 0.
+    pub fn over(self, other: Number) -> Option<Number> {
+        if other.value == 0.0 {
+            return None;
+        }
+        let exact = self.ratio.zip(other.ratio).and_then(|((a, b), (c, d))| {
+            Number::ratio(i128::from(a) * i128::from(d), i128::from(b) * i128::from(c))
+        });
+        Some(exact.unwrap_or(Number::float(self.value / other.value)))
+    }
+}
+
+/// As it is written again: the fewest digits that give the same number.
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.ratio {
+            Some((n, 1)) => write!(f, "{n}"),
+            _ => {
+                let size = self.value.abs();
+                // An exponent has its sign, for `2e1` is 2 times the basis vector.
+                if size != 0.0 && !(1e-5..1e16).contains(&size) {
+                    let text = format!("{:e}", self.value);
+                    f.write_str(&if text.contains("e-") { text } else { text.replace('e', "e+") })
+                } else {
+                    write!(f, "{}", self.value)
+                }
+            }
+        }
+    }
+}
+
+/// The exact value of decimal digits, where it has few enough.
+fn decimal_ratio(text: &str) -> Option<Number> {
+    let (digits, exponent) = match text.split_once(['e', 'E']) {
+        Some((digits, exponent)) => (digits, exponent.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+    let numerator: i128 = format!("{whole}{part}").parse().ok()?;
+    let power = exponent.checked_sub(i32::try_from(part.len()).ok()?)?;
+    let ten = 10i128.checked_pow(power.unsigned_abs())?;
+    if power >= 0 { Number::ratio(numerator.checked_mul(ten)?, 1) } else { Number::ratio(numerator, ten) }
+}
+
+fn gcd(mut a: u128, mut b: u128) -> u128 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a.max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_exact_where_they_can_be() {
+        let ratio = |text| Number::decimal(text).unwrap().ratio;
+        assert_eq!(ratio("0.25"), Some((1, 4)));
+        assert_eq!(ratio("12"), Some((12, 1)));
+        assert_eq!(ratio("1e-3"), Some((1, 1000)));
+        assert_eq!(ratio("1.5e+2"), Some((150, 1)));
+        assert_eq!(ratio("1e-30"), None);
+        assert_eq!(Number::decimal("1e999"), None);
+        assert_eq!(Number::decimal("1e-3").unwrap().value, 0.001);
+    }
+
+    #[test]
+    fn ratios_are_in_lowest_terms() {
+        assert_eq!(Number::ratio(6, -4).unwrap().ratio, Some((-3, 2)));
+        assert_eq!(Number::ratio(1, 0), None);
+        let half = Number::ratio(1, 2).unwrap();
+        assert_eq!(half.times(Number::whole(4)).ratio, Some((2, 1)));
+        assert_eq!(Number::whole(1).over(Number::whole(3)).unwrap().ratio, Some((1, 3)));
+        assert_eq!(half.over(Number::whole(0)), None);
+    }
+
+    #[test]
+    fn numbers_print_so_that_they_are_read_again() {
+        for x in [0.1, 1.0 / 3.0, 1e-7, 1.5e300, 5e-324, f64::MAX, 2f64.powi(60)] {
+            let text = Number::float(x).to_string();
+            assert_eq!(Number::decimal(&text).unwrap().value, x, "{text}");
+        }
+        assert_eq!(Number::float(1e20).to_string(), "1e+20");
+    }
+}

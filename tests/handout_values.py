@@ -5,7 +5,7 @@ cosine. Rotors are rational where the numbers are, so that all but exponentials 
 """
 
 from fractions import Fraction
-from itertools import count, product
+from itertools import count
 
 import numpy as np
 import sympy
@@ -120,13 +120,10 @@ def parts(v):
     return {"a": parallel + across, "a∥": parallel, "a⊥": across, "b": b, "B": parallel.wedge(b)}
 
 
-def permutation(v):
-    """B1, B2, B3, δ_ij and ε_ijk."""
-    places = range(1, 4)
-    basis = frame(v)
-    names = {f"B{k}": plane for k, plane in enumerate(_planes(basis), start=1)} | basis
-    names |= {f"ε{i}{j}{k}": (i - j) * (j - k) * (k - i) // 2 for i, j, k in product(places, repeat=3)}
-    return names | {f"δ{i}{j}": int(i == j) for i, j in product(places, repeat=2)}
+def planes(v):
+    """B1, B2, B3."""
+    names = frame(v)
+    return names | {f"B{k}": plane for k, plane in enumerate(_planes(names), start=1)}
 
 
 def _planes(names):
@@ -136,10 +133,9 @@ def _planes(names):
 
 def quaternions(v):
     """A quaternion w + xi + yj + zk with its units."""
-    planes = _planes(frame(v))
-    units = {name: -plane for name, plane in zip("ijk", planes, strict=True)}
-    names = {f"B{k}": plane for k, plane in enumerate(planes, start=1)}
-    return units | names | {name: v.number() for name in "wxyz"}
+    names = planes(v)
+    units = {unit: -names[f"B{k}"] for k, unit in enumerate("ijk", start=1)}
+    return names | units | {name: v.number() for name in "wxyz"}
 
 
 def plane_algebra(v):
@@ -292,8 +288,10 @@ def _body(v, moments, torque):
     names |= {f"ω{k}'": rate for k, rate in enumerate(rates, start=1)}
     names |= {"R": R, "R'": R * Ω_B / -2, "Ω_B": Ω_B, "Ω_B'": _bivector(rates), "Ω_S": R(Ω_B)}
     names |= {f"f{k}": R(e) for k, e in enumerate(_BASIS, start=1)}
-    L, T = R(_bivector([i1 * ω1, i2 * ω2, i3 * ω3])), R(_bivector(torque))
-    return names | {"I": ph.LinearMap.from_matrix(matrix, grade=2), "L": L, "T": T}
+    J, J_rate = (_bivector([i * x for i, x in zip(moments, xs, strict=True)]) for xs in ((ω1, ω2, ω3), rates))
+    L_rate = names["R'"] * J * ~R + R(J_rate) + R * J * ~names["R'"]
+    names |= {"L": R(J), "L'": L_rate, "T": R(_bivector(torque))}
+    return names | {"I": ph.LinearMap.from_matrix(matrix, grade=2)}
 
 
 def _bivector(components):

@@ -22,17 +22,23 @@
 //! [`MAX_DEPTH`].
 
 mod compile;
+mod define;
 mod derivative;
+mod indices;
 mod letters;
 mod names;
 mod number;
+mod operands;
 mod parser;
 mod program;
 mod reading;
+mod rules;
+mod steps;
 mod token;
 mod tree;
 
-pub use compile::{compile, define, heading, types};
+pub use compile::{compile, types};
+pub use define::{define, heading};
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
 pub use parser::parse;
@@ -112,3 +118,6 @@ impl<'a> Space<'a> {
         self.calculus.map_or_else(|| f.grades(g), |calculus| calculus.grades(f, g))
     }
 }
+
+#[cfg(test)]
+mod tests;

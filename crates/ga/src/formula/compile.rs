@@ -1,11 +1,11 @@
 //! A tree to a program: names get their types, grades are inferred and checked.
 
+use super::builder::{Builder, Built};
 use super::derivative::derivative;
 use super::indices::{count_indices, indexed, permutation};
 use super::names::{Definition, Meaning, Names, Type};
 use super::number::Number;
 use super::program::{Id, InputKind, Op, Program};
-use super::steps::{Built, Steps};
 use super::tree::{Kind, Named, Node, Span, Tight, Tree};
 use super::{Error, MAX_NODES, Space};
 use crate::functions::Function;
@@ -37,7 +37,7 @@ type Types = HashMap<*const Node, Type>;
 
 fn compiled(tree: &Tree, space: Space, names: &Names) -> Result<(Program, Types), Error> {
     let mut compiler = Compiler {
-        steps: Steps::new(space),
+        steps: Builder::new(space),
         names,
         types: HashMap::new(),
         frame: Frame::default(),
@@ -69,7 +69,7 @@ struct Frame {
 }
 
 struct Compiler<'a> {
-    steps: Steps<'a>,
+    steps: Builder<'a>,
     names: &'a Names,
     types: Types,
     frame: Frame,

@@ -21,6 +21,7 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+mod builder;
 mod compile;
 mod define;
 mod derivative;
@@ -33,7 +34,6 @@ mod parser;
 mod program;
 mod reading;
 mod rules;
-mod steps;
 mod token;
 mod tree;
 

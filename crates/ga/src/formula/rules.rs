@@ -1,15 +1,15 @@
 //! Operations on steps: the grades of their values, and what is known before there are any.
 
+use super::builder::{Builder, Built};
 use super::names::Type;
 use super::number::Number;
 use super::program::{Id, Op, union};
-use super::steps::{Built, Steps};
 use super::tree::Span;
 use crate::functions::Function;
 use crate::product::{Grades, Plan, Product};
 use std::collections::HashMap;
 
-impl Steps<'_> {
+impl Builder<'_> {
     pub fn negate(&mut self, id: Id, span: Span) -> Built {
         match self.program.steps[id].op {
             Op::Constant(number, index) => self.constant(number.negated(), index, span),

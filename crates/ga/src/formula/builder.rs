@@ -9,7 +9,7 @@ use crate::product::Grades;
 use std::collections::HashMap;
 
 /// A program in the making.
-pub(super) struct Steps<'a> {
+pub(super) struct Builder<'a> {
     pub space: Space<'a>,
     pub program: Program,
     /// Where the call stands of the definition that is being written out: the place of all its steps.
@@ -20,15 +20,15 @@ pub(super) struct Steps<'a> {
 
 pub(super) type Built = Result<Id, Error>;
 
-impl<'a> Steps<'a> {
-    pub fn new(space: Space<'a>) -> Steps<'a> {
+impl<'a> Builder<'a> {
+    pub fn new(space: Space<'a>) -> Builder<'a> {
         let signature = space.algebra.signature();
         let program = Program { signature, inputs: Vec::new(), steps: Vec::new(), results: Vec::new() };
-        Steps { space, program, call: None, known: HashMap::new() }
+        Builder { space, program, call: None, known: HashMap::new() }
     }
 }
 
-impl Steps<'_> {
+impl Builder<'_> {
     pub fn count(&self) -> usize {
         self.space.algebra.signature().generators()
     }

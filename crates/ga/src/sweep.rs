@@ -12,7 +12,7 @@ use std::ops::{ControlFlow, Range};
 pub(crate) const STREAMED: usize = 16 << 20;
 
 /// A thread more pays from so many numbers for each on; they take three times as long as it takes to start.
-const SHARED: usize = 1 << 19;
+pub(crate) const SHARED: usize = 1 << 19;
 
 /// Whether factors and product together are too much for the caches.
 pub(crate) fn beyond_caches<T>(a: &[T], b: &[T], out: &[T]) -> bool {
@@ -62,6 +62,14 @@ pub(crate) struct Target<'a, T> {
     pub data: &'a mut [T],
     pub size: usize,
     pub at: usize,
+}
+
+impl<'a, T> Target<'a, T> {
+    /// Takes the first rows away.
+    pub fn split_off(&mut self, rows: usize) -> Target<'a, T> {
+        let data = self.data.split_off_mut(..rows * self.size).expect("there are so many rows");
+        Target { data, ..*self }
+    }
 }
 
 /// Rows written one block after the other past the caches, where only whole cache lines are fast. What

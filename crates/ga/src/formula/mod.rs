@@ -21,14 +21,21 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+mod lanes;
 mod names;
 mod number;
 mod program;
+mod run;
+mod schedule;
+mod single;
+mod steps;
 mod tree;
 
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
+pub use run::RowError;
+pub use single::{Given, Runner};
 pub use tree::{Kind, Named, Node, Span, Tight, Tree};
 
 use crate::diagnostic::marked;

@@ -26,6 +26,7 @@ mod compile;
 mod define;
 mod derivative;
 mod indices;
+mod lanes;
 mod letters;
 mod names;
 mod number;
@@ -34,6 +35,10 @@ mod parser;
 mod program;
 mod reading;
 mod rules;
+mod run;
+mod schedule;
+mod single;
+mod steps;
 mod token;
 mod tree;
 
@@ -43,6 +48,8 @@ pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
 pub use parser::parse;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
+pub use run::RowError;
+pub use single::{Given, Runner};
 pub use token::canonical;
 pub use tree::{Kind, Named, Node, Span, Tight, Tree};
 

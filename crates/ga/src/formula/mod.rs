@@ -21,13 +21,18 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+#[cfg(test)]
+mod build;
+mod latex;
 mod names;
 mod number;
+mod print;
 mod program;
 mod tree;
 
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
+pub use print::Style;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
 pub use tree::{Kind, Named, Node, Span, Tight, Tree};
 

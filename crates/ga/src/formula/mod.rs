@@ -27,11 +27,13 @@ mod define;
 mod derivative;
 mod indices;
 mod lanes;
+mod latex;
 mod letters;
 mod names;
 mod number;
 mod operands;
 mod parser;
+mod print;
 mod program;
 mod reading;
 mod rules;
@@ -47,6 +49,7 @@ pub use define::{define, heading};
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
 pub use parser::parse;
+pub use print::Style;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
 pub use run::RowError;
 pub use single::{Given, Runner};
@@ -126,5 +129,9 @@ impl<'a> Space<'a> {
     }
 }
 
+#[cfg(test)]
+mod build;
+#[cfg(test)]
+mod laws;
 #[cfg(test)]
 mod tests;

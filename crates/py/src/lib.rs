@@ -11,6 +11,7 @@ mod operators;
 mod pool;
 mod scene;
 mod signature;
+mod text;
 mod value;
 
 /// The compiled core of Polhode; private, called through `polhode`.
@@ -38,6 +39,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};
+    #[pymodule_export]
+    use crate::text::{diagnostic, quantities};
 
     /// The version of the package.
     #[pymodule_export]

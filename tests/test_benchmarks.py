@@ -8,6 +8,7 @@ import pytest
 
 import algebras
 import batches
+import compiled
 import machine
 import report
 import single
@@ -16,7 +17,7 @@ from contest import OURS, Pace, Row
 TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS)
 
 
-@pytest.mark.parametrize("topic", [single, batches, algebras], ids=lambda topic: topic.__name__)
+@pytest.mark.parametrize("topic", [single, batches, compiled, algebras], ids=lambda topic: topic.__name__)
 def test_all_that_is_installed_agrees(topic, monkeypatch):
     # JAX starts threads, and from then on warns of every fork.
     monkeypatch.setitem(sys.modules, "jax", None)

@@ -86,7 +86,8 @@ def compilation(rng: np.random.Generator) -> Row:
         import loops
 
         rowed = [x[np.newaxis] for x in arrays]
-        plain = loops.turn_and_contract.py_func
+        # Python's function under the compiled one; where compilation is switched off it is that.
+        plain = getattr(loops.turn_and_contract, "py_func", loops.turn_and_contract)
         names = {"njit": njit, "f": plain, "x": rowed, "new": np.empty_like}
         row.enter("numba", "njit(f)(*x, new(x[1]))", names, lambda x: x[0])
     with row.peer("JAX"):

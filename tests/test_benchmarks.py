@@ -1,7 +1,9 @@
 """The benchmarks measure the same work, and say what they could not measure."""
 
 import json
+import os
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -85,6 +87,24 @@ def test_the_data_are_json():
     assert found["commit"] == "abc"
     assert found["rows"][0]["seconds"] == {OURS: 4e-9}
     assert found["rows"][0]["expressions"] == {OURS: "x + x", "NumPy": "2 * x"}
+
+
+@pytest.mark.skipif(not machine.PINS, reason="threads cannot be pinned here")
+def test_on_one_core_all_threads_are():
+    allowed, seen, go = os.sched_getaffinity(0), [], threading.Event()
+
+    def wait():
+        go.wait(60)
+        seen.append(os.sched_getaffinity(0))
+
+    before = threading.Thread(target=wait)
+    before.start()
+    with machine.on_one_core():
+        seen.append(os.sched_getaffinity(0))
+        go.set()
+        before.join()
+    assert seen == [{min(allowed)}] * 2
+    assert os.sched_getaffinity(0) == allowed
 
 
 def test_the_machine_is_described():

@@ -17,11 +17,13 @@ _NEW_LINE = r" \\ "
 
 
 class _Notation(NamedTuple):
-    """How a coefficient is written, as whether a minus stands before it and what follows; and the rest."""
+    """How a coefficient is written, as whether a minus stands before it and what follows; and the rest.
+
+    A blade comes with the space between a coefficient and it.
+    """
 
     coefficient: Callable[[Any], tuple[bool, str]]
-    blade: Callable[[str], str]
-    space: str
+    blade: Callable[[str], tuple[str, str]]
     more: str
 
 
@@ -85,8 +87,8 @@ def _sum(components: Any, blades: Sequence[str], notation: _Notation) -> str:
         if _is_zero(x):
             continue
         negative, size = notation.coefficient(x)
-        factors = [size, notation.blade(blade)] if blade else [size]
-        term = notation.space.join(factors[1:] if blade and size == "1" else factors)
+        space, element = notation.blade(blade)
+        term = size if not blade else element if size == "1" else size + space + element
         if text:
             text += f" - {term}" if negative else f" + {term}"
         else:
@@ -113,7 +115,7 @@ def _sign_and_size(x: Any) -> tuple[bool, str]:
     return text.startswith("-"), text.lstrip("+-")
 
 
-_TEXT = _Notation(_sign_and_size, str, " ", "…")
+_TEXT = _Notation(_sign_and_size, lambda blade: (" ", blade), "…")
 
 
 # --- LaTeX
@@ -128,7 +130,11 @@ def _sign_and_latex(x: Any) -> tuple[bool, str]:
         return negative, rf"\frac{{{abs(x.numerator)}}}{{{x.denominator}}}"
     if size in ("inf", "nan"):
         return negative, r"\infty" if size == "inf" else r"\mathrm{NaN}"
-    return negative, re.sub(r"e\+?(-?)0*(\d+)$", r" \\times 10^{\1\2}", size)
+    digits, _, exponent = size.partition("e")
+    if not exponent:
+        return negative, size
+    power = f"10^{{{int(exponent)}}}"
+    return negative, power if digits == "1" else rf"{digits} {{\times}} {power}"
 
 
 def _symbolic_latex(x: Any) -> tuple[bool, str]:
@@ -145,8 +151,10 @@ def _signed_latex(x: Any) -> str:
     return f"-{size}" if negative else size
 
 
-def _blade_latex(blade: str) -> str:
-    return re.sub(r"e(\d)", r"e_\1", blade).replace("∧", r" \wedge ")
+def _blade_latex(blade: str) -> tuple[str, str]:
+    """A wedge is set close, for it binds tighter than the product with a coefficient."""
+    space = r"\," if "∧" in blade else " "
+    return space, re.sub(r"(\d)", r"_{\1}", blade).replace("∧", r"{\wedge}")
 
 
-_LATEX = _Notation(_sign_and_latex, _blade_latex, r"\,", r"\vdots")
+_LATEX = _Notation(_sign_and_latex, _blade_latex, r"\vdots")

@@ -23,17 +23,28 @@
 
 #[cfg(test)]
 mod build;
+mod compile;
+mod derivative;
 mod latex;
+#[cfg(test)]
+mod laws;
+mod letters;
 mod names;
 mod number;
+mod parser;
 mod print;
 mod program;
+mod reading;
+mod token;
 mod tree;
 
+pub use compile::{compile, define, heading, types};
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
+pub use parser::parse;
 pub use print::Style;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
+pub use token::canonical;
 pub use tree::{Kind, Named, Node, Span, Tight, Tree};
 
 use crate::diagnostic::marked;

@@ -338,7 +338,7 @@ const GREEK: [(char, &str); 37] = [
 
 #[cfg(test)]
 mod tests {
-    use super::super::build::*;
+    use super::super::tests::build::*;
     use super::{Function, Named, Node, Tight};
 
     #[track_caller]

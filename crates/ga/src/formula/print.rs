@@ -295,7 +295,7 @@ fn needs_star(before: &str, after: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::build::*;
+    use super::super::tests::build::*;
     use super::*;
 
     #[track_caller]

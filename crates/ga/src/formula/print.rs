@@ -219,7 +219,7 @@ impl Printer {
     fn is_called(&self, tight: Tight, operands: &[Node]) -> bool {
         self.ascii()
             && match tight {
-                Tight::Wedge => operands[1..].iter().any(is_numeric),
+                Tight::Wedge => operands[1..].iter().any(is_exponent),
                 Tight::Dot => false,
                 _ => true,
             }
@@ -284,6 +284,14 @@ fn grades_of(grades: Grades) -> String {
 fn superscript(c: char) -> char {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])
+}
+
+/// Whether it would be taken for an exponent after `^`: a number, or `(2)'`.
+fn is_exponent(node: &Node) -> bool {
+    match &node.kind {
+        Kind::Derivative(x) => is_numeric(x),
+        _ => is_numeric(node),
+    }
 }
 
 /// Two numbers side by side could be one that fell apart, and `I (B)` the value of a map I, as of the inertia.

@@ -21,14 +21,23 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+mod compile;
+mod derivative;
+mod letters;
 mod names;
 mod number;
+mod parser;
 mod program;
+mod reading;
+mod token;
 mod tree;
 
+pub use compile::{compile, define, heading, types};
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
+pub use parser::parse;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
+pub use token::canonical;
 pub use tree::{Kind, Named, Node, Span, Tight, Tree};
 
 use crate::diagnostic::marked;

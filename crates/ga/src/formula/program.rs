@@ -147,6 +147,35 @@ impl Op {
         };
         first.into_iter().chain(second)
     }
+
+    /// Gives the steps and inputs it needs other numbers.
+    pub(crate) fn renumber(&mut self, step: impl Fn(Id) -> Id, mut other_input: impl FnMut(usize) -> usize) {
+        match self {
+            Op::Constant(..) | Op::Pi => {}
+            Op::Input(input) => *input = other_input(*input),
+            Op::Map { input, argument } => {
+                *input = other_input(*input);
+                *argument = step(*argument);
+            }
+            Op::Add(a, b)
+            | Op::Subtract(a, b)
+            | Op::Product(_, a, b)
+            | Op::Compose(a, b)
+            | Op::Turn(a, b)
+            | Op::Divide(a, b) => (*a, *b) = (step(*a), step(*b)),
+            Op::Negate(a)
+            | Op::Reverse(a)
+            | Op::Part(a)
+            | Op::Dual(a)
+            | Op::Undual(a)
+            | Op::Function(_, a)
+            | Op::RotorPower(a, _)
+            | Op::Norm(a)
+            | Op::Sin(a)
+            | Op::Cos(a)
+            | Op::Tan(a) => *a = step(*a),
+        }
+    }
 }
 
 /// The grades of a sum.

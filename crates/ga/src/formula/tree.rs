@@ -27,6 +27,17 @@ pub struct Tree {
     pub sides: Vec<Node>,
 }
 
+impl Tree {
+    /// Every node, each before those it is made of.
+    pub fn nodes(&self) -> Vec<&Node> {
+        let mut nodes = Vec::new();
+        for side in &self.sides {
+            side.visit(&mut |node| nodes.push(node));
+        }
+        nodes
+    }
+}
+
 /// A part of a formula. Brackets leave no node; they are the shape of the tree.
 #[derive(Clone, Debug)]
 pub struct Node {
@@ -47,6 +58,14 @@ impl Node {
     /// A node.
     pub fn new(kind: Kind, span: Span) -> Node {
         Node { kind, span }
+    }
+
+    /// Calls a function with the node and all it is made of.
+    pub(crate) fn visit<'n>(&'n self, f: &mut impl FnMut(&'n Node)) {
+        f(self);
+        for child in self.children() {
+            child.visit(f);
+        }
     }
 
     /// The nodes it is made of, from left to right.

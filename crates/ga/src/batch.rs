@@ -5,35 +5,37 @@
 
 use crate::product::{Engine, Grades, Plan, Term};
 use crate::rotor::Rotor;
+use crate::simd::{ByRow, Kernel, LANES, Lane, Path};
 pub use crate::simd::{Element, multiply_adds};
-use crate::simd::{Kernel, LANES, Lane, Path};
 use crate::sweep::{beyond_caches, sweep};
 use crate::threads::Threads;
 use crate::values::{Vector, geometric};
 
-impl Kernel for Plan {
+impl ByRow for Plan {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for term in &self.terms {
             out[term.out] += f64::from(term.sign) * a[term.a] * b[term.b];
         }
     }
+}
 
+impl<const W: usize> Kernel<W> for Plan {
     #[inline(always)]
-    fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         out.fill(Lane::filled(0.0));
         // The terms come in order of `out`; up to eight of a lane are added at a time, in registers.
         for terms in self.terms.chunk_by(|s, t| s.out == t.out).flat_map(|terms| terms.chunks(8)) {
             let lane = &mut out[terms[0].out];
             match terms.len() {
-                1 => add::<1>(terms, a, b, lane),
-                2 => add::<2>(terms, a, b, lane),
-                3 => add::<3>(terms, a, b, lane),
-                4 => add::<4>(terms, a, b, lane),
-                5 => add::<5>(terms, a, b, lane),
-                6 => add::<6>(terms, a, b, lane),
-                7 => add::<7>(terms, a, b, lane),
-                _ => add::<8>(terms, a, b, lane),
+                1 => add::<1, W>(terms, a, b, lane),
+                2 => add::<2, W>(terms, a, b, lane),
+                3 => add::<3, W>(terms, a, b, lane),
+                4 => add::<4, W>(terms, a, b, lane),
+                5 => add::<5, W>(terms, a, b, lane),
+                6 => add::<6, W>(terms, a, b, lane),
+                7 => add::<7, W>(terms, a, b, lane),
+                _ => add::<8, W>(terms, a, b, lane),
             }
         }
     }
@@ -41,13 +43,13 @@ impl Kernel for Plan {
 
 /// Adds `N` terms to a lane of the product.
 #[inline(always)]
-fn add<const N: usize>(terms: &[Term], a: &[Lane], b: &[Lane], out: &mut Lane) {
+fn add<const N: usize, const W: usize>(terms: &[Term], a: &[Lane<W>], b: &[Lane<W>], out: &mut Lane<W>) {
     let signs: [f64; N] = std::array::from_fn(|t| f64::from(terms[t].sign));
-    let xs: [&Lane; N] = std::array::from_fn(|t| &a[terms[t].a]);
-    let ys: [&Lane; N] = std::array::from_fn(|t| &b[terms[t].b]);
+    let xs: [&Lane<W>; N] = std::array::from_fn(|t| &a[terms[t].a]);
+    let ys: [&Lane<W>; N] = std::array::from_fn(|t| &b[terms[t].b]);
     // A copy, which the compiler knows to be apart from the factors.
     let mut sums = out.0;
-    for l in 0..LANES {
+    for l in 0..W {
         for t in 0..N {
             sums[l] += signs[t] * xs[t].0[l] * ys[t].0[l];
         }
@@ -56,13 +58,15 @@ fn add<const N: usize>(terms: &[Term], a: &[Lane], b: &[Lane], out: &mut Lane) {
 }
 
 /// The geometric product of all grades in 3-d space, written out.
-struct Geometric<'a>(&'a Plan);
+pub(crate) struct Geometric<'a>(pub &'a Plan);
 
-impl<const W: usize> Kernel<W> for Geometric<'_> {
+impl ByRow for Geometric<'_> {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
         self.0.row(a, b, out);
     }
+}
 
+impl<const W: usize> Kernel<W> for Geometric<'_> {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         let (a, b, out) = (&a[..8], &b[..8], &mut out[..8]);
@@ -79,7 +83,7 @@ impl<const W: usize> Kernel<W> for Geometric<'_> {
 
 /// `R X ~R` for X that holds some grades: vector and bivector turn as three numbers each, scalar and
 /// trivector stay.
-struct Turn(Grades);
+pub(crate) struct Turn(pub Grades);
 
 impl Turn {
     /// Where each part begins, and how many numbers it has.
@@ -92,7 +96,7 @@ impl Turn {
     }
 }
 
-impl Kernel for Turn {
+impl ByRow for Turn {
     const FAST_ROWS: bool = true;
 
     fn row(&self, rotor: &[f64], value: &[f64], out: &mut [f64]) {
@@ -106,9 +110,11 @@ impl Kernel for Turn {
             }
         }
     }
+}
 
+impl<const W: usize> Kernel<W> for Turn {
     #[inline(always)]
-    fn block(&self, rotors: &[Lane], values: &[Lane], out: &mut [Lane]) {
+    fn block(&self, rotors: &[Lane<W>], values: &[Lane<W>], out: &mut [Lane<W>]) {
         let rotors = &rotors[..4];
         for (at, width) in self.parts() {
             if width == 1 {
@@ -116,7 +122,7 @@ impl Kernel for Turn {
                 continue;
             }
             let (values, out) = (&values[at..at + 3], &mut out[at..at + 3]);
-            for l in 0..LANES {
+            for l in 0..W {
                 let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotors[k].0[l]));
                 let turned = rotor.apply(Vector([values[0].0[l], values[1].0[l], values[2].0[l]]));
                 for k in 0..3 {
@@ -149,7 +155,7 @@ impl Plan {
         let large = beyond_caches(a, b, out);
         let (a, b, out) = ((a, na), (b, nb), (out, nout));
         match &self.engine {
-            Engine::Terms => sweep(path, threads, self, a, b, out),
+            Engine::Terms => sweep::<_, LANES, _>(path, threads, self, a, b, out),
             // Small blocks mix reading and writing memory with the arithmetic more finely.
             Engine::Geometric if large => sweep::<_, 32, _>(path, threads, &Geometric(self), a, b, out),
             Engine::Geometric => sweep::<_, 64, _>(path, threads, &Geometric(self), a, b, out),
@@ -189,7 +195,7 @@ fn turn_on<T: Element>(
 ) {
     let turn = Turn(grades);
     let size = turn.parts().map(|(_, width)| width).sum();
-    sweep(path, threads, &turn, (rotors, 4), (values, size), (out, size));
+    sweep::<_, LANES, _>(path, threads, &turn, (rotors, 4), (values, size), (out, size));
 }
 
 #[cfg(test)]

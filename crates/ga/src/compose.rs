@@ -1,26 +1,29 @@
 //! Products of rotors over many rows, of norm 1 again.
 
 use crate::rotor::Rotor;
-use crate::simd::{Element, Kernel, LANES, Lane, Path};
+use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
 use crate::threads::Threads;
 
 /// `S R` for rows of rotor components, as [`Rotor::compose`].
-struct Compose;
+pub(crate) struct Compose;
 
-impl Kernel for Compose {
+impl ByRow for Compose {
     const FAST_ROWS: bool = true;
 
     fn row(&self, s: &[f64], r: &[f64], out: &mut [f64]) {
         let rotor = |c: &[f64]| Rotor::from_unit_components(std::array::from_fn(|k| c[k]));
         out.copy_from_slice(&rotor(s).compose(rotor(r)).components());
     }
+}
 
+impl<const W: usize> Kernel<W> for Compose {
     #[inline(always)]
-    fn block(&self, s: &[Lane], r: &[Lane], out: &mut [Lane]) {
+    fn block(&self, s: &[Lane<W>], r: &[Lane<W>], out: &mut [Lane<W>]) {
         let (s, r, out) = (&s[..4], &r[..4], &mut out[..4]);
-        for l in 0..LANES {
-            let rotor = |lanes: &[Lane]| Rotor::from_unit_components(std::array::from_fn(|k| lanes[k].0[l]));
+        for l in 0..W {
+            let rotor =
+                |lanes: &[Lane<W>]| Rotor::from_unit_components(std::array::from_fn(|k| lanes[k].0[l]));
             let product = rotor(s).compose(rotor(r)).components();
             for k in 0..4 {
                 out[k].0[l] = product[k];
@@ -38,7 +41,7 @@ pub fn compose<T: Element>(threads: Threads, s: &[T], r: &[T], out: &mut [T]) {
 }
 
 fn compose_on<T: Element>(path: Path, threads: Threads, s: &[T], r: &[T], out: &mut [T]) {
-    sweep(path, threads, &Compose, (s, 4), (r, 4), (out, 4));
+    sweep::<_, LANES, _>(path, threads, &Compose, (s, 4), (r, 4), (out, 4));
 }
 
 #[cfg(test)]

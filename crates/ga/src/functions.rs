@@ -69,6 +69,8 @@ pub enum MathError {
     },
     /// The result is beyond the range of floating point.
     Overflow,
+    /// A quotient by 0.
+    DivisionByZero,
 }
 
 impl fmt::Display for MathError {
@@ -126,6 +128,7 @@ impl fmt::Display for MathError {
                 f,
                 "the result is beyond the range of floating point (1.8e308); scale the argument down"
             ),
+            MathError::DivisionByZero => write!(f, "division by zero; give a divisor that is not 0"),
         }
     }
 }

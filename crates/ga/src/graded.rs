@@ -32,6 +32,15 @@ impl Graded {
         Some(Graded { components: held, grades })
     }
 
+    /// From the components of some grades of G3, each by its place.
+    #[inline]
+    pub(crate) fn from_fn(grades: Grades, component: impl FnMut(usize) -> f64) -> Graded {
+        let mut held = [0.0; 8];
+        let places = held[..size(grades)].iter_mut();
+        places.zip((0..8).map(component)).for_each(|(held, x)| *held = x);
+        Graded { components: held, grades }
+    }
+
     /// The components of the grades present.
     pub fn components(&self) -> &[f64] {
         &self.components[..size(self.grades)]
@@ -75,7 +84,12 @@ impl Graded {
     /// A named product, by the terms of the table, in their order.
     #[inline]
     pub fn product(&self, product: Product, other: &Graded) -> Graded {
-        let plan = Plan::g3(product, self.grades, other.grades);
+        self.multiply(Plan::g3(product, self.grades, other.grades), other)
+    }
+
+    /// The product of a plan of G3 for the grades of the two.
+    #[inline]
+    pub(crate) fn multiply(&self, plan: &Plan, other: &Graded) -> Graded {
         let mut out = Graded { components: [0.0; 8], grades: plan.grades };
         if matches!(plan.engine, Engine::Geometric) {
             // A sum that begins with 0, as in the plan, is never −0.
@@ -144,7 +158,7 @@ impl Graded {
 }
 
 /// How many components the grades have.
-fn size(grades: Grades) -> usize {
+pub(crate) fn size(grades: Grades) -> usize {
     const SIZES: [u8; 16] = [0, 1, 3, 4, 3, 4, 6, 7, 1, 2, 4, 5, 4, 5, 7, 8];
     usize::from(SIZES[usize::from(grades.0 & 15)])
 }

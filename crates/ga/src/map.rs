@@ -4,7 +4,7 @@
 //! where it knows too little, and such rows are computed again, one by one, the long way. A single row
 //! is lanes of one: the same bits on every machine and path, for one row or many.
 
-use crate::simd::{Element, Kernel, LANES, Lane, Path};
+use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path};
 use crate::sweep::sweep;
 use crate::threads::Threads;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,19 +59,23 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
         value
     }
 
+    /// Rows `N` at a time: what lies between the steps of a map is best kept in registers.
     #[inline(always)]
-    fn lanes<const FMA: bool>(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-        /// Rows at a time: what lies between the steps of a map is best kept in registers.
-        const W: usize = 32;
+    fn lanes<const FMA: bool, const N: usize, const W: usize>(
+        &self,
+        a: &[Lane<W>],
+        b: &[Lane<W>],
+        out: &mut [Lane<W>],
+    ) {
         let (a, b, out) = (&a[..A], &b[..B], &mut out[..OUT]);
         let mut largest = 0;
-        for i in 0..LANES / W {
-            let part = |lane: &Lane| lane.0.as_chunks::<W>().0[i];
-            let x: [[f64; W]; A] = std::array::from_fn(|k| part(&a[k]));
-            let y: [[f64; W]; B] = std::array::from_fn(|k| part(&b[k]));
-            let values = M::short::<W, FMA>(x.each_ref(), y.each_ref());
+        for i in 0..W / N {
+            let part = |lane: &Lane<W>| lane.0.as_chunks::<N>().0[i];
+            let x: [[f64; N]; A] = std::array::from_fn(|k| part(&a[k]));
+            let y: [[f64; N]; B] = std::array::from_fn(|k| part(&b[k]));
+            let values = M::short::<N, FMA>(x.each_ref(), y.each_ref());
             for k in 0..OUT {
-                out[k].0.as_chunks_mut::<W>().0[i] = values[k];
+                out[k].0.as_chunks_mut::<N>().0[i] = values[k];
             }
             // As an integer, NaN is larger than any number.
             for x in values[0] {
@@ -85,8 +89,8 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
 
     /// Computes the rows that are missing.
     #[cold]
-    fn complete(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-        for l in 0..LANES {
+    fn complete<const W: usize>(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        for l in 0..W {
             if !out[0].0[l].is_nan() {
                 continue;
             }
@@ -98,20 +102,44 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
     }
 }
 
-impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Kernel for Mapped<M, A, B, OUT> {
+impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> ByRow for Mapped<M, A, B, OUT> {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&self.value(std::array::from_fn(|k| a[k]), std::array::from_fn(|k| b[k])));
     }
+}
 
+impl<M, const A: usize, const B: usize, const OUT: usize, const W: usize> Kernel<W> for Mapped<M, A, B, OUT>
+where
+    M: Map<A, B, OUT>,
+{
     #[inline(always)]
-    fn block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-        self.lanes::<BUILT_WITH_FMA>(a, b, out);
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        match W {
+            16 => self.lanes::<BUILT_WITH_FMA, 16, W>(a, b, out),
+            _ => self.lanes::<BUILT_WITH_FMA, 32, W>(a, b, out),
+        }
     }
 
     #[inline(always)]
-    fn fused_block(&self, a: &[Lane], b: &[Lane], out: &mut [Lane]) {
-        self.lanes::<true>(a, b, out);
+    fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        match W {
+            16 => self.lanes::<true, 16, W>(a, b, out),
+            _ => self.lanes::<true, 32, W>(a, b, out),
+        }
     }
+}
+
+/// A block of rows: whether each has a value.
+pub(crate) fn block<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize, const W: usize>(
+    map: M,
+    path: Path,
+    a: &[Lane<W>],
+    b: &[Lane<W>],
+    out: &mut [Lane<W>],
+) -> bool {
+    let kernel = Mapped::<M, A, B, OUT> { _map: map, failed: AtomicBool::new(false) };
+    path.apply(&kernel, a, b, out);
+    !kernel.failed.into_inner()
 }
 
 /// Sweeps a map over rows; the first row that has no value, if there is one.
@@ -123,7 +151,7 @@ pub(crate) fn run<T: Element, M: Map<A, B, OUT>, const A: usize, const B: usize,
     out: &mut [T],
 ) -> Result<(), usize> {
     let kernel = Mapped::<M, A, B, OUT> { _map: map, failed: AtomicBool::new(false) };
-    sweep(path, threads, &kernel, (a, A), (b, B), (out, OUT));
+    sweep::<_, LANES, _>(path, threads, &kernel, (a, A), (b, B), (out, OUT));
     if !kernel.failed.into_inner() {
         return Ok(());
     }

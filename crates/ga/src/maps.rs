@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// `cos|B| + B sin|B|/|B|`.
 #[derive(Clone, Copy)]
-struct Exp;
+pub(crate) struct Exp;
 
 impl Map<3, 0, 4> for Exp {
     #[inline(always)]
@@ -63,7 +63,7 @@ impl Map<3, 0, 4> for Exp {
 
 /// `B atan2(|B|, s)/|B|` of `s + B`.
 #[derive(Clone, Copy)]
-struct Log;
+pub(crate) struct Log;
 
 impl Map<4, 0, 3> for Log {
     #[inline(always)]
@@ -132,7 +132,7 @@ impl Map<4, 0, 3> for Log {
 
 /// `exp(t log R)`: turns t times as far.
 #[derive(Clone, Copy)]
-struct Power;
+pub(crate) struct Power;
 
 impl Map<4, 1, 4> for Power {
     #[inline(always)]
@@ -150,6 +150,66 @@ impl Map<4, 1, 4> for Power {
         Exp::value(Log::value(c, []).map(|x| x * t), [])
     }
 }
+
+/// Sine and cosine of a finite angle, the sine as `hi + lo`; NaN where the short way knows too little.
+#[inline(always)]
+fn circular<const FMA: bool>(x: f64) -> ((f64, f64), f64) {
+    /// As for [`Exp`].
+    const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
+    let angle = x.abs();
+    let (k, r, rest) = quarter_turns::<FMA>(angle, 0.0);
+    let r = if r.abs() >= angle * angle * KEPT { r } else { f64::NAN };
+    odd(x, sin_cos::<FMA>(k, r, rest))
+}
+
+/// [`circular`] of any finite angle.
+fn circular_long(x: f64) -> ((f64, f64), f64) {
+    let (k, r, rest) = reduction::quarter_turns([x, 0.0, 0.0]);
+    odd(x, sin_cos::<BUILT_WITH_FMA>(k, r, rest))
+}
+
+/// The sine has the sign of the angle, too.
+#[inline(always)]
+fn odd(x: f64, ((sin, rest), cos): ((f64, f64), f64)) -> ((f64, f64), f64) {
+    let sign = 1f64.copysign(x);
+    ((sign * sin, sign * rest), cos)
+}
+
+/// A function of sine and cosine as a map of one number.
+macro_rules! circular_map {
+    ($(#[$doc:meta])* $name:ident, $value:expr) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub(crate) struct $name;
+
+        impl Map<1, 0, 1> for $name {
+            #[inline(always)]
+            fn short<const W: usize, const FMA: bool>([x]: [&[f64; W]; 1], _: [&[f64; W]; 0]) -> [[f64; W]; 1] {
+                [x.map(|x| $value(circular::<FMA>(x)))]
+            }
+
+            fn long([x]: [f64; 1], _: [f64; 0]) -> [f64; 1] {
+                [$value(circular_long(x))]
+            }
+        }
+    };
+}
+
+circular_map!(
+    /// The sine of an angle within an ulp.
+    Sin,
+    |((sin, _), _): ((f64, f64), f64)| sin
+);
+circular_map!(
+    /// The cosine of an angle within an ulp.
+    Cos,
+    |(_, cos): ((f64, f64), f64)| cos
+);
+circular_map!(
+    /// The tangent of an angle within 2 ulps.
+    Tan,
+    |((sin, _), cos): ((f64, f64), f64)| sin / cos
+);
 
 /// `exp(B)` of rows of bivectors, as rows of rotor components, each within 2 ulps. Fails with the index of
 /// the first row that is not finite; the result is then of no use.
@@ -191,6 +251,11 @@ pub(crate) fn exp_one(b: [f64; 3]) -> [f64; 4] {
 /// `log R` of one rotor, the same bits as [`log`]; NaN if it is not finite.
 pub(crate) fn log_one(c: [f64; 4]) -> [f64; 3] {
     Log::value(c, [])
+}
+
+/// `exp(t log R)` of one rotor, the same bits as [`power`]; NaN if it has no value.
+pub(crate) fn power_one(c: [f64; 4], t: f64) -> [f64; 4] {
+    Power::value(c, [t])
 }
 
 #[cfg(test)]

@@ -181,6 +181,18 @@ impl Plan {
         Plan { sizes: (ia.len(), ib.len(), iout.len()), grades, terms: found, engine }
     }
 
+    /// The part of the product in some grades; zeros in those that it lacks.
+    pub fn part(&self, algebra: &Algebra, grades: Grades) -> Plan {
+        if grades == self.grades {
+            return self.clone();
+        }
+        let (from, to) = (self.grades.indices(algebra), grades.indices(algebra));
+        let kept = |term: &Term| Some(Term { out: to.binary_search(&from[term.out]).ok()?, ..*term });
+        let terms = self.terms.iter().filter_map(kept).collect();
+        let (na, nb, _) = self.sizes;
+        Plan { sizes: (na, nb, to.len()), grades, terms, engine: Engine::Terms }
+    }
+
     /// The plan in [`G3`], made once for each product and pair of grades.
     ///
     /// # Panics

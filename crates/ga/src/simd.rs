@@ -73,8 +73,8 @@ impl Element for f32 {
     }
 }
 
-/// A function of two rows. Both ways of computing it give the same numbers.
-pub(crate) trait Kernel<const W: usize = LANES>: Sync {
+/// A function of two rows, one by one: the numbers that it gives as a [`Kernel`].
+pub(crate) trait ByRow: Sync {
     /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
     const FAST_ROWS: bool = false;
 
@@ -83,7 +83,10 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
 
     /// One row. `out` may hold anything before.
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]);
+}
 
+/// A function of two rows over lanes.
+pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     /// A block of rows. Implementations are `#[inline(always)]` down to the arithmetic, so that each path
     /// compiles them for its own instructions.
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]);
@@ -116,8 +119,6 @@ impl<const N: usize> Chains<N> {
 }
 
 impl<const N: usize> Kernel<8> for Chains<N> {
-    fn row(&self, _: &[f64], _: &[f64], _: &mut [f64]) {}
-
     #[inline(always)]
     fn block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
         let (x, y) = (a[0].0[0], b[0].0[0]);

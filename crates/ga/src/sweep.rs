@@ -4,15 +4,15 @@
 //! contiguous; the kernel works on the lanes; the block is turned back. Beyond the caches all that counts
 //! is memory: rows are asked for ahead of time, and results go past the caches.
 
-use crate::simd::{Element, Kernel, Lane, Path, in_line, to_next_line};
+use crate::simd::{ByRow, Element, Kernel, Lane, Path, in_line, to_next_line};
 use crate::threads::Threads;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// From so many bytes on, factors and product together, the product goes past the caches.
 pub(crate) const STREAMED: usize = 16 << 20;
 
 /// A thread more pays from so many numbers for each on; they take three times as long as it takes to start.
-const SHARED: usize = 1 << 19;
+pub(crate) const SHARED: usize = 1 << 19;
 
 /// Whether factors and product together are too much for the caches.
 pub(crate) fn beyond_caches<T>(a: &[T], b: &[T], out: &[T]) -> bool {
@@ -21,32 +21,32 @@ pub(crate) fn beyond_caches<T>(a: &[T], b: &[T], out: &[T]) -> bool {
 
 /// Rows of a factor: one for all, or one for each.
 #[derive(Clone, Copy)]
-struct Factor<'a, T> {
+pub(crate) struct Factor<'a, T> {
     data: &'a [T],
     size: usize,
-    one: bool,
+    pub one: bool,
 }
 
 impl<'a, T: Element> Factor<'a, T> {
-    fn new(data: &'a [T], size: usize, total: usize) -> Factor<'a, T> {
+    pub fn new(data: &'a [T], size: usize, total: usize) -> Factor<'a, T> {
         let one = data.len() == size;
         assert!(one || data.len() == total * size, "a factor has the wrong length");
         Factor { data, size, one }
     }
 
     /// Those rows alone.
-    fn piece(self, rows: Range<usize>) -> Factor<'a, T> {
+    pub fn piece(self, rows: Range<usize>) -> Factor<'a, T> {
         let data =
             if self.one { self.data } else { &self.data[rows.start * self.size..rows.end * self.size] };
         Factor { data, ..self }
     }
 
-    fn rows(&self, first: usize, count: usize) -> &[T] {
+    pub fn rows(&self, first: usize, count: usize) -> &[T] {
         if self.one { self.data } else { &self.data[first * self.size..(first + count) * self.size] }
     }
 
     /// Fills the lanes from rows, or once and for all, at the first block, from the one row.
-    fn load<const W: usize>(&self, path: Path, first: usize, count: usize, lanes: &mut [Lane<W>]) {
+    pub fn load<const W: usize>(&self, path: Path, first: usize, count: usize, lanes: &mut [Lane<W>]) {
         if !self.one {
             path.gather(self.rows(first, count), lanes);
         } else if first == 0 {
@@ -57,44 +57,95 @@ impl<'a, T: Element> Factor<'a, T> {
     }
 }
 
+/// Rows to fill from the lanes from `at` on.
+pub(crate) struct Target<'a, T> {
+    pub data: &'a mut [T],
+    pub size: usize,
+    pub at: usize,
+}
+
+impl<'a, T> Target<'a, T> {
+    /// Takes the first rows away.
+    pub fn split_off(&mut self, rows: usize) -> Target<'a, T> {
+        let data = self.data.split_off_mut(..rows * self.size).expect("there are so many rows");
+        Target { data, ..*self }
+    }
+}
+
 /// Rows written one block after the other past the caches, where only whole cache lines are fast. What
 /// does not fill a line waits in the buffer for the next block.
-struct Stream<'a, T> {
+struct Stream<'a, T, const W: usize> {
     path: Path,
     out: &'a mut [T],
     written: usize,
-    buffer: &'a mut [T],
+    buffer: Vec<Lane<W>>,
     waiting: usize,
 }
 
-impl<T: Element> Stream<'_, T> {
-    fn write<const W: usize>(&mut self, lanes: &[Lane<W>], count: usize) {
+impl<'a, T: Element, const W: usize> Stream<'a, T, W> {
+    fn new(path: Path, target: &'a mut Target<T>) -> Stream<'a, T, W> {
+        let buffer = vec![Lane::filled(0.0); target.size + 2];
+        Stream { path, out: target.data, written: 0, buffer, waiting: 0 }
+    }
+
+    fn write(&mut self, lanes: &[Lane<W>], count: usize) {
+        let buffer = Lane::flat(&mut self.buffer);
         let filled = self.waiting + count * lanes.len();
-        self.path.scatter(lanes, &mut self.buffer[self.waiting..filled]);
+        self.path.scatter(lanes, &mut buffer[self.waiting..filled]);
         let out = &mut self.out[self.written..self.written + filled];
         // Before the first line, and in it only.
         let head = to_next_line(out).min(filled);
         let tail = (filled - head) % in_line::<T>();
-        out[..head].copy_from_slice(&self.buffer[..head]);
-        self.path.stream(&self.buffer[head..filled - tail], &mut out[head..filled - tail]);
-        self.buffer.copy_within(filled - tail..filled, 0);
+        out[..head].copy_from_slice(&buffer[..head]);
+        self.path.stream(&buffer[head..filled - tail], &mut out[head..filled - tail]);
+        buffer.copy_within(filled - tail..filled, 0);
         self.written += filled - tail;
         self.waiting = tail;
     }
 
-    fn finish(self) {
-        self.out[self.written..].copy_from_slice(&self.buffer[..self.waiting]);
+    fn finish(mut self) {
+        self.out[self.written..].copy_from_slice(&Lane::flat(&mut self.buffer)[..self.waiting]);
         self.path.fence();
     }
 }
 
-/// Applies a kernel to the rows one by one.
-fn by_rows<T: Element, const W: usize, K: Kernel<W>>(
-    kernel: &K,
-    a: Factor<T>,
-    b: Factor<T>,
-    (out, nout): (&mut [T], usize),
+/// Does `work` for each block of rows, given its first row, their number and the lanes, and writes what
+/// the lanes then hold to the targets.
+pub(crate) fn by_blocks<T: Element, const W: usize>(
+    (path, streamed): (Path, bool),
+    total: usize,
+    lanes: &mut [Lane<W>],
+    targets: &mut [Target<T>],
+    mut work: impl FnMut(usize, usize, &mut [Lane<W>]) -> ControlFlow<()>,
 ) {
+    let blocks = (0..total).step_by(W).map(|first| (first, W.min(total - first)));
+    if streamed {
+        let places: Vec<Range<usize>> = targets.iter().map(|t| t.at..t.at + t.size).collect();
+        let mut streams: Vec<_> = targets.iter_mut().map(|target| Stream::new(path, target)).collect();
+        for (first, count) in blocks {
+            if work(first, count, lanes).is_break() {
+                break;
+            }
+            for (stream, place) in streams.iter_mut().zip(&places) {
+                stream.write(&lanes[place.clone()], count);
+            }
+        }
+        streams.into_iter().for_each(Stream::finish);
+    } else {
+        for (first, count) in blocks {
+            if work(first, count, lanes).is_break() {
+                break;
+            }
+            for target in &mut *targets {
+                let rows = &mut target.data[first * target.size..(first + count) * target.size];
+                path.scatter(&lanes[target.at..target.at + target.size], rows);
+            }
+        }
+    }
+}
+
+/// Applies a kernel to the rows one by one.
+fn by_rows<T: Element, K: ByRow>(kernel: &K, a: Factor<T>, b: Factor<T>, (out, nout): (&mut [T], usize)) {
     let mut numbers = vec![0.0; a.size + b.size + nout];
     let (x, rest) = numbers.split_at_mut(a.size);
     let (y, z) = rest.split_at_mut(b.size);
@@ -112,7 +163,7 @@ fn by_rows<T: Element, const W: usize, K: Kernel<W>>(
 }
 
 /// Applies a kernel to all rows of `(numbers, numbers in a row)`.
-pub(crate) fn sweep<T: Element, const W: usize, K: Kernel<W>>(
+pub(crate) fn sweep<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     path: Path,
     threads: Threads,
     kernel: &K,
@@ -130,7 +181,7 @@ pub(crate) fn sweep<T: Element, const W: usize, K: Kernel<W>>(
     });
 }
 
-fn sweep_piece<T: Element, const W: usize, K: Kernel<W>>(
+fn sweep_piece<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     path: Path,
     streamed: bool,
     kernel: &K,
@@ -143,29 +194,14 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W>>(
         return by_rows(kernel, a, b, (out, nout));
     }
     // What lies beyond the last rows is computed too; no function has difficulties with 1.
-    let mut lanes =
-        vec![Lane::<W>::filled(1.0); a.size + b.size + nout + if streamed { nout + 2 } else { 0 }];
-    let (a_lanes, rest) = lanes.split_at_mut(a.size);
-    let (b_lanes, rest) = rest.split_at_mut(b.size);
-    let (out_lanes, buffer) = rest.split_at_mut(nout);
-    let mut block = |first, count, out: &mut [Lane<W>]| {
+    let mut lanes = vec![Lane::<W>::filled(1.0); a.size + b.size + nout];
+    let mut target = [Target { data: out, size: nout, at: a.size + b.size }];
+    by_blocks((path, streamed), total, &mut lanes, &mut target, |first, count, lanes| {
+        let (a_lanes, rest) = lanes.split_at_mut(a.size);
+        let (b_lanes, out_lanes) = rest.split_at_mut(b.size);
         a.load(path, first, count, a_lanes);
         b.load(path, first, count, b_lanes);
-        path.apply(kernel, a_lanes, b_lanes, out);
-    };
-    if streamed {
-        let buffer = Lane::flat(buffer);
-        let mut stream = Stream { path, out, written: 0, buffer, waiting: 0 };
-        for first in (0..total).step_by(W) {
-            let count = W.min(total - first);
-            block(first, count, out_lanes);
-            stream.write(out_lanes, count);
-        }
-        stream.finish();
-    } else {
-        for (i, rows) in out.chunks_mut(W * nout).enumerate() {
-            block(i * W, rows.len() / nout, out_lanes);
-            path.scatter(out_lanes, rows);
-        }
-    }
+        path.apply(kernel, a_lanes, b_lanes, out_lanes);
+        ControlFlow::Continue(())
+    });
 }

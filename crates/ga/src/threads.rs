@@ -25,9 +25,15 @@ impl Threads {
         thread::available_parallelism().map_or(Threads::ONE, |count| Threads::new(count.get()))
     }
 
-    /// Splits `out`, rows of `size` numbers, into one contiguous piece for each thread, though none of
-    /// fewer than `least` rows, and calls `work` for each with the rows it spans and the piece itself.
-    /// To start a thread takes some 30 µs, and a piece should take longer.
+    /// Splits rows into one contiguous range for each thread, though none of fewer than `least` rows. To
+    /// start a thread takes some 30 µs, and a range should take longer.
+    pub fn ranges(self, rows: usize, least: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
+        let count = self.0.min(rows / least.max(1)).max(1);
+        (0..count).map(move |i| i * rows / count..(i + 1) * rows / count)
+    }
+
+    /// Splits `out`, rows of `size` numbers, as [`Threads::ranges`], and calls `work` for each range with the
+    /// rows it spans and the piece itself.
     ///
     /// # Panics
     /// If `out` is not a whole number of rows.
@@ -40,32 +46,37 @@ impl Threads {
     ) {
         let total = out.len().checked_div(size).unwrap_or(0);
         assert_eq!(out.len(), total * size, "the result is not a whole number of rows");
-        let count = self.0.min(total / least.max(1));
-        if count <= 1 {
-            return work(0..total, out);
-        }
         let mut rest = out;
-        let pieces = (0..count).map(|i| {
-            let rows = i * total / count..(i + 1) * total / count;
-            (rows.clone(), rest.split_off_mut(..rows.len() * size).expect("pieces fill the result"))
+        let pieces = self.ranges(total, least).map(|rows| {
+            let piece = rest.split_off_mut(..rows.len() * size).expect("pieces fill the result");
+            (rows, piece)
         });
-        let pieces = Mutex::new(pieces);
-        let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
-        let worker = || {
-            while let Some((rows, piece)) = next() {
-                work(rows, piece);
-            }
-        };
-        thread::scope(|scope| {
-            // Where no more threads are to be had, those that are there do all the pieces.
-            for _ in 1..count {
-                if thread::Builder::new().spawn_scoped(scope, worker).is_err() {
-                    break;
-                }
-            }
-            worker();
-        });
+        for_each(pieces, |(rows, piece)| work(rows, piece));
     }
+}
+
+/// Calls `work` for each item, by a thread for each where they are to be had.
+pub(crate) fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: impl Fn(I) + Sync) {
+    let count = items.len();
+    if count <= 1 {
+        return items.for_each(work);
+    }
+    let items = Mutex::new(items);
+    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let worker = || {
+        while let Some(item) = next() {
+            work(item);
+        }
+    };
+    thread::scope(|scope| {
+        // Where no more threads are to be had, those that are there do all the work.
+        for _ in 1..count {
+            if thread::Builder::new().spawn_scoped(scope, worker).is_err() {
+                break;
+            }
+        }
+        worker();
+    });
 }
 
 #[cfg(test)]

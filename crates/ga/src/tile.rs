@@ -15,7 +15,7 @@
 //! Generators of square +1 come first, those of square 0 last: with at least three that do not square to 0,
 //! the first three square to +1 or −1, and no product in a tile vanishes.
 
-use crate::simd::{Kernel, Lane};
+use crate::simd::{ByRow, Kernel, Lane};
 use crate::table::{Algebra, Signature};
 
 /// The sign of the product of two blades of three generators, the first `P` of which square to +1 and the
@@ -147,14 +147,16 @@ fn tile<const P: usize, const FUSED: bool, const W: usize>(
     }
 }
 
-impl<const W: usize> Kernel<W> for Tiles {
+impl ByRow for Tiles {
     /// Always by blocks, which round as no other way does.
     const FEW: usize = 0;
 
     fn row(&self, _: &[f64], _: &[f64], _: &mut [f64]) {
         unreachable!("no rows are few");
     }
+}
 
+impl<const W: usize> Kernel<W> for Tiles {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         self.block::<false, W>(a, b, out);

@@ -23,12 +23,17 @@
 
 mod compile;
 mod derivative;
+mod lanes;
 mod letters;
 mod names;
 mod number;
 mod parser;
 mod program;
 mod reading;
+mod run;
+mod schedule;
+mod single;
+mod steps;
 mod token;
 mod tree;
 
@@ -37,6 +42,8 @@ pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
 pub use parser::parse;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
+pub use run::RowError;
+pub use single::{Given, Runner};
 pub use token::canonical;
 pub use tree::{Kind, Named, Node, Span, Tight, Tree};
 

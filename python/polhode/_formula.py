@@ -12,7 +12,7 @@ from polhode import _native
 from polhode._agreement import Agreement, agreement
 from polhode._algebra import Algebra
 from polhode._algebra import algebra as algebra_of
-from polhode._arrays import is_float, rows
+from polhode._arrays import is_float, new, rows
 from polhode._extras import optional
 from polhode._formula_error import FormulaError
 from polhode._formula_values import Given, given, kinds_of
@@ -168,6 +168,23 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
         return _run(program, inputs)
     walk = Walk(text, [Step(*step) for step in program.steps], inputs, known.algebra)
     return agreement(walk, results) if equation else walk.last()
+
+
+def _run(program: _native.Program, inputs: list[Any]) -> Multivector:
+    """Return the value of a program of 3-d space over floats, block by block."""
+    data = [x._data if isinstance(x, Multivector) else _rows_of_map(x) for x in inputs]
+    dtype = np.result_type(*data) if data else np.dtype(np.float64)
+    batch = np.broadcast_shapes(*(x.shape[:-1] for x in data))
+    (result,) = program.results[0]
+    _, _, _, mask, unit, _ = program.steps[result]
+    out = new((*batch, len(_G3._indices(mask))), dtype)
+    program.run([rows(x.astype(dtype, copy=False), batch) for x in data], out)
+    return Rotor._from_rows(out) if unit else Multivector._of(out, mask)
+
+
+def _rows_of_map(x: Any) -> Any:
+    """Return matrices (..., 3, 3) as rows of 9 numbers, determinants (...) as rows of one."""
+    return x.reshape(*x.shape[:-2], 9) if x.ndim > 1 and x.shape[-2:] == (3, 3) else x[..., np.newaxis]
 
 
 def described(text: str, steps: list[Step], names: list[str]) -> list[str]:

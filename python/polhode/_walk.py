@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode._arrays import is_float
 from polhode._coefficients import common, kind_of
+from polhode._formula_error import FormulaError
 from polhode._generic.exact import divide, is_symbolic
 from polhode._generic.numeric import Numeric
 from polhode._multivector import Multivector
@@ -43,13 +44,13 @@ class Step(NamedTuple):
 
 
 class Walk:
-    """The values of all steps of a program, one after the other.
+    """The values of all steps of a program, one after the other. Errors tell the place in the text.
 
     `inputs` are multivectors, or the matrices and determinants of maps, in the order of the program's.
     """
 
-    def __init__(self, steps: Sequence[Step], inputs: Sequence[Any], algebra: Any) -> None:
-        self.steps, self.inputs, self.algebra = steps, inputs, algebra
+    def __init__(self, text: str, steps: Sequence[Step], inputs: Sequence[Any], algebra: Any) -> None:
+        self.text, self.steps, self.inputs, self.algebra = text, steps, inputs, algebra
         arrays = [x._data if isinstance(x, Multivector) else x for x in inputs]
         if all(map(is_float, arrays)):
             self.kind: Any = Numeric(np, np.result_type(*arrays) if arrays else np.dtype(np.float64))
@@ -63,11 +64,24 @@ class Walk:
         last = {i: number for number, step in enumerate(self.steps) for i in step.operands}
         for number, step in enumerate(self.steps):
             operands = tuple(done[i] for i in step.operands)
-            done.append(_typed(_STEPS[step.name](self, step, *operands), step))
+            done.append(self._value(step, operands))
             yield step, operands, done[-1]
             for i in step.operands:  # large batches go when nobody needs them any more
                 if last[i] == number:
                     done[i] = None
+
+    def last(self) -> Multivector:
+        """Return the value of the last step."""
+        *_, (_, _, value) = self
+        return value
+
+    def _value(self, step: Step, operands: tuple[Multivector, ...]) -> Multivector:
+        try:
+            return _typed(_STEPS[step.name](self, step, *operands), step)
+        except (ValueError, ZeroDivisionError, TypeError) as error:
+            if type(error).__module__ != "builtins":  # of a library that traces
+                raise
+            raise FormulaError(str(error), self.text, step.span) from error
 
     def of(self, components: Sequence[Any], mask: int) -> Multivector:
         """Return a value of given components, of the kind of the others."""

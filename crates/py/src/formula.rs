@@ -1,12 +1,13 @@
 //! Formulas in Python: texts, what they mean for values of given kinds, and calls on single values.
 
 use crate::arrays::bad;
-use crate::program::{Place, Program, characters, error};
+use crate::calls::{Calls, single};
+use crate::program::{Program, characters, error};
 use crate::signature::{Algebra, g3};
 use crate::value::Object;
 use polhode_ga::formula::{
-    self, Error, Kind, Meaning, Names, Node, Space, Tree, Type, canonical, compile, define, heading, parse,
-    types,
+    Kind, Meaning, Names, Node, Runner, Space, Tree, Type, canonical, compile, define, heading,
+    parse, types,
 };
 use polhode_ga::product::Grades;
 use pyo3::exceptions::PyTypeError;
@@ -18,7 +19,7 @@ use std::sync::Mutex;
 
 /// A name as it was given, the grades as bits, and 0 for a value, 1 for a rotor; 2 for a linear map, of the
 /// vectors or bivectors that the bits stand for.
-type Given = (String, u16, u8);
+type Said = (String, u16, u8);
 
 /// So many programs of a formula are kept, each for other kinds of values.
 const KEPT: usize = 64;
@@ -30,10 +31,11 @@ pub(crate) struct Formula {
     algebra: Option<Py<Algebra>>,
     definitions: Vec<(String, String)>,
     programs: Mutex<HashMap<Key, Py<Program>>>,
+    calls: Calls,
 }
 
 /// The signature of the algebra, the names with their kinds, and how many of them came as keywords.
-type Key = ((usize, usize, usize), Vec<Given>, usize);
+type Key = ((usize, usize, usize), Vec<Said>, usize);
 
 #[pymethods]
 impl Formula {
@@ -45,7 +47,7 @@ impl Formula {
         algebra: Option<Py<Algebra>>,
         definitions: Vec<(String, String)>,
     ) -> PyResult<Formula> {
-        let formula = Formula { text, algebra, definitions, programs: Mutex::default() };
+        let formula = Formula { text, algebra, definitions, programs: Mutex::default(), calls: Calls::default() };
         let algebra = formula.algebra_or_g3(py)?;
         formula.read(py, algebra, Names::open())?;
         Ok(formula)
@@ -74,10 +76,11 @@ impl Formula {
         &self,
         py: Python<'_>,
         algebra: Py<Algebra>,
-        given: Vec<Given>,
+        given: Vec<Said>,
         keywords: usize,
     ) -> PyResult<Py<Program>> {
-        let key = (algebra.get().signature(), given, keywords);
+        let signature = algebra.get().table.signature();
+        let key = ((signature.p, signature.q, signature.r), given, keywords);
         if let Some(program) = self.programs.lock().map_err(bad)?.get(&key) {
             return Ok(program.clone_ref(py));
         }
@@ -100,7 +103,7 @@ impl Formula {
     }
 
     /// The tree as nested dictionaries, for values of these kinds; without any, of whatever names.
-    fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<Given>) -> Object<'py> {
+    fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<Said>) -> Object<'py> {
         let names = if given.is_empty() { Names::open() } else { self.names(&given)?.0 };
         let space = space(&algebra);
         let (tree, names) = self.read(py, &algebra, names)?;
@@ -122,6 +125,22 @@ impl Formula {
 }
 
 impl Formula {
+    /// The program for single values of 3-d space; `None` if some are not, or if it is an equation.
+    fn for_single_values(&self, named: &Bound<'_, PyDict>) -> PyResult<Option<Py<Program>>> {
+        let py = named.py();
+        let mut said = Vec::with_capacity(named.len());
+        for (name, value) in named.iter() {
+            let Some((_, ty)) = single(&value) else { return Ok(None) };
+            said.push((name.extract()?, ty.grades.0, ty.unit.into()));
+        }
+        if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
+            return Ok(None);
+        }
+        let count = said.len();
+        let program = self.program(py, g3(py)?.clone_ref(py), said, count)?;
+        Ok((!program.get().program.is_equation()).then_some(program))
+    }
+
     fn algebra_or_g3<'a>(&'a self, py: Python<'a>) -> PyResult<&'a Py<Algebra>> {
         match &self.algebra {
             Some(algebra) => Ok(algebra),
@@ -144,7 +163,7 @@ impl Formula {
     }
 
     /// What the names stand for, and each of them in the canonical spelling.
-    fn names(&self, given: &[Given]) -> PyResult<(Names, Vec<String>)> {
+    fn names(&self, given: &[Said]) -> PyResult<(Names, Vec<String>)> {
         let mut names = Names::new([]);
         let mut spelled: Vec<String> = Vec::new();
         for (name, grades, kind) in given {
@@ -173,7 +192,7 @@ impl Formula {
         &self,
         py: Python<'_>,
         algebra: &Py<Algebra>,
-        given: &[Given],
+        given: &[Said],
         keywords: usize,
     ) -> PyResult<Program> {
         let (names, spelled) = self.names(given)?;
@@ -189,7 +208,8 @@ impl Formula {
                 "the formula does not use {name:?}; values that it may leave unused are given as a mapping"
             )));
         }
-        Ok(Program { program, order, text: self.text.clone() })
+        let runner = Runner::new(&program);
+        Ok(Program { program, order, text: self.text.clone(), runner })
     }
 
     /// A node, its types being the next ones.
@@ -224,6 +244,20 @@ fn called<'py>(
     named: Option<&Bound<'py, PyDict>>,
 ) -> Object<'py> {
     let py = formula.py();
+    if arguments.is_empty()
+        && let Some(named) = named
+    {
+        let formula = formula.get();
+        if let Some(value) = formula.calls.value(named)? {
+            return Ok(value);
+        }
+        if let Some(program) = formula.for_single_values(named)? {
+            formula.calls.keep(named, program)?;
+            if let Some(value) = formula.calls.value(named)? {
+                return Ok(value);
+            }
+        }
+    }
     static GENERAL: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let general = GENERAL.import(py, "polhode._formula", "called")?;
     general.call1((formula, arguments, named))
@@ -259,7 +293,8 @@ fn described<'py>(py: Python<'py>, node: &Node) -> PyResult<(&'static str, Bound
 
 /// Grades as Python shows them.
 fn grades(py: Python<'_>, grades: Grades) -> PyResult<Bound<'_, PyTuple>> {
-    PyTuple::new(py, (0..16).filter(|&k| grades.contains(k)))
+    let grades: Vec<usize> = (0..16).filter(|&k| grades.contains(k)).collect();
+    PyTuple::new(py, grades)
 }
 
 /// The algebra, for formulas.

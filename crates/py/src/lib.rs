@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 mod algebra;
 mod arrays;
 mod bodies;
+mod calls;
 mod formula;
 mod motion;
 mod multivector;

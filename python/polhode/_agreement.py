@@ -10,7 +10,7 @@ import numpy as np
 
 from polhode import _generic
 from polhode._arrays import is_float
-from polhode._generic.exact import Exact, is_multiprecision, is_zero
+from polhode._generic.exact import is_multiprecision, is_zero, sqrt
 from polhode._generic.numeric import Numeric
 from polhode._multivector import Multivector
 from polhode._walk import Step, Walk
@@ -87,8 +87,8 @@ def _told(holds: Any, residual: Any, size: Any) -> str:
     if not holds.ndim:
         return f"{'holds' if holds else 'does not hold'}, {shown}{beside}"
     index = tuple(int(i) for i in np.unravel_index(worst, holds.shape))
-    count = "all" if holds.all() else str(int(holds.sum())) if holds.any() else "none"
-    return f"holds in {count} of {holds.size} rows, largest {shown}{beside} at index {index}"
+    rows = f"all {holds.size}" if holds.all() else f"{holds.sum()} of {holds.size}"
+    return f"holds in {rows} rows, largest {shown}{beside} at index {index}"
 
 
 # --- how it is found
@@ -156,7 +156,7 @@ def _symbolic_residual(data: Any) -> Any:
     for index in np.ndindex(result.shape):
         row = [x for x in data[index] if not is_zero(x)]
         if row:
-            result[index] = Exact().sqrt(np.array(sum(x * x for x in row), dtype=object))[()]
+            result[index] = sqrt(sum(x * x for x in row))
     return result
 
 

@@ -130,8 +130,4 @@ impl<'a> Space<'a> {
 }
 
 #[cfg(test)]
-mod build;
-#[cfg(test)]
-mod laws;
-#[cfg(test)]
 mod tests;

@@ -5,10 +5,13 @@ use pyo3::prelude::*;
 mod algebra;
 mod arrays;
 mod bodies;
+mod calls;
+mod formula;
 mod motion;
 mod multivector;
 mod operators;
 mod pool;
+mod program;
 mod scene;
 mod signature;
 mod text;
@@ -29,6 +32,11 @@ mod _native {
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
+
+    #[pymodule_export]
+    use crate::formula::Formula;
+    #[pymodule_export]
+    use crate::program::{Program, marked};
 
     #[pymodule_export]
     use crate::pool::{Buffer, buffer};

@@ -28,6 +28,11 @@ if TYPE_CHECKING:
     from polhode import torque as torque
     from polhode._bodies import Body as Body
     from polhode._bodies import Inertia as Inertia
+    from polhode._agreement import Agreement as Agreement
+    from polhode._formula import Formula as Formula
+    from polhode._formula import evaluate as evaluate
+    from polhode._formula import formula as formula
+    from polhode._formula_error import FormulaError as FormulaError
     from polhode._geometry import axial as axial
     from polhode._geometry import from_axial as from_axial
     from polhode._geometry import split as split
@@ -50,6 +55,11 @@ if TYPE_CHECKING:
 _LATER = {
     "Body": "_bodies",
     "Inertia": "_bodies",
+    "Agreement": "_agreement",
+    "Formula": "_formula",
+    "FormulaError": "_formula_error",
+    "evaluate": "_formula",
+    "formula": "_formula",
     "axial": "_geometry",
     "from_axial": "_geometry",
     "split": "_geometry",

@@ -5,12 +5,16 @@ use pyo3::prelude::*;
 mod algebra;
 mod arrays;
 mod bodies;
+mod calls;
+mod formula;
 mod motion;
 mod multivector;
 mod operators;
 mod pool;
+mod program;
 mod scene;
 mod signature;
+mod text;
 mod value;
 
 /// The compiled core of Polhode; private, called through `polhode`.
@@ -30,6 +34,11 @@ mod _native {
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
 
     #[pymodule_export]
+    use crate::formula::Formula;
+    #[pymodule_export]
+    use crate::program::{Program, marked};
+
+    #[pymodule_export]
     use crate::pool::{Buffer, buffer};
     #[pymodule_export]
     use crate::signature::{Algebra, g3_object};
@@ -38,6 +47,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};
+    #[pymodule_export]
+    use crate::text::{diagnostic, quantities};
 
     /// The version of the package.
     #[pymodule_export]

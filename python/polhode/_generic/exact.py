@@ -72,11 +72,11 @@ def _library(*elements: Any) -> Any:
 
 
 # The values that stay exact.
-_AT_ZERO = {"sin": 0, "cos": 1, "exp": 1, "sinh": 0, "cosh": 1, "atan": 0}
+_AT_ZERO = {"sin": 0, "cos": 1, "tan": 0, "exp": 1, "sinh": 0, "cosh": 1, "atan": 0}
 
 
 def call(name: str, x: Any) -> Any:
-    """``sin``, ``cos``, ``sinh``, ``cosh``, ``atan``, ``exp`` or ``log`` of an element."""
+    """``sin``, ``cos``, ``tan``, ``sinh``, ``cosh``, ``atan``, ``exp`` or ``log`` of an element."""
     if name in _AT_ZERO and not is_symbolic(x) and x == 0:
         return _AT_ZERO[name]
     if name == "log" and isinstance(x, Rational) and x == 1:
@@ -161,6 +161,11 @@ class Exact:
     def __init__(self, context: Any = None) -> None:
         self._context = context  # of mpmath, where its numbers are among the elements
 
+    @property
+    def pi(self) -> Any:
+        """π, to the digits of mpmath's numbers where they are among the elements."""
+        return math.pi if self._context is None else +self._context.pi
+
     def asarray(self, values: Any) -> Array:
         """Numbers, expressions, nested lists and arrays as an array of objects, every element checked.
 
@@ -222,6 +227,10 @@ class Exact:
     def cos(self, x: Array) -> Array:
         """Return the cosine."""
         return _call("cos", x)
+
+    def tan(self, x: Array) -> Array:
+        """Return the tangent."""
+        return _call("tan", x)
 
     def require(self, ok: Array, message: str) -> None:
         """Raise a ValueError, with the first index where `ok` is false."""

@@ -21,6 +21,7 @@ class Numeric:
     """
 
     exact = False
+    pi = math.pi
 
     def __init__(self, xp: Any, dtype: Any = None, device: Any = None) -> None:
         self.xp = xp
@@ -118,6 +119,10 @@ class Numeric:
     def cos(self, x: Array) -> Array:
         """Return the cosine."""
         return self.xp.cos(x)
+
+    def tan(self, x: Array) -> Array:
+        """Return the tangent."""
+        return self.xp.tan(x)
 
     def atan2(self, y: Array, x: Array) -> Array:
         """Return the angle of the point (x, y), in [−π, π]."""

@@ -27,6 +27,7 @@ mod define;
 mod derivative;
 mod indices;
 mod lanes;
+mod lanes;
 mod latex;
 mod letters;
 mod names;

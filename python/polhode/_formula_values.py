@@ -1,0 +1,151 @@
+"""What a formula is given for its names."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra import algebra as algebra_of
+from polhode._arrays import is_float
+from polhode._coefficients import scalars
+from polhode._linear import LinearMap
+from polhode._multivector import Multivector
+from polhode._rotor import Rotor
+
+# A name, grades as bits, and whether it stands for a value, a rotor, or a linear map of these grades.
+Kind = tuple[str, int, int]
+
+_VALUE, _ROTOR, _MAP = 0, 1, 2
+_WORDS = {
+    "scalar": (0b0001, _VALUE),
+    "vector": (0b0010, _VALUE),
+    "bivector": (0b0100, _VALUE),
+    "trivector": (0b1000, _VALUE),
+    "rotor": (0b0101, _ROTOR),
+    "map of vectors": (1, _MAP),
+    "map of bivectors": (2, _MAP),
+}
+
+
+@dataclass(frozen=True)
+class Given:
+    """The algebra of all values, their kinds, and the values: multivectors and linear maps."""
+
+    algebra: Any
+    kinds: list[Kind]
+    values: list[Multivector | LinearMap]
+
+    def inputs(self, program: _native.Program) -> list[Any]:
+        """Return what a program takes, in its order: multivectors, matrices (..., 3, 3), determinants."""
+        return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
+
+    def _input(self, value: Any, kind: str, grade: int) -> Any:
+        if kind == "value":
+            return value
+        if kind == "determinant":
+            return np.asarray(value.determinant)
+        return value.matrix if grade == 1 else value.bivector_matrix
+
+
+def given(algebra: Any, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
+    """Return the values by name, numbers and arrays as scalars."""
+    everything = _together(values, named)
+    algebra = _common_algebra(algebra, everything)
+    if all(isinstance(value, Multivector | LinearMap) for value in everything.values()):
+        known = everything
+    else:
+        known = _with_scalars(everything, algebra)
+    return Given(algebra, [(name, *_kind(value)) for name, value in known.items()], list(known.values()))
+
+
+def kinds_of(algebra: Any, kinds: dict[str, Any]) -> tuple[Any, list[Kind]]:
+    """Return the algebra and the kinds of names, given by values or by what they would be."""
+    values = {name: kind for name, kind in kinds.items() if isinstance(kind, Multivector)}
+    algebra = _common_algebra(algebra, values)
+    return algebra, [(name, *_said(name, kind, algebra)) for name, kind in kinds.items()]
+
+
+def _said(name: str, kind: Any, algebra: Any) -> tuple[int, int]:
+    if isinstance(kind, Multivector | LinearMap):
+        return _kind(kind)
+    if isinstance(kind, str):
+        if kind not in _WORDS:
+            raise ValueError(f"{name} is {kind!r}, expected grades or one of {', '.join(map(repr, _WORDS))}")
+        return _WORDS[kind]
+    if isinstance(kind, float | np.ndarray | np.number):
+        return 0b0001, _VALUE
+    mask, n = 0, algebra.dimension
+    for k in kind if isinstance(kind, Iterable) else (kind,):
+        try:
+            grade = operator.index(k)
+        except TypeError:
+            raise TypeError(f"{name} is a {type(k).__name__}, expected grades, such as 1 or (0, 2)") from None
+        if grade not in range(n + 1):
+            raise ValueError(f"{name} has grade {grade}, but {algebra} has grades 0 to {n}")
+        mask |= 1 << grade
+    if not mask:
+        raise ValueError(f"{name} has no grades; zero is a scalar, grade 0")
+    return mask, _VALUE
+
+
+def _kind(value: Multivector | LinearMap) -> tuple[int, int]:
+    if isinstance(value, LinearMap):
+        return value.grade, _MAP
+    return value._mask, _ROTOR if isinstance(value, Rotor) else _VALUE
+
+
+def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[str, Any]:
+    if values is None:
+        return named
+    if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
+        raise TypeError(f"values are keywords, or a mapping from names to values; got {type(values).__name__}")
+    twice = [name for name in values if name in named]
+    if twice:
+        raise TypeError(f"{twice[0]!r} is given twice, in the mapping and as a keyword")
+    return {**values, **named}
+
+
+def _common_algebra(algebra: Any, values: dict[str, Any]) -> Any:
+    """Return the one algebra of all values; linear maps are of 3-d space."""
+    said = "the formula"
+    for name, value in values.items():
+        if isinstance(value, Multivector | LinearMap):
+            own = value.algebra if isinstance(value, Multivector) else algebra_of(3)
+            if algebra is None:
+                algebra, said = own, name
+            elif own is not algebra:
+                raise TypeError(f"the values belong to different algebras: {said} to {algebra}, {name} to {own}")
+    return algebra_of(3) if algebra is None else algebra
+
+
+def _with_scalars(values: dict[str, Any], algebra: Any) -> dict[str, Any]:
+    """Return the values, numbers and arrays as scalars; Python's numbers take the precision of the others."""
+    plain = {name: value for name, value in values.items() if type(value) in (int, float)}
+    known = {name: _value(name, value, algebra) for name, value in values.items() if name not in plain}
+    data = [value._data for value in known.values() if isinstance(value, Multivector)]
+    data += [value.matrix for value in known.values() if isinstance(value, LinearMap)]
+    if data and all(map(is_float, data)):
+        like: Any = np.empty(0, np.result_type(*data))
+    else:
+        like = next((x for x in data if not is_float(x)), None)
+    known |= {name: Multivector._of(scalars(x, like), 1, algebra) for name, x in plain.items()}
+    return {name: known[name] for name in values}
+
+
+def _value(name: str, value: Any, algebra: Any) -> Any:
+    if isinstance(value, Multivector | LinearMap):
+        return value
+    data = scalars(value, None)
+    if data is not None:
+        return Multivector._of(data, 1, algebra)
+    remedy = "values are multivectors, linear maps, numbers, and arrays as batches of numbers"
+    if callable(value):
+        remedy = "formulas call linear maps (ph.LinearMap.from_function) and functions they define themselves"
+    elif isinstance(value, list | tuple):
+        remedy = "wrap components with ph.vector, a batch of numbers with np.array"
+    raise TypeError(f"{name} is a {type(value).__name__}; {remedy}")

@@ -18,7 +18,7 @@ static BOUND: LazyLock<Names> = LazyLock::new(|| {
     names
 });
 
-/// The first byte says what the names are; the text follows.
+// The first byte says what the names are; the text follows.
 fuzz_target!(|data: (u8, &str)| {
     let (choice, text) = data;
     match choice % 3 {

@@ -53,6 +53,23 @@ class Formula:
         """The text as it was given."""
         return self._core.text
 
+    def __str__(self) -> str:
+        """The formula in canonical spelling, as on paper."""
+        return self._core.spelled("unicode")
+
+    @property
+    def ascii(self) -> str:
+        """The formula in ASCII spelling, but for names, which stay."""
+        return self._core.spelled("ascii")
+
+    @property
+    def latex(self) -> str:
+        """The formula as LaTeX, for mathematics mode."""
+        return self._core.spelled("latex")
+
+    def _repr_latex_(self) -> str:
+        return f"${self.latex}$"
+
     # --- what is known of it before there are values
 
     def tree(self, **kinds: Any) -> dict[str, Any]:
@@ -95,7 +112,7 @@ class Formula:
         """
         from polhode._formula_gradient import gradient
 
-        return gradient(self, names)
+        return gradient(self._core, names)
 
     # --- the rest
 

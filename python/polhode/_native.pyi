@@ -21,6 +21,7 @@ __all__ = [
     "__version__",
     "buffer",
     "describe_free",
+    "diagnostic",
     "free_motion",
     "from_pauli",
     "function",
@@ -28,6 +29,7 @@ __all__ = [
     "methods",
     "norm",
     "product",
+    "quantities",
     "read_scene",
     "rotor_apply",
     "rotor_compose",
@@ -197,3 +199,5 @@ def simulate(
     progress: Callable[[int, float], object] | None,
 ) -> tuple[Array, Array, Array, Array, dict[str, Any]]: ...
 def read_scene(path: str) -> dict[str, Any]: ...
+def diagnostic(source: str, number: int, line: str, start: int, end: int, message: str) -> str: ...
+def quantities(text: str, names: set[str]) -> list[tuple[int, int, float]]: ...

@@ -36,11 +36,22 @@ impl Diagnostic {
         let start = char_boundary(text, span.start);
         let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
-        let line = text[line_start..line_end].trim_end_matches('\r');
-        let start = (start - line_start).min(line.len());
-        let end = char_boundary(text, span.end).saturating_sub(line_start).clamp(start, line.len());
-
         let number = text[..line_start].matches('\n').count() + 1;
+        let span = start - line_start..span.end.saturating_sub(line_start);
+        Diagnostic::in_line(path, number, &text[line_start..line_end], span, message)
+    }
+
+    /// About the bytes `span` of a line, of this number, of the file at `path`.
+    pub fn in_line(
+        path: &Path,
+        number: usize,
+        line: &str,
+        span: Range<usize>,
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        let line = line.trim_end_matches('\r');
+        let start = char_boundary(line, span.start);
+        let end = char_boundary(line, span.end).max(start);
         let before = line[..start].chars().count();
         let marked = line[start..end].chars().count();
         Diagnostic {

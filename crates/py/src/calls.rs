@@ -49,7 +49,9 @@ impl Calls {
 
     /// Keeps a call for the next time.
     pub fn keep(&self, named: &Bound<'_, PyDict>, program: Py<Program>) -> PyResult<()> {
-        let Some(types) = named.iter().map(|(_, value)| Some(single(&value)?.1)).collect() else { return Ok(()) };
+        let Some(types) = named.iter().map(|(_, value)| Some(single(&value)?.1)).collect() else {
+            return Ok(());
+        };
         let order = &program.get().order;
         let places: Option<Vec<usize>> =
             (0..named.len()).map(|i| order.iter().position(|&given| given == i)).collect();

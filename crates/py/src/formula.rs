@@ -6,8 +6,8 @@ use crate::program::{Program, characters, error};
 use crate::signature::{Algebra, g3};
 use crate::value::Object;
 use polhode_ga::formula::{
-    Kind, Meaning, Names, Node, Runner, Space, Tree, Type, canonical, compile, define, heading,
-    parse, types,
+    Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
+    types,
 };
 use polhode_ga::product::Grades;
 use pyo3::exceptions::PyTypeError;
@@ -47,7 +47,8 @@ impl Formula {
         algebra: Option<Py<Algebra>>,
         definitions: Vec<(String, String)>,
     ) -> PyResult<Formula> {
-        let formula = Formula { text, algebra, definitions, programs: Mutex::default(), calls: Calls::default() };
+        let formula =
+            Formula { text, algebra, definitions, programs: Mutex::default(), calls: Calls::default() };
         let algebra = formula.algebra_or_g3(py)?;
         formula.read(py, algebra, Names::open())?;
         Ok(formula)
@@ -69,6 +70,16 @@ impl Formula {
     #[getter]
     fn definitions(&self) -> Vec<(String, String)> {
         self.definitions.clone()
+    }
+
+    /// The formula in canonical spelling, of whatever names: `unicode`, `ascii` or `latex`.
+    fn spelled(&self, py: Python<'_>, style: &str) -> PyResult<String> {
+        let (tree, _) = self.read(py, self.algebra_or_g3(py)?, Names::open())?;
+        Ok(match style {
+            "latex" => tree.latex(),
+            "ascii" => tree.text(Style::Ascii),
+            _ => tree.text(Style::Unicode),
+        })
     }
 
     /// The program for values of these kinds, in this algebra; the last `keywords` of them must be used.
@@ -154,7 +165,9 @@ impl Formula {
         for (head, body) in &self.definitions {
             let (name, _) = heading(head).map_err(|e| error(py, head, &e))?;
             if matches!(names.get(&name), Some(Meaning::Value(_) | Meaning::Map { .. })) {
-                return Err(PyTypeError::new_err(format!("`{name}` is defined by the formula; give no value")));
+                return Err(PyTypeError::new_err(format!(
+                    "`{name}` is defined by the formula; give no value"
+                )));
             }
             define(head, body, space, &mut names).map_err(|e| error(py, body, &e))?;
         }
@@ -180,7 +193,9 @@ impl Formula {
             };
             if let Some(i) = spelled.iter().position(|other| *other == spelling) {
                 let other = &given[i].0;
-                return Err(PyTypeError::new_err(format!("{other:?} and {name:?} are the same name; give one")));
+                return Err(PyTypeError::new_err(format!(
+                    "{other:?} and {name:?} are the same name; give one"
+                )));
             }
             spelled.push(spelling.clone());
             names.bind(spelling, meaning);

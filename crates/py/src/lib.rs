@@ -14,6 +14,7 @@ mod pool;
 mod program;
 mod scene;
 mod signature;
+mod text;
 mod value;
 
 /// The compiled core of Polhode; private, called through `polhode`.
@@ -35,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use crate::formula::Formula;
     #[pymodule_export]
-    use crate::program::{Program, marked};
+    use crate::program::{Program, canonical, marked};
 
     #[pymodule_export]
     use crate::pool::{Buffer, buffer};
@@ -46,6 +47,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};
+    #[pymodule_export]
+    use crate::text::{diagnostic, quantities};
 
     /// The version of the package.
     #[pymodule_export]

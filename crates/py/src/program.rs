@@ -2,10 +2,10 @@
 
 use crate::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use polhode_ga::Graded;
 use polhode_ga::batch::Element;
 use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span};
 use polhode_ga::table::G3;
-use polhode_ga::Graded;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -102,7 +102,8 @@ impl Program {
         let batch = out.shape().split_last().map_or(Vec::new(), |(_, batch)| batch.to_vec());
         let rows: usize = batch.iter().product();
         let out = numbers_to_fill(&mut out)?;
-        let inputs: Vec<Rows<'_, T>> = inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
+        let inputs: Vec<Rows<'_, T>> =
+            inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
         let data: Vec<&[T]> = inputs.iter().map(numbers).collect::<PyResult<_>>()?;
         let kinds: Vec<usize> = self.program.inputs.iter().map(|input| size_of(input.kind)).collect();
         let fits = |(x, size): (&&[T], &usize)| x.len() == *size || x.len() == rows * size;
@@ -198,4 +199,10 @@ pub(crate) fn marked(text: &str, place: Place) -> String {
     let byte = |count: usize| text.char_indices().nth(count).map_or(text.len(), |(i, _)| i);
     let span = Span { start: byte(place.0), end: byte(place.1) };
     formula::Error { message: String::new(), span }.shown(text)
+}
+
+/// The spelling under which a name is known, such as `Ω_B` or `a1` for `a_1`; None for what is no name.
+#[pyfunction]
+pub(crate) fn canonical(name: &str) -> Option<String> {
+    formula::canonical(name)
 }

@@ -21,15 +21,22 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+mod builder;
 mod compile;
+mod define;
 mod derivative;
+mod indices;
 mod lanes;
+mod latex;
 mod letters;
 mod names;
 mod number;
+mod operands;
 mod parser;
+mod print;
 mod program;
 mod reading;
+mod rules;
 mod run;
 mod schedule;
 mod single;
@@ -37,10 +44,12 @@ mod steps;
 mod token;
 mod tree;
 
-pub use compile::{compile, define, heading, types};
+pub use compile::{compile, types};
+pub use define::{define, heading};
 pub use names::{Definition, Meaning, Names, Type};
 pub use number::Number;
 pub use parser::parse;
+pub use print::Style;
 pub use program::{Id, Input, InputKind, Op, Program, Step};
 pub use run::RowError;
 pub use single::{Given, Runner};
@@ -119,3 +128,10 @@ impl<'a> Space<'a> {
         self.calculus.map_or_else(|| f.grades(g), |calculus| calculus.grades(f, g))
     }
 }
+
+#[cfg(test)]
+mod build;
+#[cfg(test)]
+mod laws;
+#[cfg(test)]
+mod tests;

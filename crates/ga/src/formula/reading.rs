@@ -1,6 +1,7 @@
 //! How words are read, once it is known what is bound: as one name, as a function, or as letters that stand
 //! side by side.
 
+use super::indices::{INDICES, indexed};
 use super::names::{Meaning, Names};
 use super::token::{Atom, Lexeme, Sign, Token, joined};
 use super::tree::{Named, Span, Tight};
@@ -63,17 +64,6 @@ pub(crate) fn read(tokens: &[Token], space: Space, names: &Names) -> Result<Vec<
         }
     }
     Ok(items)
-}
-
-/// The letters that count from 1 to the number of generators where they stand as subscripts.
-pub(crate) const INDICES: &str = "ijklmn";
-
-/// The base of a name in indices, and the indices, each in its place: `ω_k`, `ε_ijk`.
-pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
-    let plain = name.trim_end_matches('\'');
-    let (base, indices) = plain.split_once('_')?;
-    let some = !indices.is_empty() && indices.len() <= 3 && indices.chars().all(|c| INDICES.contains(c));
-    (some && !base.is_empty()).then_some((base, indices))
 }
 
 struct Reader<'a> {

@@ -337,7 +337,7 @@ fn no_meaning(c: char) -> String {
 pub fn canonical(name: &str) -> Option<String> {
     let tokens = tokens(name).ok()?;
     let word = |token: &Token| match &token.lexeme {
-        Lexeme::Word(atoms) if !token.space => joined(atoms),
+        Lexeme::Word(atoms) => joined(atoms),
         _ => None,
     };
     match &tokens[..] {

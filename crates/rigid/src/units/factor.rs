@@ -46,7 +46,7 @@ impl Factor {
     }
 
     /// Times `unit^power`.
-    fn multiply(&mut self, unit: Unit, power: i32) {
+    pub fn multiply(&mut self, unit: Unit, power: i32) {
         for (total, d) in self.dimension.0.iter_mut().zip(unit.dimension.0) {
             *total += power * d;
         }
@@ -80,7 +80,7 @@ fn split_unit(text: &str) -> Result<(Unit, &str), Problem> {
 }
 
 /// The power at the beginning of the text, 1 if there is none.
-fn split_power(text: &str) -> Result<(i32, &str), Problem> {
+pub fn split_power(text: &str) -> Result<(i32, &str), Problem> {
     if let Some(written) = text.strip_prefix("**").or_else(|| text.strip_prefix('^')) {
         let (sign, digits) = match written.strip_prefix(['-', '\u{2212}']) {
             Some(digits) => (-1, digits),

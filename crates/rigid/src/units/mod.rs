@@ -13,6 +13,9 @@ mod factor;
 mod table;
 #[cfg(test)]
 mod tests;
+mod within;
+
+pub use within::{Within, WithinError, quantities};
 
 use factor::{Factor, Problem};
 use polhode_ga::diagnostic::quote;

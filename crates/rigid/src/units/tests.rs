@@ -213,3 +213,83 @@ proptest! {
         }
     }
 }
+
+/// The formula with each quantity replaced by its value in angle brackets.
+fn within(text: &str, names: &[&str]) -> Result<String, String> {
+    let found = quantities(text, |name| names.contains(&name)).map_err(|error| error.message)?;
+    let (mut shown, mut at) = (String::new(), 0);
+    for Within { span, value } in found {
+        shown.push_str(&format!("{}<{value}>", &text[at..span.start]));
+        at = span.end;
+    }
+    Ok(shown + &text[at..])
+}
+
+#[test]
+fn a_number_directly_before_a_unit_is_a_quantity_within_a_formula() {
+    let table = [
+        ("180deg", "<3.141592653589793>"),
+        ("180°e1e2", "<3.141592653589793>e1e2"),
+        ("-180 deg e1∧e2", "-<3.141592653589793> e1∧e2"),
+        ("exp(-180deg/2 e1∧e2)", "exp(-<3.141592653589793>/2 e1∧e2)"),
+        ("7.85 g/cm^3", "<7850>"),
+        ("5 m/s e1 + 3 cm/s e2", "<5> e1 + <0.03> e2"),
+        ("3 kg·m² e1∧e2", "<3> e1∧e2"),
+        ("2 kg m^2 / s x", "<2> x"),
+        ("2 m^-1 e1", "<2> e1"),
+        ("5 km^e1", "<5000>^e1"),
+        ("5 m/x", "<5>/x"),
+        ("5 km*x", "<5000>*x"),
+        ("1e-3 km", "<1>"),
+        ("1e20 mm", "<100000000000000000>"),
+        // No quantities: names, powers, grades, calls, numbers of names, and words that are no units.
+        ("3 x", "3 x"),
+        ("x^2 m", "x^2 m"),
+        ("x1 m", "x1 m"),
+        ("x₁ m", "x₁ m"),
+        ("⟨M⟩_2 m", "⟨M⟩_2 m"),
+        ("5 m2 e1", "5 m2 e1"),
+        ("5 m_1", "5 m_1"),
+        ("5 m' e1", "5 m' e1"),
+        ("5 m(x)", "5 m(x)"),
+        ("2e1", "2e1"),
+        ("2 e1 m", "2 e1 m"),
+        ("5 parsnip", "5 parsnip"),
+        ("m a", "m a"),
+        ("", ""),
+    ];
+    for (text, expected) in table {
+        assert_eq!(within(text, &["x", "a"]).as_deref(), Ok(expected), "{text}");
+    }
+}
+
+#[test]
+fn what_has_two_readings_within_a_formula_is_refused() {
+    let table = [
+        ("5 m e1", "`m` is a unit and a name here; for the name write `5*m`"),
+        ("5 rev/s m", "`m` is a unit and a name here; for the name write `(5 rev/s) m`"),
+        ("5 ms", "`ms` is a unit and a name here; for the name write `5*ms`"),
+        ("1/2 rev", "`/` before a quantity has two readings; put brackets around `2 rev`"),
+        ("2e1 kg", "`2e1` is a number or has a basis vector in it; for the number write `2e+1`"),
+        ("5 kg^10", "a power is a whole number from -9 to 9, not 0, after the unit `kg`"),
+        ("1e400 kg", "`1e400 kg` is beyond the range of floating point, about 1.8e308"),
+    ];
+    for (text, message) in table {
+        let names: &[&str] = if text == "5 ms" { &["m", "s"] } else { &["m"] };
+        assert_eq!(within(text, names).unwrap_err(), message, "{text}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn quantities_lie_within_any_text_in_order(text in "[0-9.e+−^*/·a-zmskg°²∧()_' ]{0,30}|\\PC*") {
+        if let Ok(found) = quantities(&text, |name| name == "x") {
+            let mut end = 0;
+            for Within { span, value } in found {
+                prop_assert!(end <= span.start && span.start < span.end && value.is_finite());
+                prop_assert!(text.get(span.clone()).is_some());
+                end = span.end;
+            }
+        }
+    }
+}

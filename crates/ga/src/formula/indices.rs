@@ -1,0 +1,88 @@
+//! Names in indices, as in `ω_k I e_k` and `f_k = R e_k ~R`.
+
+use super::names::Names;
+use super::tree::{Kind, Node};
+
+/// The letters that count from 1 to the number of generators where they stand as subscripts.
+pub(crate) const INDICES: &str = "ijklmn";
+
+/// The base of a name in indices, and the indices, each in its place: `ω_k`, `ε_ijk`.
+pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
+    let plain = name.trim_end_matches('\'');
+    let (base, indices) = plain.split_once('_')?;
+    let some = !indices.is_empty() && indices.len() <= 3 && indices.chars().all(|c| INDICES.contains(c));
+    (some && !base.is_empty()).then_some((base, indices))
+}
+
+/// Sums over indices that are repeated, as on paper: an index that stands twice or more in every term that has
+/// it is summed over in each, `ε_ijk e_k`; one that stands once in some term is free, `L_k = i_k ω_k`.
+pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Vec<Node> {
+    if names.is_open() {
+        return sides;
+    }
+    let mut counts: Vec<Vec<(char, usize)>> = Vec::new();
+    for_each_term(&mut sides, &mut |term| {
+        let mut found = Vec::new();
+        count_indices(term, names, &mut found);
+        counts.push(found);
+    });
+    let free = |index: char| counts.iter().flatten().any(|&(c, count)| c == index && count == 1);
+    let mut next = counts.iter();
+    for_each_term(&mut sides, &mut |term| {
+        for &(index, _) in next.next().into_iter().flatten().filter(|&&(index, _)| !free(index)) {
+            let inner = std::mem::replace(&mut term.kind, Kind::Pi);
+            let inner = Box::new(Node::new(inner, term.span));
+            term.kind = Kind::Total(index.to_string(), inner);
+        }
+    });
+    sides
+}
+
+/// The terms of the sums that the sides are.
+fn for_each_term(sides: &mut [Node], f: &mut impl FnMut(&mut Node)) {
+    for side in sides {
+        match &mut side.kind {
+            Kind::Sum(terms) => terms.iter_mut().for_each(|(_, term)| f(term)),
+            _ => f(side),
+        }
+    }
+}
+
+/// The indices in the names of a tree that are not bound, and how often each stands there. Those of a sum are
+/// its own.
+pub(crate) fn count_indices(node: &Node, names: &Names, found: &mut Vec<(char, usize)>) {
+    if let Kind::Name(name) = &node.kind
+        && names.get(name).is_none()
+        && let Some((_, indices)) = indexed(name)
+    {
+        for index in indices.chars().filter(|&c| INDICES.contains(c)) {
+            add(found, index, 1);
+        }
+    }
+    let mut inner = Vec::new();
+    for child in node.children() {
+        count_indices(child, names, &mut inner);
+    }
+    if let Kind::Total(index, _) = &node.kind {
+        inner.retain(|(c, _)| !index.contains(*c));
+    }
+    for (index, count) in inner {
+        add(found, index, count);
+    }
+}
+
+fn add(found: &mut Vec<(char, usize)>, index: char, count: usize) {
+    match found.iter_mut().find(|(c, _)| *c == index) {
+        Some((_, total)) => *total += count,
+        None => found.push((index, count)),
+    }
+}
+
+/// The sign of a permutation of 1, 2, 3; 0 of anything else.
+pub(crate) fn permutation([i, j, k]: [usize; 3]) -> i32 {
+    match (i, j, k) {
+        (1, 2, 3) | (2, 3, 1) | (3, 1, 2) => 1,
+        (3, 2, 1) | (2, 1, 3) | (1, 3, 2) => -1,
+        _ => 0,
+    }
+}

@@ -1,0 +1,187 @@
+//! Quantities within a formula: `exp(-45 deg e1∧e2)`, `5 rev/s e1∧e2`.
+//!
+//! There a quantity is a number directly followed by a unit, which may go on as units do: `5 kg m^2/s`. It
+//! ends before the first word that is no unit. The letters of units are also names of vectors and masses, so
+//! where both readings are possible, none is taken.
+
+use super::factor::{Factor, Problem, split_power};
+use super::table::{Unit, find_unit};
+use super::{split_number, value};
+use std::ops::Range;
+
+/// A quantity and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Within {
+    /// In bytes.
+    pub span: Range<usize>,
+    /// In SI units, rad for angles.
+    pub value: f64,
+}
+
+/// Why the quantities of a formula have no value, and where in bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WithinError {
+    /// What is wrong, and what to do.
+    pub message: String,
+    /// The quantity, or the unit.
+    pub span: Range<usize>,
+}
+
+/// The quantities in a formula whose other names are those that `is_name` knows, from left to right.
+pub fn quantities(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Vec<Within>, WithinError> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    let mut before = ' ';
+    while let Some(c) = text[at..].chars().next() {
+        if begins_number(&text[at..]) && !continues_word(before) && before != '.' {
+            let end = at + number_length(&text[at..]);
+            match quantity(text, at, end, &is_name)? {
+                Some(quantity) => {
+                    at = quantity.span.end;
+                    found.push(quantity);
+                }
+                None => at = end,
+            }
+            before = ' ';
+        } else {
+            at += c.len_utf8();
+            before = c;
+        }
+    }
+    Ok(found)
+}
+
+/// The quantity whose number is `text[start..number_end]`.
+fn quantity(
+    text: &str,
+    start: usize,
+    number_end: usize,
+    is_name: &impl Fn(&str) -> bool,
+) -> Result<Option<Within>, WithinError> {
+    let before = text[..start].trim_end().chars().next_back();
+    let first = skip_spaces(text, number_end);
+    // What stands after `^` is a power.
+    if unit_at(text, first).is_none() || before == Some('^') {
+        return Ok(None);
+    }
+    let (factor, end) = factor(text, start, first, is_name)?;
+    let (number, written, span) = (&text[start..number_end], &text[start..end], start..end);
+    if before == Some('/') {
+        let message = format!("`/` before a quantity has two readings; put brackets around `{written}`");
+        return Err(WithinError { message, span });
+    }
+    if is_basis_element(number) {
+        let remedy = number.replacen('e', "e+", 1);
+        let message =
+            format!("`{number}` is a number or has a basis vector in it; for the number write `{remedy}`");
+        return Err(WithinError { message, span });
+    }
+    let Some((number, _)) = split_number(number) else { return Ok(None) };
+    match value(written, &number, factor) {
+        Ok(value) => Ok(Some(Within { span, value })),
+        Err(error) => Err(WithinError { message: error.to_string(), span }),
+    }
+}
+
+/// The units from `first` on, the number before them beginning at `start`, and where they end.
+fn factor(
+    text: &str,
+    start: usize,
+    first: usize,
+    is_name: &impl Fn(&str) -> bool,
+) -> Result<(Factor, usize), WithinError> {
+    let (mut factor, mut end) = (Factor::default(), first);
+    let mut next = Some((first, false));
+    while let Some((at, divides)) = next {
+        let Some((length, unit)) = unit_at(text, at) else { break };
+        let (word, after) = (&text[at..at + length], &text[at + length..]);
+        if is_name(word) || word.chars().all(|c| is_name(c.encode_utf8(&mut [0; 4]))) {
+            let name = match at == first {
+                true => format!("{}*{word}", text[start..first].trim_end()),
+                false => format!("({}) {word}", &text[start..end]),
+            };
+            let message = format!("`{word}` is a unit and a name here; for the name write `{name}`");
+            return Err(WithinError { message, span: at..at + length });
+        }
+        let (power, rest) = match begins_power(after).then(|| split_power(after)) {
+            None => (1, after),
+            Some(Ok(power)) => power,
+            Some(Err(Problem::Syntax(problem) | Problem::UnknownUnit(problem))) => {
+                let message = format!("{problem} after the unit `{word}`");
+                return Err(WithinError { message, span: at..at + length });
+            }
+        };
+        factor.multiply(unit, if divides { -power } else { power });
+        end = text.len() - rest.len();
+        next = following(text, end);
+    }
+    Ok((factor, end))
+}
+
+/// Where the next unit would stand after one that has ended, and whether it divides.
+fn following(text: &str, end: usize) -> Option<(usize, bool)> {
+    let at = skip_spaces(text, end);
+    match text[at..].chars().next()? {
+        c @ ('*' | '·' | '⋅' | '/') => Some((skip_spaces(text, at + c.len_utf8()), c == '/')),
+        // Letters that touch, as in `90°e1`, are no further unit.
+        _ => (at > end).then_some((at, false)),
+    }
+}
+
+/// The unit that stands at a place, and its length, if the word ends with it: `m`, not `m2` or `m(x)`.
+fn unit_at(text: &str, at: usize) -> Option<(usize, Unit)> {
+    let rest = &text[at..];
+    let length = match rest.starts_with('°') {
+        true => '°'.len_utf8(),
+        false => rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len()),
+    };
+    let (word, after) = rest.split_at(length);
+    let next = after.chars().next().unwrap_or(' ');
+    let ends = word == "°" || begins_power(after) || !(continues_word(next) || next == '(');
+    find_unit(word).filter(|_| ends).map(|unit| (length, unit))
+}
+
+/// Whether a power stands here and not a wedge: `^2`, `**-1`, `²`.
+fn begins_power(text: &str) -> bool {
+    let written = text.strip_prefix("**").or_else(|| text.strip_prefix('^'));
+    match written {
+        Some(written) => {
+            written.trim_start_matches(['-', '\u{2212}']).starts_with(|c: char| c.is_ascii_digit())
+        }
+        None => text.starts_with(['⁻', '⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']),
+    }
+}
+
+fn begins_number(text: &str) -> bool {
+    text.strip_prefix('.').unwrap_or(text).starts_with(|c: char| c.is_ascii_digit())
+}
+
+fn number_length(text: &str) -> usize {
+    let digits =
+        |from: usize| from + text[from..].find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len() - from);
+    let mut end = digits(0);
+    if text[end..].starts_with('.') {
+        end = digits(end + 1);
+    }
+    if let Some(exponent) = text[end..].strip_prefix(['e', 'E']) {
+        let unsigned = exponent.strip_prefix(['+', '-', '\u{2212}']).unwrap_or(exponent);
+        if unsigned.starts_with(|c: char| c.is_ascii_digit()) {
+            end = digits(text.len() - unsigned.len());
+        }
+    }
+    end
+}
+
+/// Whether a number could be read as one with a basis vector behind it: `2e1`, `2e12`.
+fn is_basis_element(number: &str) -> bool {
+    number.split_once('e').is_some_and(|(_, digits)| digits.chars().all(|c| ('1'..='9').contains(&c)))
+}
+
+/// Whether a character within a word belongs to it: letters, digits, subscripts, primes, combining marks.
+fn continues_word(c: char) -> bool {
+    c.is_alphanumeric() || matches!(c, '_' | '\'' | '′' | '’' | '∥' | '⊥' | '\u{300}'..='\u{36f}')
+}
+
+fn skip_spaces(text: &str, at: usize) -> usize {
+    text.len() - text[at..].trim_start().len()
+}

@@ -78,6 +78,7 @@ fn bare(node: &Node, followed: bool) -> String {
             format!("{left}\\langle {text} {right}\\rangle{}", grades_of(*grades))
         }
         Kind::Function(function, x) => call_named(*function, x),
+        Kind::Call(name, arguments) if arguments.is_empty() => word(name, ""),
         Kind::Call(name, arguments) => {
             let arguments: Vec<String> = arguments.iter().map(|x| bare(x, false)).collect();
             applied(&word(name, ""), &arguments.join(", "))
@@ -337,7 +338,7 @@ const GREEK: [(char, &str); 37] = [
 
 #[cfg(test)]
 mod tests {
-    use super::super::build::*;
+    use super::super::tests::build::*;
     use super::{Function, Named, Node, Tight};
 
     #[track_caller]

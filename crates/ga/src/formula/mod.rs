@@ -27,6 +27,7 @@ mod define;
 mod derivative;
 mod indices;
 mod lanes;
+mod lanes;
 mod latex;
 mod letters;
 mod names;
@@ -129,9 +130,5 @@ impl<'a> Space<'a> {
     }
 }
 
-#[cfg(test)]
-mod build;
-#[cfg(test)]
-mod laws;
 #[cfg(test)]
 mod tests;

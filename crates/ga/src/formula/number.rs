@@ -69,24 +69,48 @@ impl Number {
     }
 }
 
-/// As it is written again: the fewest digits that give the same number.
+/// As it is written again: the fewest digits that give the same number, with the same exact value.
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.ratio {
-            Some((n, 1)) => write!(f, "{n}"),
-            _ => {
-                let size = self.value.abs();
-                // An exponent has its sign, for `2e1` is 2 times the basis vector.
-                if size != 0.0 && !(1e-5..1e16).contains(&size) {
-                    let text = format!("{:e}", self.value);
-                    f.write_str(&if text.contains("e-") { text } else { text.replace('e', "e+") })
-                } else {
-                    write!(f, "{}", self.value)
-                }
-            }
+        let shortest = self.shortest();
+        if Number::decimal(&shortest).is_some_and(|number| number.ratio == self.ratio) {
+            return f.write_str(&shortest);
+        }
+        match self.ratio.map(exact_digits) {
+            Some(digits) => f.write_str(&digits.unwrap_or(shortest)),
+            None => f.write_str(&with_exponent(format!("{:.*e}", MOST_DIGITS, self.value))),
         }
     }
 }
+
+impl Number {
+    /// The fewest digits that give the same float.
+    fn shortest(&self) -> String {
+        match self.ratio {
+            Some((n, 1)) => n.to_string(),
+            _ if self.value == 0.0 || (1e-5..1e16).contains(&self.value.abs()) => self.value.to_string(),
+            _ => with_exponent(format!("{:e}", self.value)),
+        }
+    }
+}
+
+/// An exponent has its sign, for `2e1` is 2 times the basis vector.
+fn with_exponent(text: String) -> String {
+    if text.contains("e-") { text } else { text.replace('e', "e+") }
+}
+
+/// A ratio as a decimal fraction that ends, if it is one.
+fn exact_digits((n, d): (i64, i64)) -> Option<String> {
+    let places = (0..=38).find(|&k| 10i128.pow(k) % i128::from(d) == 0)?;
+    let digits = i128::from(n).checked_mul(10i128.pow(places) / i128::from(d))?;
+    let (sign, places) = (if n < 0 { "-" } else { "" }, places as usize);
+    let padded = format!("{:0>1$}", digits.unsigned_abs(), places + 1);
+    let (whole, part) = padded.split_at(padded.len() - places);
+    Some(format!("{sign}{whole}.{part}"))
+}
+
+/// Decimal numbers of more digits are floats only.
+const MOST_DIGITS: usize = 17;
 
 /// The exact value of decimal digits, where it has few enough.
 fn decimal_ratio(text: &str) -> Option<Number> {
@@ -95,7 +119,11 @@ fn decimal_ratio(text: &str) -> Option<Number> {
         None => (text, 0),
     };
     let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
-    let numerator: i128 = format!("{whole}{part}").parse().ok()?;
+    let digits = format!("{whole}{part}");
+    if digits.trim_start_matches('0').len() > MOST_DIGITS {
+        return None;
+    }
+    let numerator: i128 = digits.parse().ok()?;
     let power = exponent.checked_sub(i32::try_from(part.len()).ok()?)?;
     let ten = 10i128.checked_pow(power.unsigned_abs())?;
     if power >= 0 { Number::ratio(numerator.checked_mul(ten)?, 1) } else { Number::ratio(numerator, ten) }
@@ -141,5 +169,17 @@ mod tests {
             assert_eq!(Number::decimal(&text).unwrap().value, x, "{text}");
         }
         assert_eq!(Number::float(1e20).to_string(), "1e+20");
+        // The first is the shortest text of the float, and another decimal fraction; the last are no ratios.
+        for text in [
+            "8.000000000000002",
+            "8.000000000000001",
+            "0.1",
+            "0.100000000000000000001",
+            "9007199254740993",
+            "0",
+        ] {
+            let number = Number::decimal(text).unwrap();
+            assert_eq!(Number::decimal(&number.to_string()).unwrap(), number, "{text}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::indices::count_indices;
 use super::parser::{Parsed, Parser};
 use super::reading::Item;
 use super::token::Sign;
-use super::tree::{Kind, Named, Node, Span};
+use super::tree::{Kind, Named, Node, Span, Tight};
 use super::{Error, Number};
 use crate::functions::Function;
 use crate::product::Grades;
@@ -30,7 +30,12 @@ impl Parser<'_> {
                 self.build(kind, self.since(start), height)
             }
             Item::Product(tight) => {
-                let (arguments, height) = self.arguments(start, tight.name(), 2)?;
+                // `wedge(a, b, c)` is `a∧b∧c`.
+                let count = if tight == Tight::Wedge { usize::MAX } else { 2 };
+                let (arguments, height) = self.arguments(start, tight.name(), count)?;
+                if arguments.len() < 2 {
+                    return Err(Error::new(self.since(start), "`wedge` takes 2 arguments or more, got 1"));
+                }
                 self.build(Kind::Tight(tight, arguments), self.since(start), height)
             }
             Item::Euler => self.exponential(start),

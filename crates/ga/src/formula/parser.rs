@@ -3,6 +3,8 @@
 
 use super::indices::sum_repeated;
 use super::names::Names;
+use super::number::Number;
+use super::print::FRACTIONS;
 use super::reading::{Item, Read, read};
 use super::token::{Sign, tokens};
 use super::tree::{Kind, Node, Span, Tight, Tree};
@@ -153,8 +155,11 @@ impl Parser<'_> {
                 let numerator = self.joined(factors, start)?;
                 let span = self.since(start);
                 let height = numerator.height.max(divisor.height);
-                let pair = Box::new((numerator.node, divisor.node));
-                factors = vec![self.build(Kind::Quotient(pair), span, height)?];
+                let kind = match written_fraction(&numerator.node, &divisor.node) {
+                    Some(fraction) => Kind::Number(fraction),
+                    None => Kind::Quotient(Box::new((numerator.node, divisor.node))),
+                };
+                factors = vec![self.build(kind, span, height)?];
             } else if self.begins_operand() {
                 self.check_juxtaposition(&factors)?;
                 factors.push(self.tight()?);
@@ -397,8 +402,19 @@ fn too_deep(span: Span) -> Error {
     Error::new(span, format!("more than {MAX_DEPTH} levels within each other; define the inner parts first"))
 }
 
+/// `1/2` is the number ½, as are the other fractions that are one character.
+fn written_fraction(numerator: &Node, divisor: &Node) -> Option<Number> {
+    let whole = |node: &Node| match &node.kind {
+        Kind::Number(Number { ratio: Some((n, 1)), .. }) => Some(*n),
+        _ => None,
+    };
+    let (n, d) = (whole(numerator)?, whole(divisor)?);
+    let known = FRACTIONS.iter().any(|fraction| (fraction.1, fraction.2) == (n, d));
+    if known { Number::ratio(n.into(), d.into()) } else { None }
+}
+
 /// Whether it is made of numbers alone.
-fn is_numeric(node: &Node) -> bool {
+pub(super) fn is_numeric(node: &Node) -> bool {
     match &node.kind {
         Kind::Number(_) | Kind::Pi => true,
         Kind::Sum(_) | Kind::Product(_) | Kind::Quotient(_) | Kind::Power(..) => {

@@ -5,6 +5,7 @@
 //! never run together and mean the same whatever else is bound.
 
 use super::number::Number;
+use super::parser::is_numeric;
 use super::tree::{Kind, Named, Node, Tight, Tree};
 use crate::product::Grades;
 
@@ -144,11 +145,14 @@ impl Printer {
         }
     }
 
+    /// A defined value has no arguments and no brackets.
     fn call(&mut self, name: &str, arguments: &[Node]) {
         self.out.push_str(name);
-        self.out.push('(');
-        self.list(arguments, ", ");
-        self.out.push(')');
+        if !arguments.is_empty() {
+            self.out.push('(');
+            self.list(arguments, ", ");
+            self.out.push(')');
+        }
     }
 
     fn sum(&mut self, terms: &[(bool, Node)]) {
@@ -173,8 +177,7 @@ impl Printer {
                 _ if i == 0 && self.is_fraction(factor) => self.bare(factor, true),
                 _ => self.part(factor, Hold::Tight),
             }
-            // Two numbers side by side could be one that fell apart.
-            if i > 0 && ends_in_digit(&self.out[..before]) && begins_with_digit(&self.out[before + 1..]) {
+            if i > 0 && needs_star(&self.out[..before], &self.out[before + 1..]) {
                 self.out.insert_str(before, " *");
             }
         }
@@ -207,23 +210,19 @@ impl Printer {
                 let symbol = tight.symbol().encode_utf8(&mut [0; 4]).to_owned();
                 self.push(&symbol, if tight == Tight::Wedge { "^" } else { "|" });
             }
-            // After `^` a number would be an exponent; `e^(…)` is the exponential.
-            if tight == Tight::Wedge && (is_e(operand) || i > 0 && is_power_of_number(operand)) {
-                self.bracketed(operand);
-            } else {
-                self.part(operand, Hold::Prefix);
-            }
+            self.part(operand, Hold::Prefix);
         }
     }
 
-    /// Whether the product is written as a function: where it has no sign of its own, or where its sign would
-    /// be taken for that of a power.
+    /// Whether the product is written as a function: where it has no sign of its own, or where a number after
+    /// `^` would be an exponent.
     fn is_called(&self, tight: Tight, operands: &[Node]) -> bool {
-        match tight {
-            Tight::Wedge => operands.len() == 2 && is_signed_number(&operands[1]),
-            Tight::Dot => false,
-            _ => self.ascii(),
-        }
+        self.ascii()
+            && match tight {
+                Tight::Wedge => operands[1..].iter().any(is_exponent),
+                Tight::Dot => false,
+                _ => true,
+            }
     }
 
     fn power(&mut self, base: &Node, n: i32) {
@@ -250,7 +249,7 @@ impl Printer {
 }
 
 /// The ratios that are written as one character; fifths and tenths are shorter as decimals.
-pub(super) const FRACTIONS: [(char, i64, i64); 13] = [
+pub(super) const FRACTIONS: [(char, i64, i64); 11] = [
     ('½', 1, 2),
     ('⅓', 1, 3),
     ('⅔', 2, 3),
@@ -258,12 +257,10 @@ pub(super) const FRACTIONS: [(char, i64, i64); 13] = [
     ('¾', 3, 4),
     ('⅙', 1, 6),
     ('⅚', 5, 6),
-    ('⅐', 1, 7),
     ('⅛', 1, 8),
     ('⅜', 3, 8),
     ('⅝', 5, 8),
     ('⅞', 7, 8),
-    ('⅑', 1, 9),
 ];
 
 /// `e12`, or `I`.
@@ -289,37 +286,24 @@ fn superscript(c: char) -> char {
     c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])
 }
 
-fn is_fraction_character(c: char) -> bool {
-    FRACTIONS.iter().any(|&(character, ..)| character == c)
-}
-
-fn ends_in_digit(text: &str) -> bool {
-    text.ends_with(|c: char| c.is_ascii_digit() || is_fraction_character(c))
-}
-
-fn begins_with_digit(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_digit() || is_fraction_character(c))
-}
-
-fn is_e(node: &Node) -> bool {
-    matches!(&node.kind, Kind::Name(name) if name == "e")
-}
-
-fn is_signed_number(node: &Node) -> bool {
+/// Whether it would be taken for an exponent after `^`: a number, or `(2)'`.
+fn is_exponent(node: &Node) -> bool {
     match &node.kind {
-        Kind::Number(_) => true,
-        Kind::Sum(terms) => terms.len() == 1 && is_signed_number(&terms[0].1),
-        _ => false,
+        Kind::Derivative(x) => is_numeric(x),
+        _ => is_numeric(node),
     }
 }
 
-fn is_power_of_number(node: &Node) -> bool {
-    matches!(&node.kind, Kind::Power(base, _) if matches!(base.kind, Kind::Number(_)))
+/// Two numbers side by side could be one that fell apart, and `I (B)` the value of a map I, as of the inertia.
+fn needs_star(before: &str, after: &str) -> bool {
+    let is_digit = |c: char| c.is_ascii_digit() || FRACTIONS.iter().any(|&(fraction, ..)| fraction == c);
+    let is_pseudoscalar = before.strip_suffix('I').is_some_and(|rest| !rest.ends_with(char::is_alphanumeric));
+    before.ends_with(is_digit) && after.starts_with(is_digit) || is_pseudoscalar && after.starts_with('(')
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::build::*;
+    use super::super::tests::build::*;
     use super::*;
 
     #[track_caller]
@@ -398,10 +382,9 @@ mod tests {
         check(power(x("0.1"), 2), "(0.1)²", "(0.1)^2");
         check(over(x("½"), x("½")), "½/½", "1/2/(1/2)");
         check(wedge(x("2"), x("a")), "2∧a", "2^a");
-        check(wedge(x("a"), x("2")), "wedge(a, 2)", "wedge(a, 2)");
-        check(wedge(x("a"), minus(x("2"))), "wedge(a, −2)", "wedge(a, -2)");
-        check(wedge(x("a"), power(x("2"), 2)), "a∧(2²)", "a^(2^2)");
-        check(wedge(x("e"), plus(x("a"), x("b"))), "(e)∧(a + b)", "(e)^(a + b)");
+        check(wedge(x("a"), x("2")), "a∧2", "wedge(a, 2)");
+        check(wedge(x("a"), minus(x("2"))), "a∧(−2)", "wedge(a, -2)");
+        check(wedge(x("a"), power(x("2"), 2)), "a∧2²", "wedge(a, 2^2)");
         check(product([x("1e-7"), x("a")]), "1e-7 a", "1e-7 a");
     }
 
@@ -409,6 +392,8 @@ mod tests {
     fn functions_keep_their_brackets_and_products_their_space() {
         check(call("V", [x("x"), minus(x("y"))]), "V(x, −y)", "V(x, -y)");
         check(product([x("R"), plus(x("a"), x("b"))]), "R (a + b)", "R (a + b)");
+        check(product([x("I"), plus(x("a"), x("b"))]), "I * (a + b)", "I * (a + b)");
+        check(product([call("c", []), plus(x("a"), x("b"))]), "c (a + b)", "c (a + b)");
         check(function(Named::Norm, x("a")), "norm(a)", "norm(a)");
         check(function(Named::Reverse, plus(x("a"), x("b"))), "~(a + b)", "~(a + b)");
     }

@@ -77,6 +77,7 @@ impl Reader<'_> {
     fn labelled(&self, atoms: &[Atom], rest: &[Token]) -> Option<(String, Span)> {
         let [open, argument, close, ..] = rest else { return None };
         if !self.labels
+            || open.space
             || open.lexeme != Lexeme::Sign(Sign::Open('('))
             || close.lexeme != Lexeme::Sign(Sign::Close('('))
         {
@@ -121,7 +122,8 @@ impl Reader<'_> {
             }
             let letters_alone = atoms.iter().all(|atom| self.built_in_atom(&atom.name).is_some());
             if self.names.is_open() && !letters_alone {
-                let item = if called { Item::Callable(name, usize::MAX) } else { Item::Name(name) };
+                let adjacent = called && next.is_some_and(|next| !next.space);
+                let item = if adjacent { Item::Callable(name, usize::MAX) } else { Item::Name(name) };
                 items.push(whole(item, false));
                 return Ok(());
             }

@@ -1,9 +1,10 @@
 //! The table `[initial]`: how the body stands and turns at the beginning.
 
+use super::formulas;
 use super::reader::{Form, Reader, Table, Value};
 use crate::units::Quantity;
-use polhode_ga::diagnostic::quote;
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::product::Grades;
+use polhode_ga::{Bivector, MathError, Rotor, Vector};
 use toml::de::DeValue;
 
 /// The axes in which a spin is given.
@@ -22,20 +23,28 @@ const ATTITUDES: [Form; 4] = [
     Form { field: "rotation_vector", with: &[] },
 ];
 
-const SPINS: [Form; 3] = [
+const SPINS: [Form; 4] = [
     Form { field: "plane", with: &[&["rate"]] },
     Form { field: "vector", with: &[] },
     Form { field: "bivector", with: &[] },
+    Form { field: "formula", with: &[] },
 ];
 
 /// The attitude and the spin.
 pub fn read(reader: &mut Reader, table: &Table) -> Option<(Rotor, Bivector, SpinFrame)> {
     reader.only(table, &["attitude", "spin"]);
     let attitude = reader.optional(table, "attitude", |reader, value| {
+        if let DeValue::String(_) = value.get_ref() {
+            let components = formulas::components(reader, value, Grades::EVEN, "a rotor")?;
+            return checked(reader, value, Rotor::from_components(components));
+        }
         let table = reader.table(value, "`attitude`")?;
         attitude(reader, &table)
     });
     let spin = reader.field(table, "spin", |reader, value| {
+        if let DeValue::String(_) = value.get_ref() {
+            return Some((bivector(reader, value)?, SpinFrame::Body));
+        }
         let table = reader.table(value, "`spin`")?;
         spin(reader, &table)
     });
@@ -65,7 +74,16 @@ fn attitude(reader: &mut Reader, table: &Table) -> Option<Rotor> {
         }
         _ => Rotor::from_rotation_vector(Vector(reader.quantities(value, Quantity::Angle)?)),
     };
+    checked(reader, value, rotor)
+}
+
+fn checked(reader: &mut Reader, value: &Value, rotor: Result<Rotor, MathError>) -> Option<Rotor> {
     rotor.map_err(|error| reader.report(value.span(), error.to_string())).ok()
+}
+
+/// The bivector that a formula is.
+fn bivector(reader: &mut Reader, value: &Value) -> Option<Bivector> {
+    formulas::components(reader, value, Grades::BIVECTOR, "a bivector").map(Bivector)
 }
 
 fn spin(reader: &mut Reader, table: &Table) -> Option<(Bivector, SpinFrame)> {
@@ -82,7 +100,8 @@ fn spin(reader: &mut Reader, table: &Table) -> Option<(Bivector, SpinFrame)> {
         }
         // The axial vector's dual plane has the same components.
         "vector" => Vector(reader.quantities(value, Quantity::AngularRate)?).undual(),
-        _ => Bivector(reader.quantities(value, Quantity::AngularRate)?),
+        "bivector" => Bivector(reader.quantities(value, Quantity::AngularRate)?),
+        _ => bivector(reader, value)?,
     };
     let frame = match frame? {
         Some("space") => SpinFrame::Space,
@@ -91,43 +110,25 @@ fn spin(reader: &mut Reader, table: &Table) -> Option<(Bivector, SpinFrame)> {
     Some((spin, frame))
 }
 
-/// A plane as a unit bivector: `"e1e2"`, `"-e2∧e3"`, or three numbers (e2e3, e3e1, e1e2).
+/// A plane as a unit bivector: `"e1e2"`, `"-e2∧e3"` or any other formula, or three numbers (e2e3, e3e1, e1e2).
 fn plane(reader: &mut Reader, value: &Value) -> Option<Bivector> {
-    let problem = match value.get_ref() {
-        DeValue::String(text) => match named_plane(text) {
-            Some(plane) => return Some(plane),
-            None => format!("unknown plane {}", quote(text)),
-        },
-        DeValue::Array(_) => match unit(reader.numbers(value)?) {
-            Some(plane) => return Some(plane),
-            None => "a bivector of size zero spans no plane".to_owned(),
-        },
-        _ => "a plane is a string or an array".to_owned(),
+    let components = match value.get_ref() {
+        DeValue::String(_) => bivector(reader, value)?.0,
+        DeValue::Array(_) => reader.numbers(value)?,
+        _ => {
+            let message = "a plane is a string or an array, expected one such as `\"e1e2\"` or `[0, 0, 1]`";
+            reader.report(value.span(), message);
+            return None;
+        }
     };
-    reader.report(value.span(), format!("{problem}, expected one such as `\"e1e2\"` or `[0, 0, 1]`"));
-    None
-}
-
-/// Two different basis vectors, `e1e2`, `e1∧e2` or `e1^e2`, perhaps after a minus sign.
-fn named_plane(text: &str) -> Option<Bivector> {
-    let compact: String = text.chars().filter(|c| *c != ' ').collect();
-    let (sign, name) = match compact.strip_prefix(['-', '\u{2212}']) {
-        Some(name) => (-1.0, name),
-        None => (1.0, &compact[..]),
-    };
-    let (first, rest) = basis_vector(name)?;
-    let (second, rest) = basis_vector(rest.strip_prefix(['∧', '^']).unwrap_or(rest))?;
-    let plane = first.wedge(second) * sign;
-    (rest.is_empty() && plane != Bivector::default()).then_some(plane)
-}
-
-/// `e1`, `e2` or `e3` at the beginning of the text.
-fn basis_vector(text: &str) -> Option<(Vector, &str)> {
-    ["e1", "e2", "e3"].iter().zip(0..).find_map(|(name, i)| {
-        let mut vector = Vector::default();
-        vector.0[i] = 1.0;
-        Some((vector, text.strip_prefix(name)?))
-    })
+    let plane = unit(components);
+    if plane.is_none() {
+        reader.report(
+            value.span(),
+            "a bivector of size zero spans no plane, expected one such as `\"e1e2\"` or `[0, 0, 1]`",
+        );
+    }
+    plane
 }
 
 /// The direction of finite components; scaled first, so that no square leaves the range.

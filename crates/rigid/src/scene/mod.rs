@@ -3,6 +3,10 @@
 //! ```toml
 //! title = "optional text"
 //!
+//! [define]                   # optional: names and functions for formulas, in which numbers may have units
+//! "θ" = "30 deg"
+//! "unit(B)" = "B/norm(B)"
+//!
 //! [body]                     # exactly one of: mesh, solid, moments, inertia
 //! solid = "box"              # box lengths; ellipsoid semi_axes; sphere radius; cylinder radius, height; …
 //! lengths = ["10 cm", "5 cm", "2 cm"]
@@ -14,7 +18,8 @@
 //! [initial]
 //! attitude = { plane = "e1e2", angle = "30 deg" }  # or rotor = [4]; quaternion = [4], order = "wxyz";
 //!                                                  # rotation_vector = [3]; the identity if left out
-//! spin = { plane = "e2e3", rate = "5 rev/s" }      # or vector = [3]; bivector = [3]; frame = "space"
+//!                                                  # or attitude = "exp(-θ/2 e1∧e2)", a formula
+//! spin = { plane = "e2e3", rate = "5 rev/s" }      # or vector = [3]; bivector = [3]; formula = "…"; frame = "space"
 //!
 //! [gravity]                  # optional: along −e3 of space, the body held at a fixed point
 //! acceleration = "9.81 m/s^2"
@@ -37,6 +42,7 @@ mod body;
 mod build;
 #[cfg(test)]
 mod file_tests;
+mod formulas;
 mod initial;
 mod reader;
 mod run;
@@ -47,6 +53,7 @@ use crate::units::Quantity;
 pub use body::BodySpec;
 pub use initial::SpinFrame;
 use polhode_ga::diagnostic::Diagnostic;
+use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Rotor, Vector};
 use reader::{Reader, Table, Value};
 pub use run::Run;
@@ -54,7 +61,7 @@ use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 /// A larger file is no scene.
 const LARGEST_FILE: u64 = 10_000_000;
@@ -165,7 +172,12 @@ impl Scene {
 }
 
 fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
-    reader.only(root, &["title", "body", "initial", "gravity", "run"]);
+    reader.only(root, &["title", "define", "body", "initial", "gravity", "run"]);
+    reader.optional(root, "define", |reader, value| {
+        let table = reader.table(value, "[define]")?;
+        formulas::read(reader, &table);
+        Some(())
+    });
     let title = reader.optional(root, "title", |reader, value| reader.string(value).map(str::to_owned));
     let body = section(reader, root, "body", "[body]").and_then(|table| body::read(reader, &table));
     let initial =
@@ -200,7 +212,10 @@ fn gravity(reader: &mut Reader, value: &Value) -> Option<Gravity> {
     reader.only(&table, &["acceleration", "pivot"]);
     let acceleration =
         reader.field(&table, "acceleration", |reader, value| reader.quantity(value, Quantity::Acceleration));
-    let pivot = reader.optional(&table, "pivot", |reader, value| reader.quantities(value, Quantity::Length));
+    let pivot = reader.optional(&table, "pivot", |reader, value| match value.get_ref() {
+        DeValue::String(_) => formulas::components(reader, value, Grades(0b0010), "a vector"),
+        _ => reader.quantities(value, Quantity::Length),
+    });
     Some(Gravity { acceleration: acceleration?, pivot: Vector(pivot?.unwrap_or_default()) })
 }
 

@@ -1,5 +1,6 @@
 //! Walks a TOML tree and collects everything that is wrong with it.
 
+use super::formulas::Formulas;
 use crate::units::{self, Quantity};
 use polhode_ga::diagnostic::{alternatives, list, nearest, quote};
 use std::ops::Range;
@@ -43,10 +44,13 @@ impl Form {
     }
 }
 
-/// What is wrong so far, with the bytes of the file that show it.
+/// Reads a file.
 #[derive(Default)]
 pub struct Reader {
+    /// What is wrong so far, with the bytes of the file that show it.
     pub problems: Vec<(Range<usize>, String)>,
+    /// What formulas may use.
+    pub formulas: Formulas,
 }
 
 impl Reader {

@@ -48,6 +48,7 @@ fn mistakes_are_named_and_pointed_at() {
         ("exp B", "write its argument in brackets", "exp"),
         ("exp(a, b)", "takes 1 argument, got 2", "exp(a, b)"),
         ("cross(a)", "takes 2 arguments, got 1", "cross(a)"),
+        ("wedge(a)", "takes 2 arguments or more, got 1", "wedge(a)"),
         ("inertia", "is a linear map", "inertia"),
         ("inertia(a)", "needs a bivector (grade 2); this has grade 1", "a"),
         ("inertia(a b)", "take its part `⟨…⟩_2`", "a b"),

@@ -2,7 +2,9 @@
 
 use super::*;
 
+pub(super) mod build;
 mod errors;
+mod laws;
 
 /// Names of every kind.
 pub(super) fn names() -> Names {

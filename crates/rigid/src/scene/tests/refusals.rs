@@ -29,11 +29,12 @@ fn everything_wrong_with_a_file_is_reported_in_its_order() {
         errors(text),
         [
             "1:9: expected a string, found an integer",
-            "2:1: unknown field `tilte`, expected one of `title`, `body`, `initial`, `gravity`, `run`",
+            "2:1: unknown field `tilte`, expected one of `title`, `define`, `body`, `initial`, `gravity`, `run`",
             "3:1: missing field in [body], expected one of `density`, `mass`",
             "4:9: unknown solid `bx`, expected one of `box`, `ellipsoid`, `sphere`, `hollow_sphere`, \
              `cylinder`, `cone`, `rod`, `disc`, `torus`, `capsule`",
-            "6:8: missing field in `spin`, expected one of `plane`, `vector`, `bivector`",
+            "6:8: missing field in `spin`, expected one of `plane`, `vector`, `bivector`, \
+             `formula`",
             "7:2: unknown table `gravty`, expected `gravity`",
             "9:12: must be more than 0, found -1",
             "10:11: must be from 2 to 10000000, found 1",
@@ -136,7 +137,7 @@ fn wrong_types_and_sizes_are_named() {
             "duration = 1e305",
             "6:12: a duration of 1e305 s is too long to divide into samples",
         ),
-        ("{ vector = [0, 0, 1] }", "'fast'", "4:8: expected the table `spin`, found a string"),
+        ("{ vector = [0, 0, 1] }", "3", "4:8: expected the table `spin`, found an integer"),
         ("[run]", "[[run]]", "5:1: expected the table [run], found an array"),
     ];
     for (old, new, message) in table {
@@ -234,5 +235,47 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn formulas_are_wrong_at_a_place_of_the_file() {
+    let table = [
+        (
+            "'fast'",
+            "4:9: `fast` has no value as one name; read as letters side by side, f, a, s, t have none",
+        ),
+        ("'5 rev/s e1'", "4:8: expected a bivector, found a part of grade 1"),
+        ("'5 rev/s e1∧q'", "4:20: `q` has no value"),
+        ("'5 rev/s (e1∧e2'", "4:17: `(` is never closed"),
+        ("'e12/0'", "4:9: division by zero"),
+        ("'e12 = e21'", "4:9: an equation has no value, write one side"),
+        ("'1e+300 1e+300 e12'", "4:9: two numbers side by side"),
+        ("'1e+300*1e+300 e12'", "4:9: the value is not finite"),
+        ("{ formula = 'e1e2 + 5 s/s e1' }", "4:20: expected a bivector, found a part of grade 1"),
+    ];
+    for (spin, message) in table {
+        let found = errors_with("{ vector = [0, 0, 1] }", spin);
+        assert_eq!(found.len(), 1, "{spin}: {found:?}");
+        assert!(found[0].starts_with(message), "{spin}: {found:?}");
+    }
+    let message = "4:12: expected a rotor, found a part of grade 1";
+    assert_eq!(errors_with("spin", "attitude = '1 + e1'\nspin"), [message]);
+}
+
+#[test]
+fn definitions_are_wrong_at_their_place() {
+    let table = [
+        ("a = 'b'\nb = 1", "2:6: `b` has no value; no names have values here"),
+        ("'a b' = 1", "2:1: what is defined is a name"),
+        ("a1 = 1\na_1 = 2", "3:1: `a1` is defined twice"),
+        ("'f(x)' = 1", "2:10: expected a string, found an integer"),
+        ("'f(x)' = 'x + y'", "2:15: `y` has no value"),
+        ("'f(x)' = 'f(x)'", "2:11: `f` has no value"),
+        ("a = true", "2:5: expected a string, found a boolean"),
+    ];
+    for (text, message) in table {
+        let found = errors(&format!("[define]\n{text}\n{LEAST}"));
+        assert!(found[0].starts_with(message), "{text}: {found:?}");
     }
 }

@@ -1,22 +1,22 @@
 //! Trees by hand and at random, for tests.
 
-use super::number::Number;
-use super::print::FRACTIONS;
-use super::tree::{Kind, Named, Node, Span, Tight, Tree};
+use super::super::Number;
+use super::super::print::FRACTIONS;
+use super::super::tree::{Kind, Named, Node, Span, Tight, Tree};
 use crate::functions::Function;
 use crate::product::Grades;
 use proptest::prelude::*;
 
-pub(super) fn node(kind: Kind) -> Node {
+pub(crate) fn node(kind: Kind) -> Node {
     Node::new(kind, Span::default())
 }
 
-pub(super) fn tree(sides: impl Into<Vec<Node>>) -> Tree {
+pub(crate) fn tree(sides: impl Into<Vec<Node>>) -> Tree {
     Tree { sides: sides.into() }
 }
 
 /// A name; digits make a number, `I` and `e1` blades, `½` a half.
-pub(super) fn x(text: &str) -> Node {
+pub(crate) fn x(text: &str) -> Node {
     node(match text {
         "½" => Kind::Number(Number::ratio(1, 2).unwrap()),
         "π" => Kind::Pi,
@@ -28,64 +28,64 @@ pub(super) fn x(text: &str) -> Node {
     })
 }
 
-pub(super) fn minus(a: Node) -> Node {
+pub(crate) fn minus(a: Node) -> Node {
     node(Kind::Sum(vec![(true, a)]))
 }
 
-pub(super) fn plus(a: Node, b: Node) -> Node {
+pub(crate) fn plus(a: Node, b: Node) -> Node {
     node(Kind::Sum(vec![(false, a), (false, b)]))
 }
 
-pub(super) fn product(factors: impl Into<Vec<Node>>) -> Node {
+pub(crate) fn product(factors: impl Into<Vec<Node>>) -> Node {
     node(Kind::Product(factors.into()))
 }
 
-pub(super) fn over(a: Node, b: Node) -> Node {
+pub(crate) fn over(a: Node, b: Node) -> Node {
     node(Kind::Quotient(Box::new((a, b))))
 }
 
-pub(super) fn tight(tight: Tight, operands: impl Into<Vec<Node>>) -> Node {
+pub(crate) fn tight(tight: Tight, operands: impl Into<Vec<Node>>) -> Node {
     node(Kind::Tight(tight, operands.into()))
 }
 
-pub(super) fn wedge(a: Node, b: Node) -> Node {
+pub(crate) fn wedge(a: Node, b: Node) -> Node {
     tight(Tight::Wedge, [a, b])
 }
 
-pub(super) fn reverse(a: Node) -> Node {
+pub(crate) fn reverse(a: Node) -> Node {
     node(Kind::Reverse(Box::new(a)))
 }
 
-pub(super) fn power(a: Node, n: i32) -> Node {
+pub(crate) fn power(a: Node, n: i32) -> Node {
     node(Kind::Power(Box::new(a), n))
 }
 
-pub(super) fn part(a: Node, grades: u16) -> Node {
+pub(crate) fn part(a: Node, grades: u16) -> Node {
     node(Kind::Part(Box::new(a), Grades(grades)))
 }
 
-pub(super) fn exp(a: Node) -> Node {
+pub(crate) fn exp(a: Node) -> Node {
     node(Kind::Function(Named::Function(Function::Exp), Box::new(a)))
 }
 
-pub(super) fn function(f: Named, a: Node) -> Node {
+pub(crate) fn function(f: Named, a: Node) -> Node {
     node(Kind::Function(f, Box::new(a)))
 }
 
-pub(super) fn call(name: &str, arguments: impl Into<Vec<Node>>) -> Node {
+pub(crate) fn call(name: &str, arguments: impl Into<Vec<Node>>) -> Node {
     node(Kind::Call(name.to_owned(), arguments.into()))
 }
 
-pub(super) fn derivative(a: Node) -> Node {
+pub(crate) fn derivative(a: Node) -> Node {
     node(Kind::Derivative(Box::new(a)))
 }
 
-pub(super) fn total(index: &str, a: Node) -> Node {
+pub(crate) fn total(index: &str, a: Node) -> Node {
     node(Kind::Total(index.to_owned(), Box::new(a)))
 }
 
 /// Names of values in random trees.
-pub(super) const NAMES: [&str; 14] =
+pub(crate) const NAMES: [&str; 14] =
     ["a", "b", "B", "R", "x", "θ", "Ω_B", "a'", "f1", "f2", "f3", "a∥", "spin", "omega_body"];
 
 fn number() -> impl Strategy<Value = Node> {
@@ -121,7 +121,7 @@ fn is_number(node: &Node) -> bool {
 }
 
 /// Any part of a formula that a text can stand for.
-pub(super) fn any_node() -> impl Strategy<Value = Node> {
+pub(crate) fn any_node() -> impl Strategy<Value = Node> {
     leaf().prop_recursive(5, 40, 4, |inner| {
         let functions: Vec<Named> = Named::ALL.into_iter().filter(|f| *f != Named::Reverse).collect();
         let some = |least| proptest::collection::vec(inner.clone(), least..5);
@@ -132,9 +132,9 @@ pub(super) fn any_node() -> impl Strategy<Value = Node> {
             3 => sum.prop_map(|terms| node(Kind::Sum(terms))),
             2 => inner.clone().prop_map(minus),
             4 => some(2).prop_map(product),
-            2 => pair.clone().prop_filter_map("a ratio", |(a, b)| {
-                let ratio = matches!((&a.kind, &b.kind), (Kind::Number(_), Kind::Number(_)));
-                (!ratio).then(|| over(a, b))
+            2 => pair.clone().prop_filter_map("a fraction", |(a, b)| {
+                let numbers = matches!((&a.kind, &b.kind), (Kind::Number(_), Kind::Number(_)));
+                (!numbers).then(|| over(a, b))
             }),
             2 => (proptest::sample::select(&Tight::ALL), pair).prop_map(|(t, (a, b))| tight(t, [a, b])),
             1 => chain.prop_map(|operands| tight(Tight::Wedge, operands)),
@@ -151,6 +151,6 @@ pub(super) fn any_node() -> impl Strategy<Value = Node> {
 }
 
 /// Any formula that a text can stand for.
-pub(super) fn any_tree() -> impl Strategy<Value = Tree> {
+pub(crate) fn any_tree() -> impl Strategy<Value = Tree> {
     proptest::collection::vec(any_node(), 1..4).prop_map(tree)
 }

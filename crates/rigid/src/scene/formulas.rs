@@ -1,0 +1,213 @@
+//! The table `[define]` and the formulas of a scene.
+//!
+//! ```toml
+//! [define]
+//! "θ" = "30 deg"
+//! n = "cos(θ) e1 + sin(θ) e3"
+//! "plane(a)" = "dual(a)/norm(a)"
+//!
+//! [initial]
+//! spin = "5 rev/s plane(n)"
+//! ```
+
+use super::reader::{Reader, Table, Value};
+use crate::units;
+use polhode_ga::Graded;
+use polhode_ga::formula::{
+    Error, Given, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading, parse,
+};
+use polhode_ga::product::Grades;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::de::DeValue;
+
+/// What the formulas of a scene may use.
+#[derive(Default)]
+pub struct Formulas {
+    names: Names,
+    values: BTreeMap<String, Graded>,
+}
+
+/// What is wrong with a formula, and where in its text, in bytes.
+struct Wrong {
+    message: String,
+    span: Range<usize>,
+}
+
+impl From<Error> for Wrong {
+    fn from(error: Error) -> Wrong {
+        Wrong { message: error.message, span: error.span.start..error.span.end }
+    }
+}
+
+/// Reads `[define]`: values and functions, each of which may use those before it.
+pub fn read(reader: &mut Reader, table: &Table) {
+    let mut fields: Vec<_> = table.fields.iter().collect();
+    fields.sort_by_key(|(key, _)| key.span().start);
+    for (key, value) in fields {
+        let head: &str = key.get_ref();
+        let Ok((name, parameters)) = heading(head) else {
+            let message = "what is defined is a name, `θ`, or a function in quotes, `\"V(x)\"`";
+            reader.report(key.span(), message);
+            continue;
+        };
+        if reader.formulas.names.get(&name).is_some() {
+            reader.report(key.span(), format!("`{name}` is defined twice"));
+        } else if parameters.is_empty() {
+            if let Some(defined) = value_of(reader, value) {
+                reader.formulas.bind(name, defined);
+            }
+        } else if let Some(body) = reader.string(value) {
+            let defined = reader.formulas.define(head, body);
+            defined.unwrap_or_else(|wrong| report(reader, value, body, wrong));
+        }
+    }
+}
+
+/// The value of a number, or of a formula whose numbers may have units.
+pub fn value_of(reader: &mut Reader, value: &Value) -> Option<Graded> {
+    match value.get_ref() {
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            let number = reader.number(value)?;
+            Some(Graded::default().map(|_| number))
+        }
+        _ => {
+            let text = reader.string(value)?;
+            match reader.formulas.value(text) {
+                Ok(found) => Some(found),
+                Err(wrong) => {
+                    report(reader, value, text, wrong);
+                    None
+                }
+            }
+        }
+    }
+}
+
+/// The components that a formula has in these grades, of which it may have no others but zeros.
+pub fn components<const N: usize>(
+    reader: &mut Reader,
+    value: &Value,
+    grades: Grades,
+    what: &str,
+) -> Option<[f64; N]> {
+    let found = value_of(reader, value)?;
+    let held = |k: usize| found.with_grades(Grades(1 << k)).components().iter().any(|&x| x != 0.0);
+    let others: Vec<String> =
+        (0..4).filter(|&k| !grades.contains(k) && held(k)).map(|k| k.to_string()).collect();
+    if !others.is_empty() {
+        let s = if others.len() == 1 { "" } else { "s" };
+        reader
+            .report(value.span(), format!("expected {what}, found a part of grade{s} {}", others.join(", ")));
+        return None;
+    }
+    found.with_grades(grades).components().try_into().ok()
+}
+
+/// Reports what is wrong with a formula at its place in the file, where its text stands there as it is.
+fn report(reader: &mut Reader, value: &Value, text: &str, wrong: Wrong) {
+    let span = value.span();
+    // Quotes are one byte long, or three.
+    let quotes = span.len().saturating_sub(text.len());
+    let span = match quotes {
+        2 | 6 => span.start + quotes / 2 + wrong.span.start..span.start + quotes / 2 + wrong.span.end,
+        _ => span,
+    };
+    reader.report(span, wrong.message);
+}
+
+impl Formulas {
+    fn bind(&mut self, name: String, value: Graded) {
+        self.names.bind(name.clone(), Meaning::Value(Type::of(value.grades())));
+        self.values.insert(name, value);
+    }
+
+    fn define(&mut self, head: &str, body: &str) -> Result<(), Wrong> {
+        let source = self.source(body)?;
+        define(head, &source.text, Space::g3(), &mut self.names).map_err(|error| source.place(error.into()))
+    }
+
+    fn value(&self, text: &str) -> Result<Graded, Wrong> {
+        let source = self.source(text)?;
+        self.evaluated(&source.text).map_err(|wrong| source.place(wrong))
+    }
+
+    fn evaluated(&self, text: &str) -> Result<Graded, Wrong> {
+        let space = Space::g3();
+        let whole = 0..text.len();
+        let tree = parse(text, space, &self.names)?;
+        if tree.sides.len() > 1 {
+            return Err(Wrong {
+                message: "an equation has no value, write one side".to_owned(),
+                span: whole,
+            });
+        }
+        let program = compile(&tree, space, &self.names)?;
+        let inputs = program.inputs.iter().filter_map(|input| self.values.get(&input.name));
+        let inputs: Vec<Given> = inputs.map(|value| Given::Value(*value)).collect();
+        let failed =
+            |message: &str, Span { start, end }| Wrong { message: message.to_owned(), span: start..end };
+        let Some(runner) = Runner::new(&program) else {
+            return Err(failed("no formula of 3-d space", Span::default()));
+        };
+        let values = runner
+            .value(&inputs)
+            .map_err(|(step, error)| failed(&error.to_string(), program.steps[step].span))?;
+        let value = values[program.results[0][0]];
+        if !value.components().iter().all(|x| x.is_finite()) {
+            return Err(Wrong { message: "the value is not finite".to_owned(), span: whole });
+        }
+        Ok(value)
+    }
+
+    /// The formula with numbers in SI units for its quantities.
+    fn source(&self, text: &str) -> Result<Source, Wrong> {
+        let is_name = |word: &str| canonical(word).is_some_and(|name| self.names.get(&name).is_some());
+        let found = units::quantities(text, is_name);
+        let found = found.map_err(|error| Wrong { message: error.message, span: error.span })?;
+        let mut source = Source { text: String::new(), pieces: Vec::new() };
+        let mut at = 0;
+        for quantity in found {
+            source.push(&text[at..quantity.span.start], at..quantity.span.start, false);
+            source.push(&format!("({:?})", quantity.value).replace('e', "E"), quantity.span.clone(), true);
+            at = quantity.span.end;
+        }
+        source.push(&text[at..], at..text.len(), false);
+        Ok(source)
+    }
+}
+
+/// A formula as it is read, and where its pieces come from.
+struct Source {
+    text: String,
+    /// Where a piece ends in the text that is read, where it stood, and whether it stood there in other words.
+    pieces: Vec<(usize, Range<usize>, bool)>,
+}
+
+impl Source {
+    fn push(&mut self, piece: &str, from: Range<usize>, reworded: bool) {
+        self.text.push_str(piece);
+        self.pieces.push((self.text.len(), from, reworded));
+    }
+
+    /// The place in the text as it was written.
+    fn place(&self, wrong: Wrong) -> Wrong {
+        let written = |at: usize, end: bool| {
+            let inside =
+                |piece: &&(usize, Range<usize>, bool)| if end { at <= piece.0 } else { at < piece.0 };
+            match self.pieces.iter().find(inside) {
+                Some((_, from, true)) => {
+                    if end {
+                        from.end
+                    } else {
+                        from.start
+                    }
+                }
+                Some((last, from, false)) => from.end.saturating_sub(last - at),
+                None => self.pieces.last().map_or(0, |(_, from, _)| from.end),
+            }
+        };
+        let start = written(wrong.span.start, false);
+        Wrong { span: start..written(wrong.span.end, true).max(start), message: wrong.message }
+    }
+}

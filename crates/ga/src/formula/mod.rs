@@ -27,7 +27,6 @@ mod define;
 mod derivative;
 mod indices;
 mod lanes;
-mod lanes;
 mod latex;
 mod letters;
 mod names;

@@ -42,22 +42,24 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     return gradients
 
 
-def _by_jax(jax: Any, text: str, program: _native.Program, known: Given, places: list[int]) -> list[Multivector]:
+def _by_jax(
+    jax: Any, text: str, program: _native.Program, known: Given, places: list[int]
+) -> list[Multivector]:
     """Return the gradients; rows of a batch do not depend on each other, so their sum has them all."""
     steps = [Step(*step) for step in program.steps]
     chosen: list[Any] = [known.values[i] for i in places]
 
     def total(data: list[Any]) -> Any:
         values = list(known.values)
-        for i, x in zip(places, data, strict=True):
-            values[i] = known.values[i]._like(x)
+        for i, value, x in zip(places, chosen, data, strict=True):
+            values[i] = value._like(x)
         inputs = Given(known.algebra, known.kinds, values).inputs(program)
         result = Walk(text, steps, inputs, known.algebra).last()
-        for name, value in zip(places, chosen, strict=True):
+        for i, value in zip(places, chosen, strict=True):
             if value.shape != result.shape:
                 raise ValueError(
-                    f"the gradient by {known.kinds[name][0]}, of batch shape {value.shape}, is one for each row "
-                    f"of {result.shape}; give it that shape, or take the gradient under jax.vmap"
+                    f"each row of the formula, of shape {result.shape}, needs one of {known.kinds[i][0]} "
+                    f"to differentiate by, got shape {value.shape}; or take gradients under jax.vmap"
                 )
         return result._data.sum()
 

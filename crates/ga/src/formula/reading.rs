@@ -182,7 +182,7 @@ impl Reader<'_> {
         if name == "pi" {
             return Some(Item::Pi);
         }
-        if let Some(index) = name.strip_prefix("sum_").filter(|index| INDICES.contains(index)) {
+        if let Some(index) = name.strip_prefix("sum_").filter(|i| i.len() == 1 && INDICES.contains(i)) {
             return Some(Item::Total(Some(index.to_owned())));
         }
         let product = Tight::ALL.into_iter().find(|tight| tight.name() == name).map(Item::Product);

@@ -165,7 +165,7 @@ impl Compiler<'_> {
             }
             Kind::Function(function, x) => self.named(*function, x, span),
             Kind::Call(name, arguments) => self.call(name, arguments, span),
-            Kind::Derivative(x) => match (Derivation { left: &mut self.visits }).of(x)? {
+            Kind::Derivative(x) => match (Derivation { names: self.names, left: &mut self.visits }).of(x)? {
                 Some(x) => self.node(&x),
                 None => self.steps.constant(Number::whole(0), 0, span),
             },

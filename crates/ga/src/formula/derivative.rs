@@ -2,6 +2,8 @@
 //! have names of their own: `(R v ~R)' = R' v ~R + R v' ~R + R v ~R'`.
 
 use super::Error;
+use super::indices::is_built_in;
+use super::names::Names;
 use super::tree::{Kind, Named, Node, Tight};
 
 /// Powers above this are not written out.
@@ -13,6 +15,7 @@ pub(crate) const TOO_LONG: &str =
 
 /// The product rule. It writes each product as often as it has factors, so that what is written is counted.
 pub(crate) struct Derivation<'a> {
+    pub names: &'a Names,
     /// How many more nodes may be written.
     pub left: &'a mut usize,
 }
@@ -26,6 +29,7 @@ impl Derivation<'_> {
         let made = |kind| Node::new(kind, node.span);
         match &node.kind {
             Kind::Number(_) | Kind::Pi | Kind::Blade(_) => Ok(None),
+            Kind::Name(name) if is_built_in(name) && self.names.get(name).is_none() => Ok(None),
             Kind::Name(name) => Ok(Some(made(Kind::Name(format!("{name}'"))))),
             Kind::Sum(terms) => {
                 let mut changing = Vec::new();

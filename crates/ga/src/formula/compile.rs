@@ -140,6 +140,10 @@ impl Compiler<'_> {
             Kind::Number(number) => self.steps.constant(*number, 0, span),
             Kind::Pi => self.steps.step(Op::Pi, Type::SCALAR, span),
             Kind::Blade(generators) => self.blade(generators, span),
+            Kind::Pseudoscalar => {
+                let all: Vec<u8> = (1..=self.steps.count() as u8).collect();
+                self.blade(&all, span)
+            }
             Kind::Name(name) => self.name(name, span),
             Kind::Sum(terms) => self.sum(terms, span),
             Kind::Product(factors) => {

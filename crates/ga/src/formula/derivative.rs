@@ -4,7 +4,7 @@
 use super::Error;
 use super::indices::is_built_in;
 use super::names::Names;
-use super::tree::{Kind, Named, Node, Tight};
+use super::tree::{Kind, Named, Node};
 
 /// Powers above this are not written out.
 const MOST_FACTORS: i32 = 32;
@@ -28,7 +28,7 @@ impl Derivation<'_> {
         self.count(1, node)?;
         let made = |kind| Node::new(kind, node.span);
         match &node.kind {
-            Kind::Number(_) | Kind::Pi | Kind::Blade(_) => Ok(None),
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar => Ok(None),
             Kind::Name(name) if is_built_in(name) && self.names.get(name).is_none() => Ok(None),
             Kind::Name(name) => Ok(Some(made(Kind::Name(format!("{name}'"))))),
             Kind::Sum(terms) => {

@@ -105,6 +105,8 @@ fn indices_are_summed_or_free() {
     assert_eq!(program("ei ej = δij + I εijk ek").results.len(), 9);
     assert_eq!(program("B_i B_j − B_j B_i = −2 ε_ijk B_k").results.len(), 9);
     same(&["Σ_k f_k'", "f1' + f2' + f3'"]);
+    // Each term of a sum has the index once: it is free.
+    assert_eq!(program("(f_k + e_k) v = (e_k + f_k) v").results.len(), 3);
 }
 
 #[test]

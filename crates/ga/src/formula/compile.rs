@@ -214,19 +214,23 @@ impl Compiler<'_> {
         let Some(values) = indices.chars().map(value).collect::<Option<Vec<usize>>>() else {
             return Ok(None);
         };
-        let number = match (base, &values[..]) {
-            ("δ", [i, j]) => Number::whole(i32::from(i == j)),
-            ("ε", &[i, j, k]) => Number::whole(permutation([i, j, k])),
-            ("e", &[k]) if self.names.get(&format!("e{k}")).is_none() => {
-                return self.blade(&[k as u8], span).map(Some);
-            }
+        let primes = &name[base.len() + 1 + indices.len()..];
+        let constant = match (base, &values[..]) {
+            ("δ", [i, j]) => self.steps.constant(Number::whole(i32::from(i == j)), 0, span)?,
+            ("ε", &[i, j, k]) => self.steps.constant(Number::whole(permutation([i, j, k])), 0, span)?,
+            ("e", &[k]) if self.names.get(&format!("e{k}")).is_none() => self.blade(&[k as u8], span)?,
             _ => {
                 let digits: String = values.iter().map(usize::to_string).collect();
-                let primes = &name[base.len() + 1 + indices.len()..];
                 return self.name(&format!("{base}{digits}{primes}"), span).map(Some);
             }
         };
-        self.steps.constant(number, 0, span).map(Some)
+        match self.steps.is_constant(constant) {
+            // Its derivative, which a prime means, is 0.
+            Some((_, index)) if !primes.is_empty() => {
+                self.steps.constant(Number::whole(0), index, span).map(Some)
+            }
+            _ => Ok(Some(constant)),
+        }
     }
 
     fn sum(&mut self, terms: &[(bool, Node)], span: Span) -> Built {

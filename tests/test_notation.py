@@ -69,6 +69,25 @@ def test_matplotlib_reads_the_latex(value):
     assert mathtext.MathTextParser("path").parse(value._repr_latex_()).width > 0
 
 
+READABLE = [(value, text) for value, text, _ in SINGLE if not {"nan", "inf"} & set(text.split())]
+
+
+@pytest.mark.parametrize(("value", "text"), READABLE, ids=[text for _, text in READABLE])
+def test_formulas_read_the_text_back(value, text):
+    read = ph.formula(text, algebra=value.algebra)({"x": x, "y": y})
+    if value.dtype == object and text.strip("0123456789 +-/eI") != "":
+        assert (read - value).map(sympy.simplify) == 0
+    else:  # eight digits
+        assert read.is_close(value.astype(float), rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    "value", [2 * e1 + 3 * e2 * e3, -e1 - I, 0.25 - 1.5e-7 * e3 * e1, 1e20 * I, 0 * e1, 3 - e1], ids=repr
+)
+def test_values_are_set_as_the_formulas_that_make_them(value):
+    assert value._repr_latex_() == f"${ph.formula(repr(value)).latex}$"
+
+
 def test_batches_in_latex_are_the_first_and_last_values_in_lines():
     few = ph.vector([[[1, 0, 0]], [[0, -2, 0]]])
     assert few._repr_latex_() == (

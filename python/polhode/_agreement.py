@@ -54,7 +54,9 @@ class Agreement:
         if not 0 <= rtol < math.inf:
             raise ValueError(f"rtol must be a finite number from 0 on, got {rtol!r}")
         if self.size is None:
-            raise TypeError("symbols agree exactly or not at all; substitute numbers to compare to a tolerance")
+            raise TypeError(
+                "symbols agree exactly or not at all; substitute numbers to compare to a tolerance"
+            )
         return Agreement(self.residual, self.size, rtol)
 
     def __bool__(self) -> bool:
@@ -197,7 +199,10 @@ def _size(walk: Walk, step: Step, operands: tuple[Multivector, ...], value: Mult
     size = _length(walk, value._data)
     if step.name == "map":
         matrix = walk.inputs[step.detail]
-        return _length(walk, matrix.reshape(matrix.shape[:-2] + (9,)) if step.mask != 8 else matrix[..., None]) * s[0]
+        return (
+            _length(walk, matrix.reshape(matrix.shape[:-2] + (9,)) if step.mask != 8 else matrix[..., None])
+            * s[0]
+        )
     if step.name in _STRETCHED:
         return _STRETCHED[step.name](size, *s, *(_length(walk, x._data) for x in operands[-1:]))
     return size

@@ -199,7 +199,13 @@ def described(text: str, steps: list[Step], names: list[str]) -> list[str]:
         elif step.name in ("constant", "pi"):
             shown.append(place)
         else:
-            name = names[step.detail] if step.name == "map" else step.detail if step.name == "product" else step.name
+            name = (
+                names[step.detail]
+                if step.name == "map"
+                else step.detail
+                if step.name == "product"
+                else step.name
+            )
             if step.name == "power":
                 operands.append(str(step.detail))
             shown.append(f"#{len(lines) + 1}")

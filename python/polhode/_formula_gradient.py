@@ -42,7 +42,9 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     return gradients
 
 
-def _by_jax(jax: Any, text: str, program: _native.Program, known: Given, places: list[int]) -> list[Multivector]:
+def _by_jax(
+    jax: Any, text: str, program: _native.Program, known: Given, places: list[int]
+) -> list[Multivector]:
     """Return the gradients; rows of a batch do not depend on each other, so their sum has them all."""
     steps = [Step(*step) for step in program.steps]
     chosen: list[Any] = [known.values[i] for i in places]

@@ -103,7 +103,9 @@ def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[s
     if values is None:
         return named
     if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
-        raise TypeError(f"values are keywords, or a mapping from names to values; got {type(values).__name__}")
+        raise TypeError(
+            f"values are keywords, or a mapping from names to values; got {type(values).__name__}"
+        )
     twice = [name for name in values if name in named]
     if twice:
         raise TypeError(f"{twice[0]!r} is given twice, in the mapping and as a keyword")
@@ -119,7 +121,9 @@ def _common_algebra(algebra: Any, values: dict[str, Any]) -> Any:
             if algebra is None:
                 algebra, said = own, name
             elif own is not algebra:
-                raise TypeError(f"the values belong to different algebras: {said} to {algebra}, {name} to {own}")
+                raise TypeError(
+                    f"the values belong to different algebras: {said} to {algebra}, {name} to {own}"
+                )
     return algebra_of(3) if algebra is None else algebra
 
 

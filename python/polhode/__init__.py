@@ -26,9 +26,9 @@ from polhode._values import vector as vector
 
 if TYPE_CHECKING:
     from polhode import torque as torque
+    from polhode._agreement import Agreement as Agreement
     from polhode._bodies import Body as Body
     from polhode._bodies import Inertia as Inertia
-    from polhode._agreement import Agreement as Agreement
     from polhode._formula import Formula as Formula
     from polhode._formula import evaluate as evaluate
     from polhode._formula import formula as formula
@@ -53,13 +53,13 @@ if TYPE_CHECKING:
 
 # Imported when they are first asked for: those who only multiply need not wait for mechanics.
 _LATER = {
+    "Agreement": "_agreement",
     "Body": "_bodies",
     "Inertia": "_bodies",
-    "Agreement": "_agreement",
     "Formula": "_formula",
-    "FormulaError": "_formula_error",
     "evaluate": "_formula",
     "formula": "_formula",
+    "FormulaError": "_formula_error",
     "axial": "_geometry",
     "from_axial": "_geometry",
     "split": "_geometry",

@@ -27,8 +27,8 @@ class Agreement:
     Attributes
     ----------
     residual
-        ``|lhs − rhs|``, the size of the components ``√Σ c²``: a float, or an array of the batch shape. Of more
-        than two sides, or of an equation in free indices, the one that is worst beside its size.
+        ``|lhs − rhs|``, the size of the components ``√Σ c²``: a float, or an array of the batch shape. Of
+        several pairs of sides, as in an equation in free indices, that which is worst beside its size.
     size
         Of the terms that make up the sides: of a product the product of its factors' sizes, of a sum the sum.
         So ``a∧b + b∧a = 0`` is measured by ``2|a||b|``. None for symbols.
@@ -54,9 +54,7 @@ class Agreement:
         if not 0 <= rtol < math.inf:
             raise ValueError(f"rtol must be a finite number from 0 on, got {rtol!r}")
         if self.size is None:
-            raise TypeError(
-                "symbols agree exactly or not at all; substitute numbers to compare to a tolerance"
-            )
+            raise TypeError("symbols agree identically or not; substitute numbers to compare to a tolerance")
         return Agreement(self.residual, self.size, rtol)
 
     def __bool__(self) -> bool:
@@ -99,7 +97,8 @@ def _told(holds: Any, residual: Any, size: Any) -> str:
 def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
     """Return the agreement of the steps that are sides of an equation, group by group."""
     sides = {i for group in groups for i in group}
-    values, sizes = {}, []
+    values: dict[int, Multivector] = {}
+    sizes: list[Any] = []
     for number, (step, operands, value) in enumerate(walk):
         if not walk.symbolic:
             sizes.append(_size(walk, step, operands, value, [sizes[i] for i in step.operands]))
@@ -196,15 +195,13 @@ def _size(walk: Walk, step: Step, operands: tuple[Multivector, ...], value: Mult
     rule = _RULES.get(step.name)
     if rule is not None:
         return rule(*s)
-    size = _length(walk, value._data)
     if step.name == "map":
-        matrix = walk.inputs[step.detail]
-        return (
-            _length(walk, matrix.reshape(matrix.shape[:-2] + (9,)) if step.mask != 8 else matrix[..., None])
-            * s[0]
-        )
+        return s[0] * _length(walk, walk.inputs[step.detail])
+    size = _length(walk, value._data)
+    if step.name == "power":
+        return size + abs(step.detail) * s[0]
     if step.name in _STRETCHED:
-        return _STRETCHED[step.name](size, *s, *(_length(walk, x._data) for x in operands[-1:]))
+        return _STRETCHED[step.name](size, _length(walk, operands[-1]._data), *s)
     return size
 
 
@@ -222,15 +219,14 @@ _RULES: dict[str, Callable[..., Any]] = {
     "turn": lambda s, t: s * s * t,
 }
 
-# From the size of the value, the sizes of the operands' terms, and the size of the last operand.
+# From the size of the value, that of the last operand, and those of the operands' terms.
 _STRETCHED: dict[str, Callable[..., Any]] = {
-    "divide": lambda v, s, t, b: v * 0 + s * t / (b * b),
-    "inverse": lambda v, s, a: s * v * v,
-    "exp": lambda v, s, a: v * (1 + s),
-    "log": lambda v, s, a: v + s / a,
-    "sqrt": lambda v, s, a: v * (1 + s / (a + (a == 0))),
-    "power": lambda v, s, a: v * (1 + s),
-    "sin": lambda v, s, a: v + s,
-    "cos": lambda v, s, a: v + s,
-    "tan": lambda v, s, a: v + s * (1 + v * v),
+    "divide": lambda v, b, s, t: s * t / (b * b),
+    "inverse": lambda v, a, s: v * v * s,
+    "exp": lambda v, a, s: v * (1 + s),
+    "log": lambda v, a, s: v + s / a,
+    "sqrt": lambda v, a, s: v * (1 + s / (a + (a == 0))),
+    "sin": lambda v, a, s: v + s,
+    "cos": lambda v, a, s: v + s,
+    "tan": lambda v, a, s: v + s * (1 + v * v),
 }

@@ -13,7 +13,6 @@ from polhode._agreement import Agreement, agreement
 from polhode._algebra import Algebra
 from polhode._algebra import algebra as algebra_of
 from polhode._arrays import is_float, new, rows
-from polhode._extras import optional
 from polhode._formula_error import FormulaError
 from polhode._formula_values import Given, given, kinds_of
 from polhode._multivector import Multivector
@@ -28,12 +27,13 @@ _G3 = algebra_of(3)
 class Formula:
     """A formula as on paper: ``f = ph.formula("R (x·Ω) ~R")``, then ``f(R=R, x=x, Ω=Ω)``.
 
-    Juxtaposition is the geometric product; ``∧`` (``^``), ``·`` (``|``) and ``×``, the commutator, bind tighter
-    than it. One-letter names may run together: ``RaR̃`` is ``R a ~R``.
+    Juxtaposition is the geometric product; ``∧`` (``^``), ``·`` (``|``) and ``×``, the commutator, bind
+    tighter than it. One-letter names may run together: ``RaR̃`` is ``R a ~R``.
 
-    Called with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping: multivectors,
-    rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast, coefficients are of
-    any kind; grades are checked before anything is computed. An equation evaluates to an `Agreement`.
+    Called with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping:
+    multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
+    coefficients are of any kind; grades are checked before anything is computed. An equation evaluates to an
+    `Agreement`.
 
     Made by `formula`; equal to any of the same text, algebra and definitions.
     """
@@ -46,12 +46,29 @@ class Formula:
         if not isinstance(core, _native.Formula):
             raise TypeError("a Formula is made by ph.formula(text)")
         self._core = core
-        self.__call__ = core.caller()  # type: ignore[method-assign]
+        self.__call__ = core.caller()
 
     @property
     def text(self) -> str:
         """The text as it was given."""
         return self._core.text
+
+    def __str__(self) -> str:
+        """The formula in canonical spelling, as on paper."""
+        return self._core.spelled("unicode")
+
+    @property
+    def ascii(self) -> str:
+        """The formula in ASCII spelling, but for names, which stay."""
+        return self._core.spelled("ascii")
+
+    @property
+    def latex(self) -> str:
+        """The formula as LaTeX, for mathematics mode."""
+        return self._core.spelled("latex")
+
+    def _repr_latex_(self) -> str:
+        return f"${self.latex}$"
 
     # --- what is known of it before there are values
 
@@ -95,7 +112,7 @@ class Formula:
         """
         from polhode._formula_gradient import gradient
 
-        return gradient(self, names)
+        return gradient(self._core, names)
 
     # --- the rest
 
@@ -172,7 +189,7 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
 
 def _run(program: _native.Program, inputs: list[Any]) -> Multivector:
     """Return the value of a program of 3-d space over floats, block by block."""
-    data = [x._data if isinstance(x, Multivector) else _rows_of_map(x) for x in inputs]
+    data = [x._data if isinstance(x, Multivector) else x for x in inputs]
     dtype = np.result_type(*data) if data else np.dtype(np.float64)
     batch = np.broadcast_shapes(*(x.shape[:-1] for x in data))
     (result,) = program.results[0]
@@ -182,34 +199,23 @@ def _run(program: _native.Program, inputs: list[Any]) -> Multivector:
     return Rotor._from_rows(out) if unit else Multivector._of(out, mask)
 
 
-def _rows_of_map(x: Any) -> Any:
-    """Return matrices (..., 3, 3) as rows of 9 numbers, determinants (...) as rows of one."""
-    return x.reshape(*x.shape[:-2], 9) if x.ndim > 1 and x.shape[-2:] == (3, 3) else x[..., np.newaxis]
-
-
 def described(text: str, steps: list[Step], names: list[str]) -> list[str]:
     """Return what the steps do, one line each; inputs and constants stand where they are used."""
     shown: list[str] = []
     lines: list[str] = []
     for step in steps:
         place = text[slice(*step.span)]
+        if step.name in ("input", "constant", "pi"):
+            shown.append(names[step.detail] if step.name == "input" else place)
+            continue
         operands = [shown[i] for i in step.operands]
-        if step.name == "input":
-            shown.append(names[step.detail])
-        elif step.name in ("constant", "pi"):
-            shown.append(place)
-        else:
-            name = (
-                names[step.detail]
-                if step.name == "map"
-                else step.detail
-                if step.name == "product"
-                else step.name
-            )
-            if step.name == "power":
-                operands.append(str(step.detail))
-            shown.append(f"#{len(lines) + 1}")
-            grades = ", ".join(str(k) for k in range(step.mask.bit_length()) if step.mask >> k & 1)
-            kind = "rotor" if step.unit else f"grade {grades}"
-            lines.append(f"{shown[-1]} = {name}({', '.join(operands)}): {kind}, for {place}")
+        if step.name == "power":
+            operands.append(str(step.detail))
+        name = step.detail if step.name == "product" else step.name
+        if step.name == "map":
+            name = names[step.detail]
+        grades = ", ".join(str(k) for k in range(step.mask.bit_length()) if step.mask >> k & 1)
+        shown.append(f"#{len(lines) + 1}")
+        done = f"{name}({', '.join(operands)})"
+        lines.append(f"{shown[-1]} = {done}: {'rotor' if step.unit else f'grade {grades}'}, for {place}")
     return lines

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from polhode import _native
 from polhode._arrays import is_float
 from polhode._coefficients import tell_jax
 from polhode._extras import optional
@@ -14,9 +15,6 @@ from polhode._formula_values import Given, given
 from polhode._linear import LinearMap
 from polhode._multivector import Multivector
 from polhode._walk import Step, Walk
-
-if TYPE_CHECKING:
-    from polhode import _native
 
 
 def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any]:
@@ -32,9 +30,11 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
         _require_scalar(program)
         places = [_place(program, known, name) for name in names]
         data = [x._data if isinstance(x, Multivector) else x.matrix for x in known.values]
+        if any(x.dtype == object for x in data):
+            raise TypeError("gradients are of floats; convert exact numbers with .astype(float)")
         if not all(map(is_float, data)):
             return _shaped(names, _by_jax(jax, core.text, program, known, places))
-        with jax.enable_x64(True):
+        with _doubles(jax):
             double = Given(known.algebra, known.kinds, [_of_jax(jax, x) for x in known.values])
             found = _by_jax(jax, core.text, program, double, places)
             return _shaped(names, [x._like(np.asarray(x._data, dtype=np.float64)) for x in found])
@@ -51,20 +51,27 @@ def _by_jax(
 
     def total(data: list[Any]) -> Any:
         values = list(known.values)
-        for i, x in zip(places, data, strict=True):
-            values[i] = known.values[i]._like(x)
+        for i, value, x in zip(places, chosen, data, strict=True):
+            values[i] = value._like(x)
         inputs = Given(known.algebra, known.kinds, values).inputs(program)
         result = Walk(text, steps, inputs, known.algebra).last()
-        for name, value in zip(places, chosen, strict=True):
+        for i, value in zip(places, chosen, strict=True):
             if value.shape != result.shape:
                 raise ValueError(
-                    f"the gradient by {known.kinds[name][0]}, of batch shape {value.shape}, is one for each row "
-                    f"of {result.shape}; give it that shape, or take the gradient under jax.vmap"
+                    f"each row of the formula, of shape {result.shape}, needs one of {known.kinds[i][0]} "
+                    f"to differentiate by, got shape {value.shape}; or take gradients under jax.vmap"
                 )
         return result._data.sum()
 
     slopes = jax.grad(total)([value._data for value in chosen])
     return [Multivector._of(x, value._mask, value.algebra) for x, value in zip(slopes, chosen, strict=True)]
+
+
+def _doubles(jax: Any) -> Any:
+    """Return the context in which JAX has 64 bits."""
+    if hasattr(jax, "enable_x64"):
+        return jax.enable_x64(True)
+    return optional("jax.experimental", "jax", "the gradient of a formula").enable_x64()
 
 
 def _of_jax(jax: Any, value: Any) -> Any:
@@ -76,11 +83,9 @@ def _of_jax(jax: Any, value: Any) -> Any:
 
 def _place(program: _native.Program, known: Given, name: str) -> int:
     """Return which of the values given a name stands for."""
-    from polhode._native import canonical
-
-    wanted = canonical(name)
+    wanted = _native.canonical(name)
     for i, ((other, *_), value) in enumerate(zip(known.kinds, known.values, strict=True)):
-        if canonical(other) == wanted:
+        if _native.canonical(other) == wanted:
             if isinstance(value, LinearMap):
                 raise TypeError(f"there is no gradient by {name}, which is a linear map")
             return i

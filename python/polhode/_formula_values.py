@@ -41,15 +41,16 @@ class Given:
     values: list[Multivector | LinearMap]
 
     def inputs(self, program: _native.Program) -> list[Any]:
-        """Return what a program takes, in its order: multivectors, matrices (..., 3, 3), determinants."""
+        """Return what a program takes: multivectors, and of maps matrices (..., 9), determinants (..., 1)."""
         return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
 
     def _input(self, value: Any, kind: str, grade: int) -> Any:
         if kind == "value":
             return value
         if kind == "determinant":
-            return np.asarray(value.determinant)
-        return value.matrix if grade == 1 else value.bivector_matrix
+            return np.asarray(value.determinant)[..., np.newaxis]
+        matrix = value.matrix if grade == 1 else value.bivector_matrix
+        return matrix.reshape(*matrix.shape[:-2], 9)
 
 
 def given(algebra: Any, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
@@ -103,9 +104,7 @@ def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[s
     if values is None:
         return named
     if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
-        raise TypeError(
-            f"values are keywords, or a mapping from names to values; got {type(values).__name__}"
-        )
+        raise TypeError(f"values are given as keywords or as a mapping by name, got {type(values).__name__}")
     twice = [name for name in values if name in named]
     if twice:
         raise TypeError(f"{twice[0]!r} is given twice, in the mapping and as a keyword")
@@ -121,9 +120,7 @@ def _common_algebra(algebra: Any, values: dict[str, Any]) -> Any:
             if algebra is None:
                 algebra, said = own, name
             elif own is not algebra:
-                raise TypeError(
-                    f"the values belong to different algebras: {said} to {algebra}, {name} to {own}"
-                )
+                raise TypeError(f"the values are of different algebras: {said} of {algebra}, {name} of {own}")
     return algebra_of(3) if algebra is None else algebra
 
 

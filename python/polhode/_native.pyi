@@ -14,18 +14,22 @@ __all__ = [
     "Algebra",
     "Body",
     "Buffer",
+    "Formula",
     "Inertia",
     "Multivector",
+    "Program",
     "Rotor",
     "SceneError",
     "__version__",
     "buffer",
+    "canonical",
     "describe_free",
     "diagnostic",
     "free_motion",
     "from_pauli",
     "function",
     "g3",
+    "marked",
     "methods",
     "norm",
     "product",
@@ -127,6 +131,38 @@ class Algebra:
 @final
 class Buffer: ...
 
+# A name, grades as bits, and 0 for a value, 1 for a rotor, 2 for a linear map.
+_Kind = tuple[str, int, int]
+_Step = tuple[str, tuple[int, ...], Any, int, bool, tuple[int, int]]
+
+@final
+class Formula:
+    def __new__(cls, text: str, algebra: Algebra | None, definitions: list[tuple[str, str]]) -> Formula: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def algebra(self) -> WholeAlgebra | None: ...
+    @property
+    def definitions(self) -> list[tuple[str, str]]: ...
+    def spelled(self, style: str) -> str: ...
+    def program(self, algebra: Algebra, given: list[_Kind], keywords: int) -> Program: ...
+    def caller(self) -> Callable[..., Any]: ...
+    def tree(self, algebra: Algebra, given: list[_Kind]) -> dict[str, Any]: ...
+
+@final
+class Program:
+    @property
+    def inputs(self) -> list[tuple[int, str, int]]: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def results(self) -> list[list[int]]: ...
+    @property
+    def steps(self) -> list[_Step]: ...
+    def run(self, inputs: list[Array], out: Array) -> None: ...
+
+def canonical(name: str) -> str | None: ...
+def marked(text: str, place: tuple[int, int]) -> str: ...
 def g3() -> WholeAlgebra: ...
 def buffer(bytes: int) -> Any: ...
 def product(

@@ -46,7 +46,7 @@ class Step(NamedTuple):
 class Walk:
     """The values of all steps of a program, one after the other. Errors tell the place in the text.
 
-    `inputs` are multivectors, or the matrices and determinants of maps, in the order of the program's.
+    `inputs` are multivectors, and of maps the matrices (..., 9) and determinants (..., 1).
     """
 
     def __init__(self, text: str, steps: Sequence[Step], inputs: Sequence[Any], algebra: Any) -> None:
@@ -125,8 +125,8 @@ def _map(walk: Walk, step: Step, argument: Multivector) -> Multivector:
     matrix, x = common(walk.inputs[step.detail], argument._data)
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         if x.shape[-1] == 1:
-            return Multivector._of(x * matrix[..., None], step.mask)
-        rows = [sum(matrix[..., i, j] * x[..., j] for j in range(3)) for i in range(3)]
+            return Multivector._of(x * matrix, step.mask)
+        rows = [sum(matrix[..., 3 * i + j] * x[..., j] for j in range(3)) for i in range(3)]
         return Multivector._of(walk.kind.stack(rows), step.mask)
 
 

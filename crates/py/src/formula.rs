@@ -6,7 +6,8 @@ use crate::program::{Program, characters, error};
 use crate::signature::{Algebra, g3};
 use crate::value::Object;
 use polhode_ga::formula::{
-    Kind, Meaning, Names, Node, Runner, Space, Tree, Type, canonical, compile, define, heading, parse, types,
+    Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
+    types,
 };
 use polhode_ga::product::Grades;
 use pyo3::exceptions::PyTypeError;
@@ -69,6 +70,16 @@ impl Formula {
     #[getter]
     fn definitions(&self) -> Vec<(String, String)> {
         self.definitions.clone()
+    }
+
+    /// The formula in canonical spelling, of whatever names: `unicode`, `ascii` or `latex`.
+    fn spelled(&self, py: Python<'_>, style: &str) -> PyResult<String> {
+        let (tree, _) = self.read(py, self.algebra_or_g3(py)?, Names::open())?;
+        Ok(match style {
+            "latex" => tree.latex(),
+            "ascii" => tree.text(Style::Ascii),
+            _ => tree.text(Style::Unicode),
+        })
     }
 
     /// The program for values of these kinds, in this algebra; the last `keywords` of them must be used.

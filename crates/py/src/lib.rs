@@ -36,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use crate::formula::Formula;
     #[pymodule_export]
-    use crate::program::{Program, marked};
+    use crate::program::{Program, canonical, marked};
 
     #[pymodule_export]
     use crate::pool::{Buffer, buffer};

@@ -200,3 +200,9 @@ pub(crate) fn marked(text: &str, place: Place) -> String {
     let span = Span { start: byte(place.0), end: byte(place.1) };
     formula::Error { message: String::new(), span }.shown(text)
 }
+
+/// The spelling under which a name is known, such as `Ω_B` or `a1` for `a_1`; None for what is no name.
+#[pyfunction]
+pub(crate) fn canonical(name: &str) -> Option<String> {
+    formula::canonical(name)
+}

@@ -134,7 +134,7 @@ SECTION_4 = [
     Equation("4.3, 4.4", "f_k' = ω ⨯ f_k = −I ω∧f_k = (−Iω)·f_k", "f_k' = f_k ⨯ ω", motion),
     Equation("4.4", "f_k' = (−Iω)·f_k", "f_k' = (Iω)·f_k", motion),
     Equation("4.4", "Ω_S = Iω", "Ω_S = −Iω", motion),
-    Equation("4.4", "Iω = e1∧e2", "Iω = e2∧e1", spin),
+    Equation("4.4", "Iω = +e1∧e2", "Iω = −e1∧e2", spin),
     Equation("4.5", "f_k' = R' e_k ~R + R e_k (~R)'", "f_k' = R' e_k ~R − R e_k (~R)'", motion),
     Equation("4.5", "f_k' = (R e_k ~R)'", "f_k' = (~R e_k R)'", motion),
     Equation("4.6, 4.7", "R' ~R = −R (~R)'", "R' ~R = R (~R)'", motion),

@@ -33,7 +33,6 @@ def rows(rng: np.random.Generator, pace: Pace) -> Iterator[Row]:
     yield turn_all(rng, n)
     yield exponential(rng, n)
     yield logarithm(rng, n)
-    yield formula(rng, n)
 
 
 def product(rng: np.random.Generator, n: int) -> Row:
@@ -58,7 +57,7 @@ def product(rng: np.random.Generator, n: int) -> Row:
         row.enter("numba", "f(a, b, new(a))", names, lambda c: c)
     names = {"f": formulas.product_in_blocks, "new": np.empty_like, "a": left, "b": right}
     row.enter("NumPy", "f(a, b, new(a))", names, lambda c: c)
-    _jax(row, formulas.product, left, right)
+    by_jax(row, formulas.product, left, right)
     row.enter("Pauli", "A @ B", {"A": ph.to_pauli(a), "B": ph.to_pauli(b)}, of_pauli)
     return row
 
@@ -99,7 +98,7 @@ def wedge(rng: np.random.Generator, n: int) -> Row:
         names = {"f": loops.wedge, "new": np.empty_like, "a": left, "b": right}
         row.enter("numba", "f(a, b, new(a))", names, lambda c: c)
     row.enter("NumPy", "cross(a, b)", {"cross": np.cross, "a": left, "b": right}, lambda c: c)
-    _jax(row, lambda xp, a, b: xp.cross(a, b), left, right)
+    by_jax(row, lambda xp, a, b: xp.cross(a, b), left, right)
     return row
 
 
@@ -142,8 +141,8 @@ def composition(rng: np.random.Generator, n: int) -> Row:
 
         names = {"f": loops.composition, "new": np.empty_like, "S": s, "R": r}
         row.enter("numba", "f(S, R, new(S))", names, lambda x: x)
-    _numpy(row, formulas.composition, s, r)
-    _jax(row, formulas.composition, s, r)
+    by_numpy(row, formulas.composition, s, r)
+    by_jax(row, formulas.composition, s, r)
     names = {"S": ph.to_pauli(S), "R": ph.to_pauli(R)}
     row.enter("Pauli", "S @ R", names, lambda m: rotor_of(of_pauli(m)))
     return row
@@ -174,8 +173,8 @@ def turn(rng: np.random.Generator, n: int) -> Row:
 
         names = {"f": loops.turn, "new": np.empty_like, "R": four, "v": points}
         row.enter("numba", "f(R, v, new(v))", names, lambda x: x)
-    _numpy(row, formulas.turn, four, points)
-    _jax(row, formulas.turn, four, points)
+    by_numpy(row, formulas.turn, four, points)
+    by_jax(row, formulas.turn, four, points)
     names = {"U": ph.to_pauli(R), "V": ph.to_pauli(v)}
     row.enter("Pauli", "U @ V @ U.conj().swapaxes(1, 2)", names, lambda m: of_pauli(m)[:, 1:4])
     return row
@@ -220,7 +219,7 @@ def turn_all(rng: np.random.Generator, n: int) -> Row:
         names = {"f": loops.turn_by_matrix, "new": np.empty_like, "M": M, "v": points}
         row.enter("numba", "f(M, v, new(v))", names, lambda x: x)
     row.enter("NumPy", "v @ M.T", {"M": M, "v": points}, lambda x: x)
-    _jax(row, lambda xp, M, v: v @ M.T, M, points)
+    by_jax(row, lambda xp, M, v: v @ M.T, M, points)
     names = {"U": ph.to_pauli(R), "V": ph.to_pauli(v)}
     row.enter("Pauli", "U @ V @ U.conj().T", names, lambda m: of_pauli(m)[:, 1:4])
     return row
@@ -245,8 +244,8 @@ def exponential(rng: np.random.Generator, n: int) -> Row:
 
         names = {"f": loops.exponential, "new": np.empty, "shape": (n, 4), "B": b}
         row.enter("numba", "f(B, new(shape))", names, lambda x: x)
-    _numpy(row, formulas.exponential, b)
-    _jax(row, formulas.exponential, b)
+    by_numpy(row, formulas.exponential, b)
+    by_jax(row, formulas.exponential, b)
     with row.peer("Pauli"):
         from scipy.linalg import expm
 
@@ -271,38 +270,18 @@ def logarithm(rng: np.random.Generator, n: int) -> Row:
 
         names = {"f": loops.logarithm, "new": np.empty, "shape": (n, 3), "R": r}
         row.enter("numba", "f(R, new(shape))", names, lambda x: x)
-    _numpy(row, formulas.logarithm, r)
-    _jax(row, formulas.logarithm, r)
+    by_numpy(row, formulas.logarithm, r)
+    by_jax(row, formulas.logarithm, r)
     return row
 
 
-def formula(rng: np.random.Generator, n: int) -> Row:
-    """``R v ~R + (a∧b)·c`` in one pass, where there is one."""
-    row = Row("R v ~R + (a∧b)·c", goal="6 ns", count=n, traffic=8 * 19)
-    R = ph.Rotor.random(n, rng)
-    v, a, b, c = (ph.vector(x) for x in rng.standard_normal((4, n, 3)))
-    values = {"R": R, "v": v, "a": a, "b": b, "c": c}
-    with row.planned():
-        names = {"f": ph.formula("R v ~R + (a∧b)·c"), **values}
-        row.enter("polhode", "f(R=R, v=v, a=a, b=b, c=c)", names, lambda x: x.grade(1).components)
-    arrays = [value.components for value in values.values()]
-    with row.peer("numba"):
-        import loops
-
-        names = {"f": loops.turn_and_contract, "new": np.empty_like, "x": arrays}
-        row.enter("numba", "f(*x, new(x[1]))", names, lambda x: x)
-    _numpy(row, formulas.turn_and_contract, *arrays)
-    _jax(row, formulas.turn_and_contract, *arrays)
-    return row
-
-
-def _numpy(row: Row, function: Any, *arrays: Any) -> None:
+def by_numpy(row: Row, function: Any, *arrays: Any) -> None:
     """Enter explicit formulas in NumPy."""
     names = {"f": function, "np": np, "x": arrays}
     row.enter("NumPy", "f(np, *x)", names, lambda x: x)
 
 
-def _jax(row: Row, function: Any, *arrays: Any) -> None:
+def by_jax(row: Row, function: Any, *arrays: Any) -> None:
     """Enter the same formulas compiled by JAX on the CPU, in double precision."""
     with row.peer("JAX"):
         import jax

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 OURS = "polhode"
+OUR_CALLS, OUR_CALLS_INTO = "calls", "calls, out="  # ours one by one, where the row is of a whole formula
 Read = Callable[[Any], Any]
 
 
@@ -53,6 +54,8 @@ class Row:
         ``"ns"``, ``"us"`` or ``"ms"``.
     traffic
         Bytes per result that memory must move, inputs and outputs; 0 where memory is no limit.
+    one_core
+        Whether all libraries are to be measured on one core.
     """
 
     what: str
@@ -61,6 +64,7 @@ class Row:
     unit: str = "ns"
     traffic: int = 0
     tolerance: float = 1e-12
+    one_core: bool = False
     entries: dict[str, Entry] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
     notes: dict[str, str] = field(default_factory=dict)
@@ -117,7 +121,8 @@ class Row:
 
     def ahead(self) -> float | None:
         """Return how many times longer the fastest peer takes than we do."""
-        peers = [seconds for library, seconds in self.seconds.items() if library != OURS]
+        ours = (OURS, OUR_CALLS, OUR_CALLS_INTO)
+        peers = [seconds for library, seconds in self.seconds.items() if library not in ours]
         return min(peers) / self.seconds[OURS] if peers and OURS in self.seconds else None
 
 

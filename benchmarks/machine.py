@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 import platform
 import subprocess
+import sys
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -29,6 +32,7 @@ PEERS = [
 ]
 
 ROOT = Path(__file__).parent.parent
+PINS = Path("/proc/self/task").is_dir() and hasattr(os, "sched_setaffinity")  # see `on_one_core`
 
 
 def describe() -> dict[str, str]:
@@ -49,6 +53,29 @@ def describe() -> dict[str, str]:
 def cores() -> int:
     """Return the number of cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def on_one_core() -> Iterator[None]:
+    """All threads of this process, those that libraries keep and those to come, share one core."""
+    allowed = os.sched_getaffinity(0)
+    _pin({min(allowed)})
+    numba = sys.modules.get("numba")
+    threads = numba.get_num_threads() if numba else 0
+    if numba:  # it would share the rows among as many threads as before
+        numba.set_num_threads(1)
+    try:
+        yield
+    finally:
+        if numba:
+            numba.set_num_threads(threads)
+        _pin(allowed)
+
+
+def _pin(cores: set[int]) -> None:
+    for thread in Path("/proc/self/task").iterdir():
+        with suppress(ProcessLookupError):  # it has ended meanwhile
+            os.sched_setaffinity(int(thread.name), cores)
 
 
 def processor() -> str:

@@ -84,7 +84,8 @@ def of_clifford(value: Any) -> Any:
 
 
 @cache
-def _kingdon_algebra() -> Any:
+def kingdon_algebra() -> Any:
+    """Return kingdon's algebra of 3-d space, which keeps what it has compiled."""
     from kingdon import Algebra
 
     return Algebra(3)
@@ -95,7 +96,7 @@ def kingdon(eight: Any, kind: str = "multivector") -> Any:
     held = {"multivector": slice(None), "vector": slice(1, 4), "bivector": slice(4, 7), "bireflection": ROTOR}
     values = np.moveaxis(_to_canonical(eight), -1, 0)[held[kind]]
     data = values.tolist() if values.ndim == 1 else np.ascontiguousarray(values)
-    return getattr(_kingdon_algebra(), kind)(data)
+    return getattr(kingdon_algebra(), kind)(data)
 
 
 def of_kingdon(value: Any) -> Any:

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from contest import OURS, Row
+from contest import OUR_CALLS, OUR_CALLS_INTO, OURS, Row
 
 UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3}
 COLUMNS = [
     OURS,
+    OUR_CALLS,
+    OUR_CALLS_INTO,
     "clifford",
     "kingdon",
+    "kingdon, numba",
     "galaga",
     "gasparse",
     "SciPy",
@@ -24,8 +27,9 @@ COLUMNS = [
 LEGEND = """\
 Time per result, the best of several runs taken in turns; the results were compared before. "memory" is the
 time to move the row's inputs and outputs at the speed of NumPy's copy on all cores; "peer/ours" the fastest
-peer's time over ours. numba, NumPy and JAX are explicit formulas written by hand; Pauli is the same with 2×2
-complex matrices. A dash is what a library does not have, or see the notes."""
+peer's time over ours. "calls" are ours made one by one. numba, NumPy and JAX are explicit formulas written
+by hand; Pauli is the same with 2×2 complex matrices. A dash is what a library does not have, or see the
+notes."""
 
 
 def figure(value: float | None) -> str:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from contextlib import nullcontext
 
 import numpy as np
 
 import algebras
 import batches
+import compiled
 import imports
 import machine
 import motion
@@ -24,6 +26,7 @@ from polhode._files import write_atomically
 SECTIONS = {
     "One value": single.rows,
     "Batches": batches.rows,
+    "Formulas": compiled.rows,
     "Any signature": algebras.rows,
     "Motion": motion.rows,
     "Import, beyond NumPy": imports.rows,
@@ -35,7 +38,8 @@ def measured(rows: Iterator[Row], pace: Pace) -> list[Row]:
     """Measure each row when it is built, and let its values go before the next."""
     done = []
     for row in rows:
-        row.measure(pace)
+        with machine.on_one_core() if row.one_core else nullcontext():
+            row.measure(pace)
         row.release()
         done.append(row)
     return done

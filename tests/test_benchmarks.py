@@ -1,13 +1,16 @@
 """The benchmarks measure the same work, and say what they could not measure."""
 
 import json
+import os
 import sys
+import threading
 
 import numpy as np
 import pytest
 
 import algebras
 import batches
+import compiled
 import machine
 import report
 import single
@@ -16,7 +19,7 @@ from contest import OURS, Pace, Row
 TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS)
 
 
-@pytest.mark.parametrize("topic", [single, batches, algebras], ids=lambda topic: topic.__name__)
+@pytest.mark.parametrize("topic", [single, batches, compiled, algebras], ids=lambda topic: topic.__name__)
 def test_all_that_is_installed_agrees(topic, monkeypatch):
     # JAX starts threads, and from then on warns of every fork.
     monkeypatch.setitem(sys.modules, "jax", None)
@@ -84,6 +87,24 @@ def test_the_data_are_json():
     assert found["commit"] == "abc"
     assert found["rows"][0]["seconds"] == {OURS: 4e-9}
     assert found["rows"][0]["expressions"] == {OURS: "x + x", "NumPy": "2 * x"}
+
+
+@pytest.mark.skipif(not machine.PINS, reason="threads cannot be pinned here")
+def test_on_one_core_all_threads_are():
+    allowed, seen, go = os.sched_getaffinity(0), [], threading.Event()
+
+    def wait():
+        go.wait(60)
+        seen.append(os.sched_getaffinity(0))
+
+    before = threading.Thread(target=wait)
+    before.start()
+    with machine.on_one_core():
+        seen.append(os.sched_getaffinity(0))
+        go.set()
+        before.join()
+    assert seen == [{min(allowed)}] * 2
+    assert os.sched_getaffinity(0) == allowed
 
 
 def test_the_machine_is_described():

@@ -1,24 +1,94 @@
-"""Values as text, the way they stand on paper: ``2 e1 + 3 e2∧e3``."""
+"""Values as they stand on paper: ``2 e1 + 3 e2∧e3``, as formulas read them, and the same in LaTeX."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import re
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from polhode._generic.exact import is_symbolic
+
 _DIGITS = 8
 _SHOWN = 6
+_NEW_LINE = r" \\ "
 
 
-def one_value(components: Any, blades: Sequence[str]) -> str:
-    """Return one value as a sum of its nonzero terms, floats to 8 significant digits."""
+class _Notation(NamedTuple):
+    """How a coefficient is written, as whether a minus stands before it and what follows; and the rest.
+
+    A blade comes with the space between a coefficient and it.
+    """
+
+    coefficient: Callable[[Any], tuple[bool, str]]
+    blade: Callable[[str], tuple[str, str]]
+    more: str
+
+
+def value(name: str, data: Any, blades: Sequence[str]) -> str:
+    """Return the ``repr``: the value itself, or the first and last values of a batch."""
+    batch = tuple(data.shape[:-1])
+    array = _numbers(data)
+    if array is None:
+        basis = ", ".join(blade or "1" for blade in blades)
+        return f"{name} of shape {batch} over ({basis}):\n{data!r}"
+    if not batch:
+        return _sum(array, blades, _TEXT)
+    lines = ",\n ".join(_shown(array, 1, lambda row: _sum(row, blades, _TEXT), _TEXT.more))
+    return f"{name} of shape {batch}:\n[{lines}]"
+
+
+def latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
+    """Return the same for notebooks; None where there are no numbers to show, and the text is shown."""
+    array = _numbers(data)
+    return None if array is None else _displayed(name, array, 1, lambda row: _sum(row, blades, _LATEX))
+
+
+def matrix_latex(name: str, matrices: Any) -> str:
+    """Return matrices (..., 3, 3) for notebooks."""
+
+    def one(matrix: Any) -> str:
+        lines = [" & ".join(_signed_latex(x) for x in line) for line in matrix]
+        return rf"\begin{{pmatrix}} {_NEW_LINE.join(lines)} \end{{pmatrix}}"
+
+    return _displayed(name, matrices, 2, one)
+
+
+def _numbers(data: Any) -> Any:
+    """Return an array of NumPy, or None: traced or lazy arrays have no numbers to show."""
+    try:
+        return np.asarray(data).reshape(data.shape)
+    except Exception:  # each library has its own error
+        return None
+
+
+def _shown(array: Any, axes: int, write: Callable[[Any], str], more: str) -> list[str]:
+    """Return the first and last values of a batch, of `axes` axes each."""
+    flat = array.reshape(-1, *array.shape[-axes:])
+    lines = [write(one) for one in (flat if len(flat) <= _SHOWN else flat[: _SHOWN - 1])]
+    return [*lines, more, write(flat[-1])] if len(flat) > _SHOWN else lines
+
+
+def _displayed(name: str, array: Any, axes: int, write: Callable[[Any], str]) -> str:
+    """Return a formula: of one value, or of a batch's shape and its first and last values in lines."""
+    batch = array.shape[:-axes]
+    if not batch:
+        return f"${write(array)}$"
+    lines = [rf"\text{{{name} of shape }} {batch}", *_shown(array, axes, write, _LATEX.more)]
+    return rf"$$\begin{{array}}{{l}} {_NEW_LINE.join(lines)} \end{{array}}$$"
+
+
+def _sum(components: Any, blades: Sequence[str], notation: _Notation) -> str:
+    """Return one value as a sum of its nonzero terms."""
     text = ""
     for x, blade in zip(components, blades, strict=True):
         if _is_zero(x):
             continue
-        negative, size = _sign_and_size(x)
-        term = blade if blade and size == "1" else f"{size} {blade}".rstrip()
+        negative, size = notation.coefficient(x)
+        space, element = notation.blade(blade)
+        term = size if not blade else element if size == "1" else size + space + element
         if text:
             text += f" - {term}" if negative else f" + {term}"
         else:
@@ -30,29 +100,61 @@ def _is_zero(x: Any) -> bool:
     return bool(x == 0)
 
 
+# --- text
+
+
 def _sign_and_size(x: Any) -> tuple[bool, str]:
-    """Return whether a minus stands before it, and what follows; a sum is bracketed."""
+    """Return a number or an expression as formulas are written; a sum is bracketed."""
     if isinstance(x, float | np.floating):
         return bool(x < 0), f"{abs(x):.{_DIGITS}g}"
     text = str(x)
+    if is_symbolic(x):  # whole powers are x^2 and x^-2 in formulas
+        text = re.sub(r"\*\*(?:(\d+)(?![.\d])|\((-\d+)\))", r"^\1\2", text)
     if " " in text:
         return False, f"({text})"
-    return text.startswith("-"), text.removeprefix("-")
+    return text.startswith("-"), text.lstrip("+-")
 
 
-def value(name: str, data: Any, blades: Sequence[str]) -> str:
-    """Return the ``repr``: the value itself, or the first and last values of a batch."""
-    batch = tuple(data.shape[:-1])
-    try:
-        array = np.asarray(data).reshape(data.shape)
-    except Exception:  # traced or lazy arrays have no numbers to show; each library has its own error
-        basis = ", ".join(blade or "1" for blade in blades)
-        return f"{name} of shape {batch} over ({basis}):\n{data!r}"
-    if not batch:
-        return one_value(array, blades)
-    flat = array.reshape(-1, array.shape[-1])
-    texts = [one_value(row, blades) for row in (flat if len(flat) <= _SHOWN else flat[: _SHOWN - 1])]
-    if len(flat) > _SHOWN:
-        texts += ["…", one_value(flat[-1], blades)]
-    lines = ",\n ".join(texts)
-    return f"{name} of shape {batch}:\n[{lines}]"
+_TEXT = _Notation(_sign_and_size, lambda blade: (" ", blade), "…")
+
+
+# --- LaTeX
+
+
+def _sign_and_latex(x: Any) -> tuple[bool, str]:
+    """Return a number or an expression in LaTeX; a sum is bracketed."""
+    if is_symbolic(x):
+        return _symbolic_latex(x)
+    negative, size = _sign_and_size(x)
+    if isinstance(x, Fraction) and x.denominator != 1:
+        return negative, rf"\frac{{{abs(x.numerator)}}}{{{x.denominator}}}"
+    if size in ("inf", "nan"):
+        return negative, r"\infty" if size == "inf" else r"\mathrm{NaN}"
+    digits, _, exponent = size.partition("e")
+    if not exponent:
+        return negative, size
+    power = f"10^{{{int(exponent)}}}"
+    return negative, power if digits == "1" else rf"{digits} {{\times}} {power}"
+
+
+def _symbolic_latex(x: Any) -> tuple[bool, str]:
+    import sympy
+
+    if x.is_Add or x.is_Piecewise:
+        return False, rf"\left({sympy.latex(x)}\right)"
+    negative = x.could_extract_minus_sign()
+    return negative, sympy.latex(-x if negative else x)
+
+
+def _signed_latex(x: Any) -> str:
+    negative, size = _sign_and_latex(x)
+    return f"-{size}" if negative else size
+
+
+def _blade_latex(blade: str) -> tuple[str, str]:
+    """A wedge is set close, for it binds tighter than the product with a coefficient."""
+    space = r"\," if "∧" in blade else " "
+    return space, re.sub(r"(\d)", r"_{\1}", blade).replace("∧", r"{\wedge}")
+
+
+_LATEX = _Notation(_sign_and_latex, _blade_latex, r"\vdots")

@@ -237,6 +237,11 @@ class LinearMap:
         batch = f", shape {self.shape}" if self.shape else ""
         return f"LinearMap of {_NAMES[self.grade]}{batch}, matrix\n{self.matrix!r}"
 
+    def _repr_latex_(self) -> str:
+        from polhode import _format
+
+        return _format.matrix_latex(f"{type(self).__name__} of {_NAMES[self.grade]}", self.matrix)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return LinearMap.from_matrix, (np.array(self.matrix), self.grade)
 

@@ -152,6 +152,11 @@ class Multivector(_native.Multivector):
 
         return _format.value(type(self).__name__, self._data, self.algebra._names(self._mask))
 
+    def _repr_latex_(self) -> str | None:
+        from polhode import _format
+
+        return _format.latex(type(self).__name__, self._data, self.algebra._names(self._mask))
+
     # --- the values behind the methods
 
     def _like(self, data: Any) -> Multivector:
@@ -198,6 +203,10 @@ class Multivector(_native.Multivector):
         return NotImplemented if dividend is None else dividend * self.inverse()
 
     # --- products, where they are not native
+
+    # An operator of a native type has no docstring of its own; a method in its place does, and warns.
+    __xor__ = _native.Multivector._xor
+    __or__ = _native.Multivector._or
 
     def _product(self, name: str, other: Any) -> Multivector:
         right = coerced(other, self)

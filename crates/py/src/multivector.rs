@@ -97,8 +97,12 @@ impl Multivector {
         infix_right(slf, Product::Geometric, other)
     }
 
-    /// ``A^B``, the wedge. Binds looser than ``+``: bracket it, or call `wedge`.
-    fn __xor__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    /// ``A^B``, the wedge; but Python binds ``^`` looser than ``+`` and ``*``, on paper it binds tighter.
+    ///
+    /// ``a + b ^ c`` is ``(a + b) ^ c``, and ``I * a ^ b`` is ``(I * a) ^ b``. Put brackets around it, or call
+    /// the method that the operator stands for: ``A.wedge(B)``.
+    #[pyo3(signature = (other, /))]
+    fn _xor<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
         infix(slf, Product::Wedge, other)
     }
 
@@ -106,8 +110,12 @@ impl Multivector {
         infix_right(slf, Product::Wedge, other)
     }
 
-    /// ``A|B``, the dot. Binds looser than ``+``: bracket it, or call `dot`.
-    fn __or__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+    /// ``A|B``, the dot; but Python binds ``|`` looser than ``+``, ``*`` and ``^``, on paper it binds tighter.
+    ///
+    /// ``a + b | c`` is ``(a + b) | c``, and ``a | B * c`` is ``a | (B * c)``. Put brackets around it, or call
+    /// the method that the operator stands for: ``A.dot(B)``.
+    #[pyo3(signature = (other, /))]
+    fn _or<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
         infix(slf, Product::Dot, other)
     }
 

@@ -1,7 +1,7 @@
 //! A tree to a program: names get their types, grades are inferred and checked.
 
 use super::builder::{Builder, Built};
-use super::derivative::derivative;
+use super::derivative::{Derivation, TOO_LONG};
 use super::indices::{count_indices, indexed, permutation};
 use super::names::{Definition, Meaning, Names, Type};
 use super::number::Number;
@@ -41,7 +41,7 @@ fn compiled(tree: &Tree, space: Space, names: &Names) -> Result<(Program, Types)
         names,
         types: HashMap::new(),
         frame: Frame::default(),
-        visits: 0,
+        visits: MOST_VISITS,
     };
     let free = compiler.free_indices(tree)?;
     for number in 0..compiler.steps.count().pow(free.len() as u32) {
@@ -73,6 +73,7 @@ struct Compiler<'a> {
     names: &'a Names,
     types: Types,
     frame: Frame,
+    /// How many more nodes may be looked at.
     visits: usize,
 }
 
@@ -111,13 +112,7 @@ fn shown(grades: Grades) -> String {
 
 impl Compiler<'_> {
     fn node(&mut self, node: &Node) -> Built {
-        self.visits += 1;
-        if self.visits > MOST_VISITS {
-            return Err(self.steps.error(
-                node.span,
-                "definitions and sums make this formula too long when they are written out",
-            ));
-        }
+        self.visits = self.visits.checked_sub(1).ok_or_else(|| self.steps.error(node.span, TOO_LONG))?;
         let id = self.kind(node)?;
         if self.steps.call.is_none() {
             let ty = self.steps.ty(id);
@@ -157,7 +152,7 @@ impl Compiler<'_> {
             }
             Kind::Function(function, x) => self.named(*function, x, span),
             Kind::Call(name, arguments) => self.call(name, arguments, span),
-            Kind::Derivative(x) => match derivative(x)? {
+            Kind::Derivative(x) => match (Derivation { names: self.names, left: &mut self.visits }).of(x)? {
                 Some(x) => self.node(&x),
                 None => self.steps.constant(Number::whole(0), 0, span),
             },

@@ -14,6 +14,13 @@ pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
     (some && !base.is_empty()).then_some((base, indices))
 }
 
+/// Whether a name in indices has a value of its own for each of them: `e_k`, `δ_ij`, `ε_ijk`.
+pub(crate) fn is_built_in(name: &str) -> bool {
+    let constant =
+        |(base, indices): (&str, &str)| matches!((base, indices.len()), ("e", 1) | ("δ", 2) | ("ε", 3));
+    !name.ends_with('\'') && indexed(name).is_some_and(constant)
+}
+
 /// Sums over indices that are repeated, as on paper: an index that stands twice or more in every term that has
 /// it is summed over in each, `ε_ijk e_k`; one that stands once in some term is free, `L_k = i_k ω_k`.
 pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Vec<Node> {

@@ -40,6 +40,10 @@ impl Number {
     /// What the text of a decimal number stands for; `None` if it is none, or beyond the floats.
     pub fn decimal(text: &str) -> Option<Number> {
         let value: f64 = text.parse().ok().filter(|x: &f64| x.is_finite())?;
+        if value == 0.0 {
+            let digits = text.split(['e', 'E']).next()?;
+            return (!digits.contains(|c: char| ('1'..='9').contains(&c))).then_some(Number::whole(0));
+        }
         let ratio = decimal_ratio(text).and_then(|n| n.ratio);
         Some(Number { value, ratio })
     }
@@ -149,6 +153,8 @@ mod tests {
         assert_eq!(ratio("1.5e+2"), Some((150, 1)));
         assert_eq!(ratio("1e-30"), None);
         assert_eq!(Number::decimal("1e999"), None);
+        assert_eq!(Number::decimal("1e-999"), None);
+        assert_eq!(ratio("0.0e+999"), Some((0, 1)));
         assert_eq!(Number::decimal("1e-3").unwrap().value, 0.001);
     }
 

@@ -1,7 +1,7 @@
 //! How words are read, once it is known what is bound: as one name, as a function, or as letters that stand
 //! side by side.
 
-use super::indices::{INDICES, indexed};
+use super::indices::{INDICES, indexed, is_built_in};
 use super::names::{Meaning, Names};
 use super::token::{Atom, Lexeme, Sign, Token, joined};
 use super::tree::{Named, Span, Tight};
@@ -230,7 +230,7 @@ impl Reader<'_> {
     fn is_indexed(&self, name: &str) -> bool {
         let Some((base, indices)) = indexed(name) else { return false };
         let first = format!("{base}{}{}", "1".repeat(indices.len()), &name[base.len() + 1 + indices.len()..]);
-        matches!((base, indices.len()), ("e", 1) | ("δ", 2) | ("ε", 3)) || self.names.get(&first).is_some()
+        is_built_in(name) || self.names.get(&first).is_some()
     }
 
     fn no_blade(&self, name: &str, generators: Vec<u8>, span: Span) -> Error {

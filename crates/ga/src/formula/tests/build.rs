@@ -85,8 +85,8 @@ pub(crate) fn total(index: &str, a: Node) -> Node {
 }
 
 /// Names of values in random trees.
-pub(crate) const NAMES: [&str; 14] =
-    ["a", "b", "B", "R", "x", "θ", "Ω_B", "a'", "f1", "f2", "f3", "a∥", "spin", "omega_body"];
+pub(crate) const NAMES: [&str; 16] =
+    ["a", "b", "B", "R", "x", "θ", "Ω_B", "a'", "f1", "f2", "f3", "a∥", "R(0)", "R(x)", "spin", "omega_body"];
 
 fn number() -> impl Strategy<Value = Node> {
     let whole = (0u32..2000).prop_map(|n| n.to_string());
@@ -144,6 +144,8 @@ pub(crate) fn any_node() -> impl Strategy<Value = Node> {
             1 => (proptest::sample::select(functions), inner.clone()).prop_map(|(f, a)| function(f, a)),
             1 => inner.clone().prop_map(|a| call("inertia", [a])),
             1 => inner.clone().prop_map(|a| call("V", [a])),
+            1 => inner.clone().prop_map(|a| call("I", [a])),
+            1 => Just(call("c", [])),
             1 => inner.clone().prop_map(derivative),
             1 => inner.clone().prop_map(|a| total("k", a)),
         ]

@@ -4,17 +4,15 @@ use super::build::*;
 use super::*;
 use proptest::prelude::*;
 
-/// The names that trees and texts below use.
-pub(super) fn names() -> Names {
+/// The names that trees and texts below use; `I` is a map, too, and two names look like others called.
+fn names() -> Names {
     let value = |name: &str| (name.to_owned(), Meaning::Value(Type::of(Grades::ALL)));
     let mut names = Names::new(NAMES.map(value));
     names.bind("inertia".to_owned(), Meaning::Map { grade: 2 });
+    names.bind("I".to_owned(), Meaning::Map { grade: 2 });
     names.bind("F".to_owned(), Meaning::Map { grade: 1 });
-    let square = product([x("u"), x("u")]);
-    names.bind(
-        "V".to_owned(),
-        Meaning::Function(Definition { parameters: vec!["u".to_owned()], body: square }),
-    );
+    define("c", "0.1 e3", Space::g3(), &mut names).unwrap();
+    define("V(u)", "½ u·u + c", Space::g3(), &mut names).unwrap();
     names
 }
 

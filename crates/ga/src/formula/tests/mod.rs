@@ -113,6 +113,7 @@ fn primes_are_derivatives() {
     same(&["(R v ~R)'", "R' v ~R + R v' ~R + R v ~(R')"]);
     same(&["(2v + e1)'", "2v'"]);
     same(&["(v²)'", "v'v + v v'"]);
+    assert_eq!(program("f_k' = (R e_k R̃)'").results.len(), 3);
 }
 
 #[test]

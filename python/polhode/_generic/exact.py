@@ -163,7 +163,7 @@ class Exact:
 
     @property
     def eps(self) -> float:
-        """The rounding where nothing exact is: of floats, or of mpmath's numbers among the elements."""
+        """The spacing of numbers at 1, where they are rounded."""
         return 2.0**-52 if self._context is None else float(self._context.eps)
 
     @property

@@ -93,11 +93,14 @@ fn single(runner: &Runner) {
     let [v, a, b, c] = vectors;
     let given = [Given::Value(r), v, a, b, c];
     const TIMES: usize = 1000;
-    let [ours] = best(TIMES, [&mut || {
-        for _ in 0..TIMES {
-            black_box(runner.value(black_box(&given))).expect("it has a value");
-        }
-    }]);
+    let [ours] = best(
+        TIMES,
+        [&mut || {
+            for _ in 0..TIMES {
+                black_box(runner.value(black_box(&given))).expect("it has a value");
+            }
+        }],
+    );
     println!("one value{ours:>13.1} ns");
 }
 

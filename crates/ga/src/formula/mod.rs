@@ -26,6 +26,8 @@ mod names;
 mod number;
 mod program;
 mod run;
+#[cfg(test)]
+mod run_tests;
 mod schedule;
 mod single;
 mod steps;

@@ -160,6 +160,7 @@ def _multiprecision():
 
 def _jax(**options):
     jnp = pytest.importorskip("jax.numpy")
+    ph.scalar(jnp.asarray(1.0))  # values made behind the constructors' back are known to JAX, too
     return Library("jax", module=jnp, **options)
 
 

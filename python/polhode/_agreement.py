@@ -10,6 +10,7 @@ import numpy as np
 
 from polhode import _generic
 from polhode._arrays import is_float
+from polhode._coefficients import namespace
 from polhode._generic.exact import is_multiprecision, is_zero, sqrt
 from polhode._generic.numeric import Numeric
 from polhode._multivector import Multivector
@@ -59,7 +60,7 @@ class Agreement:
 
     def __bool__(self) -> bool:
         holds = self.holds
-        return bool(holds.all() if isinstance(holds, np.ndarray) else holds)
+        return bool(namespace(self.residual).all(holds) if getattr(holds, "ndim", 0) else holds)
 
     def __repr__(self) -> str:
         try:
@@ -114,7 +115,9 @@ def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
         for d, (a, b) in zip(differences, pairs, strict=True)
     ]
     residual, size = _worst(kind, [(r, s) for r, s in found])
-    return Agreement(residual[()], size[()], _rtol(walk, differences))
+    if kind.native:
+        residual, size = residual[()], size[()]
+    return Agreement(residual, size, _rtol(walk, differences))
 
 
 def _floats(walk: Walk) -> tuple[Any, Numeric]:

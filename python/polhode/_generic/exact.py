@@ -162,6 +162,11 @@ class Exact:
         self._context = context  # of mpmath, where its numbers are among the elements
 
     @property
+    def eps(self) -> float:
+        """The spacing of numbers at 1, where they are rounded."""
+        return 2.0**-52 if self._context is None else float(self._context.eps)
+
+    @property
     def pi(self) -> Any:
         """π, to the digits of mpmath's numbers where they are among the elements."""
         return math.pi if self._context is None else +self._context.pi

@@ -41,6 +41,14 @@ impl Graded {
         Graded { components: held, grades }
     }
 
+    /// Becomes the other, field by field: a copy of the whole, right after its grades were written, would wait
+    /// for them.
+    #[inline]
+    pub(crate) fn set(&mut self, other: &Graded) {
+        self.components = other.components;
+        self.grades = other.grades;
+    }
+
     /// The components of the grades present.
     pub fn components(&self) -> &[f64] {
         &self.components[..size(self.grades)]
@@ -90,18 +98,25 @@ impl Graded {
     /// The product of a plan of G3 for the grades of the two.
     #[inline]
     pub(crate) fn multiply(&self, plan: &Plan, other: &Graded) -> Graded {
-        let mut out = Graded { components: [0.0; 8], grades: plan.grades };
+        let mut out = Graded::default();
+        self.multiply_to(plan, other, &mut out);
+        out
+    }
+
+    /// The same, to where it stays.
+    #[inline]
+    pub(crate) fn multiply_to(&self, plan: &Plan, other: &Graded, out: &mut Graded) {
+        *out = Graded { components: [0.0; 8], grades: plan.grades };
         if matches!(plan.engine, Engine::Geometric) {
             // A sum that begins with 0, as in the plan, is never −0.
             out.components = geometric(self.components, other.components).map(|x| x + 0.0);
-            return out;
+            return;
         }
         for term in &plan.terms {
             // The masks only tell the compiler that no index leaves the eight.
             out.components[term.out & 7] +=
                 f64::from(term.sign) * self.components[term.a & 7] * other.components[term.b & 7];
         }
-        out
     }
 
     /// Each component changed.

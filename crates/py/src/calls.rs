@@ -4,7 +4,6 @@
 use crate::arrays::bad;
 use crate::program::Program;
 use crate::value::{Held, Operand, operand, scalar, wrap};
-use polhode_ga::Graded;
 use polhode_ga::formula::{Given, Type};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -49,7 +48,7 @@ impl Calls {
 
     /// Keeps a call for the next time.
     pub fn keep(&self, named: &Bound<'_, PyDict>, program: Py<Program>) -> PyResult<()> {
-        let Some(types) = named.iter().map(|(_, value)| Some(single(&value)?.1)).collect() else {
+        let Some(types) = named.iter().map(|(_, value)| single(&value)).collect() else {
             return Ok(());
         };
         let order = &program.get().order;
@@ -75,21 +74,27 @@ impl Call {
         }
         let mut inputs = vec![Given::Determinant(0.0); self.places.len()];
         for (i, (name, value)) in named.iter().enumerate() {
-            let (value, ty) = single(&value)?;
-            if !name.is(&self.names[i]) || ty != self.types[i] {
+            let ty = self.types[i];
+            if !name.is(&self.names[i]) {
                 return None;
             }
-            inputs[self.places[i]] = Given::Value(value);
+            inputs[self.places[i]] = match operand(&value) {
+                Operand::Value(value, unit) if value.grades() == ty.grades && unit == ty.unit => {
+                    Given::Value(*value)
+                }
+                Operand::Number(x) if ty == Type::SCALAR => Given::Value(scalar(x)),
+                _ => return None,
+            };
         }
         Some(inputs)
     }
 }
 
-/// A single value of 3-d space over float64, or a number.
-pub(crate) fn single(value: &Bound<'_, PyAny>) -> Option<(Graded, Type)> {
+/// What a single value of 3-d space over float64, or a number, is.
+pub(crate) fn single(value: &Bound<'_, PyAny>) -> Option<Type> {
     match operand(value) {
-        Operand::Value(value, unit) => Some((*value, Type { grades: value.grades(), unit })),
-        Operand::Number(x) => Some((scalar(x), Type::SCALAR)),
+        Operand::Value(value, unit) => Some(Type { grades: value.grades(), unit }),
+        Operand::Number(_) => Some(Type::SCALAR),
         Operand::Other => None,
     }
 }

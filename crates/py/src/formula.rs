@@ -141,7 +141,7 @@ impl Formula {
         let py = named.py();
         let mut said = Vec::with_capacity(named.len());
         for (name, value) in named.iter() {
-            let Some((_, ty)) = single(&value) else { return Ok(None) };
+            let Some(ty) = single(&value) else { return Ok(None) };
             said.push((name.extract()?, ty.grades.0, ty.unit.into()));
         }
         if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {

@@ -56,10 +56,11 @@ impl Runner {
         input: impl Fn(usize) -> Given,
         wanted: impl Fn(Id) -> bool,
     ) -> Result<Vec<Graded>, (Id, MathError)> {
-        let mut values = Vec::with_capacity(self.steps.len());
-        for (id, step) in self.steps.iter().enumerate() {
-            let value = if wanted(id) { step.value(&values, &input) } else { Ok(Graded::default()) };
-            values.push(value.map_err(|error| (id, error))?);
+        // Each is computed where it stays: what was just written number by number is slow to copy.
+        let mut values = vec![Graded::default(); self.steps.len()];
+        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| wanted(*id)) {
+            let (before, rest) = values.split_at_mut(id);
+            step.value(before, &input, &mut rest[0]).map_err(|error| (id, error))?;
         }
         Ok(values)
     }
@@ -88,9 +89,14 @@ fn known<const N: usize>(numbers: [f64; N], grades: Grades) -> Result<Graded, Ma
 
 impl Ready {
     #[inline]
-    fn value(&self, values: &[Graded], input: impl Fn(usize) -> Given) -> Result<Graded, MathError> {
+    fn value(
+        &self,
+        values: &[Graded],
+        input: impl Fn(usize) -> Given,
+        out: &mut Graded,
+    ) -> Result<(), MathError> {
         let operand = |k: usize| &values[self.operands[k]];
-        Ok(match &self.work {
+        let value = match &self.work {
             Work::Input(i) => match input(*i) {
                 Given::Value(value) if value.grades() == self.grades => value,
                 other => panic!("input {i} is a value of the grades {:?}, got {other:?}", self.grades),
@@ -98,7 +104,10 @@ impl Ready {
             Work::Constant(value) => *value,
             Work::Sum(sum) => operand(0).zip(operand(1), |x, y| x + sum.sign * y),
             Work::Selection(selection) => selection.of(operand(0), self.grades),
-            Work::Product(plan) => operand(0).multiply(plan, operand(1)),
+            Work::Product(plan) => {
+                operand(0).multiply_to(plan, operand(1), out);
+                return Ok(());
+            }
             Work::Compose => {
                 let product = rotor(operand(0)).compose(rotor(operand(1))).components();
                 Graded::from_fn(self.grades, |k| product[k])
@@ -111,14 +120,14 @@ impl Ready {
                 }
                 operand(0).map(|x| x / divisor)
             }
-            Work::Exp => return known(maps::exp_one(three(operand(0))), self.grades),
-            Work::Log => return known(maps::log_one(rotor(operand(0)).components()), self.grades),
-            Work::Power(t) => return known(maps::power_one(rotor(operand(0)).components(), *t), self.grades),
-            Work::Function(f) => return applied(*f, operand(0), self.grades),
+            Work::Exp => known(maps::exp_one(three(operand(0))), self.grades)?,
+            Work::Log => known(maps::log_one(rotor(operand(0)).components()), self.grades)?,
+            Work::Power(t) => known(maps::power_one(rotor(operand(0)).components(), *t), self.grades)?,
+            Work::Function(f) => applied(*f, operand(0), self.grades)?,
             Work::Norm => Graded::from_fn(self.grades, |_| norm(operand(0).components())),
-            Work::Sin => return known(Sin::value([number(operand(0))], []), self.grades),
-            Work::Cos => return known(Cos::value([number(operand(0))], []), self.grades),
-            Work::Tan => return known(Tan::value([number(operand(0))], []), self.grades),
+            Work::Sin => known(Sin::value([number(operand(0))], []), self.grades)?,
+            Work::Cos => known(Cos::value([number(operand(0))], []), self.grades)?,
+            Work::Tan => known(Tan::value([number(operand(0))], []), self.grades)?,
             Work::Map(i) => match input(*i) {
                 Given::Matrix(m) => {
                     let [x, y, z] = three(operand(0));
@@ -127,7 +136,9 @@ impl Ready {
                 Given::Determinant(d) => operand(0).map(|x| 0.0 + x * d),
                 Given::Value(_) => panic!("input {i} is a linear map, got a value"),
             },
-        })
+        };
+        out.set(&value);
+        Ok(())
     }
 }
 

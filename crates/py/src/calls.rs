@@ -4,6 +4,7 @@
 use crate::arrays::bad;
 use crate::program::Program;
 use crate::value::{Held, Operand, operand, scalar, wrap};
+use polhode_ga::Graded;
 use polhode_ga::formula::{Given, Type};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,6 +24,9 @@ struct Call {
     /// For each name its place among the inputs.
     places: Vec<usize>,
     program: Py<Program>,
+    /// Memory for the inputs, and for the values of the steps.
+    inputs: Vec<Given>,
+    values: Vec<Graded>,
 }
 
 impl Calls {
@@ -32,11 +36,11 @@ impl Calls {
         // Nothing that Python sees is made while the calls are locked.
         let found = {
             let mut calls = self.0.lock().map_err(bad)?;
-            let place = calls.iter().enumerate().find_map(|(i, call)| Some((i, call.inputs(named)?)));
-            place.and_then(|(i, inputs)| {
+            let place = calls.iter_mut().position(|call| call.takes(named).is_some());
+            place.and_then(|i| {
                 calls[..=i].rotate_right(1);
-                let program = &calls[0].program;
-                Some(program.get().value(&inputs)?.map_err(|error| (error, program.clone_ref(py))))
+                let Call { program, inputs, values, .. } = &mut calls[0];
+                Some(program.get().value(inputs, values)?.map_err(|error| (error, program.clone_ref(py))))
             })
         };
         match found {
@@ -58,7 +62,8 @@ impl Calls {
         let names = named.keys().iter().map(Bound::unbind).collect();
         let gone = {
             let mut calls = self.0.lock().map_err(bad)?;
-            calls.insert(0, Call { names, types, places, program });
+            let inputs = vec![Given::Determinant(0.0); places.len()];
+            calls.insert(0, Call { names, types, places, program, inputs, values: Vec::new() });
             (calls.len() > KEPT).then(|| calls.pop())
         };
         drop(gone);
@@ -67,18 +72,17 @@ impl Calls {
 }
 
 impl Call {
-    /// The inputs of the program, if the names and kinds of values are those of this call.
-    fn inputs(&self, named: &Bound<'_, PyDict>) -> Option<Vec<Given>> {
+    /// Takes the values for inputs, if their names and kinds are those of this call.
+    fn takes(&mut self, named: &Bound<'_, PyDict>) -> Option<()> {
         if named.len() != self.names.len() {
             return None;
         }
-        let mut inputs = vec![Given::Determinant(0.0); self.places.len()];
         for (i, (name, value)) in named.iter().enumerate() {
             let ty = self.types[i];
             if !name.is(&self.names[i]) {
                 return None;
             }
-            inputs[self.places[i]] = match operand(&value) {
+            self.inputs[self.places[i]] = match operand(&value) {
                 Operand::Value(value, unit) if value.grades() == ty.grades && unit == ty.unit => {
                     Given::Value(*value)
                 }
@@ -86,7 +90,7 @@ impl Call {
                 _ => return None,
             };
         }
-        Some(inputs)
+        Some(())
     }
 }
 

@@ -120,13 +120,18 @@ impl Program {
         Ok(())
     }
 
-    /// The value for single values, and whether it is a rotor; `None` if it is not run here.
-    pub(crate) fn value(&self, inputs: &[Given]) -> Option<Result<(Graded, bool), RowError>> {
+    /// The value for single values, and whether it is a rotor; `None` if it is not run here. The values of the
+    /// steps are left in `values`.
+    pub(crate) fn value(
+        &self,
+        inputs: &[Given],
+        values: &mut Vec<Graded>,
+    ) -> Option<Result<(Graded, bool), RowError>> {
         let &[result] = &self.program.results.first()?[..] else { return None };
         let unit = self.program.steps[result].ty.unit;
-        let values = self.runner.as_ref()?.value(inputs);
+        let done = self.runner.as_ref()?.value_to(inputs, values);
         let failed = |(step, error)| RowError { row: 0, step, error };
-        Some(values.map(|values| (values[result], unit)).map_err(failed))
+        Some(done.map(|()| (values[result], unit)).map_err(failed))
     }
 
     /// The exception for a row without a value.

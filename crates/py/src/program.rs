@@ -58,6 +58,16 @@ impl Program {
         self.program.results.clone()
     }
 
+    /// The grades of the value as bits, its number of components, and whether it is a rotor; None for an
+    /// equation, and for an algebra whose programs are not run here.
+    #[getter]
+    fn value_type(&self) -> Option<(u16, usize, bool)> {
+        self.runner.as_ref()?;
+        let &[result] = &self.program.results.first()?[..] else { return None };
+        let ty = self.program.steps[result].ty;
+        Some((ty.grades.0, ty.grades.indices(&G3).len(), ty.unit))
+    }
+
     /// The steps.
     #[getter]
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Step<'py>>> {

@@ -46,8 +46,18 @@ impl Runner {
     /// # Panics
     /// If the inputs are not of their kinds and grades.
     pub fn value(&self, inputs: &[Given]) -> Result<Vec<Graded>, (Id, MathError)> {
+        let mut values = Vec::new();
+        self.value_to(inputs, &mut values)?;
+        Ok(values)
+    }
+
+    /// The same, in memory that may be used again and again.
+    ///
+    /// # Panics
+    /// As [`Runner::value`].
+    pub fn value_to(&self, inputs: &[Given], values: &mut Vec<Graded>) -> Result<(), (Id, MathError)> {
         assert_eq!(inputs.len(), self.inputs.len(), "a value for each input");
-        self.values(|i| inputs[i], |_| true)
+        self.values_to(values, |i| inputs[i], |_| true)
     }
 
     /// The values of the steps that are wanted; others are 0.
@@ -56,12 +66,24 @@ impl Runner {
         input: impl Fn(usize) -> Given,
         wanted: impl Fn(Id) -> bool,
     ) -> Result<Vec<Graded>, (Id, MathError)> {
-        let mut values = vec![Graded::default(); self.steps.len()];
+        let mut values = Vec::new();
+        self.values_to(&mut values, input, wanted)?;
+        Ok(values)
+    }
+
+    fn values_to(
+        &self,
+        values: &mut Vec<Graded>,
+        input: impl Fn(usize) -> Given,
+        wanted: impl Fn(Id) -> bool,
+    ) -> Result<(), (Id, MathError)> {
+        // Each is computed where it stays: what was just written number by number is slow to copy.
+        values.resize(self.steps.len(), Graded::default());
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| wanted(*id)) {
             let (before, rest) = values.split_at_mut(id);
             step.set(&mut rest[0], before, &input).map_err(|error| (id, error))?;
         }
-        Ok(values)
+        Ok(())
     }
 }
 

@@ -31,17 +31,26 @@ def main(arguments: list[str] | None = None) -> int:
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
     options = _parser().parse_args(arguments)
     try:
-        return int(options.command(options))
+        code = int(options.command(options))
+        print(end="", flush=True)
     except KeyboardInterrupt:
-        return _complain("interrupted; no file was changed", INTERRUPTED)
+        code = _complain("interrupted; no file was changed", INTERRUPTED)
     except SceneError as error:
-        return _complain(str(error), BAD_INPUT)
+        code = _complain(str(error), BAD_INPUT)
     except BrokenPipeError:
-        # The reader of our output has gone; there is nobody to tell.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        code = FAILED  # the reader of our output has gone; there is nobody to tell
     except (OSError, ValueError, ImportError, MemoryError) as error:
-        return _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+        code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+    _let_go_of_output()
+    return code
+
+
+def _let_go_of_output() -> None:
+    """Drop what cannot be written, which Python would try once more, and complain of, when it ends."""
+    try:
+        print(end="", flush=True)
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(message: str, code: int) -> int:

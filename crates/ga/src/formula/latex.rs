@@ -254,14 +254,21 @@ fn upright(letters: &str) -> String {
     if letters.len() > 1 && letters.bytes().all(|c| c.is_ascii_alphabetic()) {
         return format!("\\mathrm{{{letters}}}");
     }
-    let mut marked: Vec<String> = Vec::new();
+    let mut marked: Vec<(char, Vec<&str>)> = Vec::new();
     for c in letters.chars() {
         match (ACCENTS.iter().find(|(mark, _)| *mark == c), marked.last_mut()) {
-            (Some((_, accent)), Some(last)) => *last = format!("\\{accent}{{{last}}}"),
-            _ => marked.push(letter(c)),
+            (Some((_, accent)), Some((_, accents))) => accents.push(accent),
+            _ => marked.push((c, Vec::new())),
         }
     }
-    marked.join(" ")
+    let texts: Vec<String> = marked.into_iter().map(|(c, accents)| accented(c, &accents)).collect();
+    texts.join(" ")
+}
+
+/// A letter below accents, the first of them the lowest.
+fn accented(c: char, accents: &[&str]) -> String {
+    let above: String = accents.iter().rev().map(|accent| format!("\\{accent}{{")).collect();
+    above + &letter(c) + &"}".repeat(accents.len())
 }
 
 fn subscript(indices: &str) -> String {
@@ -356,7 +363,7 @@ mod tests {
             ("omega_body", "\\mathrm{omega}_{\\mathrm{body}}"),
             ("a∥", "a_{\\parallel}"),
             ("R(0)", "R( 0 )"),
-            ("a\u{302}_k", "\\hat{a}_{k}"),
+            ("a\u{302}\u{20d7}_k", "\\vec{\\hat{a}}_{k}"),
             ("T_a_b", "T_{a,b}"),
             ("ω''", "\\omega''"),
         ] {

@@ -178,23 +178,23 @@ def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, A
 def evaluated(text: str, program: _native.Program, known: Given) -> Any:
     """Return the value of a program for values of the kinds that it was made for."""
     inputs = known.inputs(program)
-    arrays = [x._data if isinstance(x, Multivector) else x for x in inputs]
-    results = program.results
-    equation = len(results[0]) > 1
-    if not equation and known.algebra is _G3 and all(map(is_float, arrays)):
-        return _run(program, inputs)
+    kind = program.value_type
+    if kind is not None:
+        data = [x._data if isinstance(x, Multivector) else x for x in inputs]
+        if all(map(is_float, data)):
+            return _run(program, kind, data)
     walk = Walk(text, [Step(*step) for step in program.steps], inputs, known.algebra)
-    return agreement(walk, results) if equation else walk.last()
+    results = program.results
+    return agreement(walk, results) if len(results[0]) > 1 else walk.last()
 
 
-def _run(program: _native.Program, inputs: list[Any]) -> Multivector:
+def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:
     """Return the value of a program of 3-d space over floats, block by block."""
-    data = [x._data if isinstance(x, Multivector) else x for x in inputs]
-    dtype = np.result_type(*data) if data else np.dtype(np.float64)
-    batch = np.broadcast_shapes(*(x.shape[:-1] for x in data))
-    (result,) = program.results[0]
-    _, _, _, mask, unit, _ = program.steps[result]
-    out = new((*batch, len(_G3._indices(mask))), dtype)
+    mask, size, unit = kind
+    dtypes, shapes = {x.dtype for x in data}, {x.shape[:-1] for x in data}
+    dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # of two precisions, the higher
+    batch = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+    out = new((*batch, size), dtype)
     program.run([rows(x.astype(dtype, copy=False), batch) for x in data], out)
     return Rotor._from_rows(out) if unit else Multivector._of(out, mask)
 

@@ -1,13 +1,16 @@
 //! Calls of a formula on single values. A call with the names and the kinds of values of an earlier one is
-//! known by the addresses of its names, which Python keeps once; so it costs no more than the arithmetic.
+//! known by the addresses of its names, which Python keeps once, so that little is added to the arithmetic.
+//! Linear maps are known by their addresses, too, and their matrices are at hand.
 
 use crate::arrays::bad;
 use crate::program::Program;
 use crate::value::{Held, Operand, operand, scalar, wrap};
 use polhode_ga::Graded;
-use polhode_ga::formula::{Given, Type};
+use polhode_ga::formula::{Given, InputKind, Type};
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyType};
 use std::sync::Mutex;
 
 /// So many calls of a formula are kept.
@@ -19,11 +22,19 @@ pub(crate) struct Calls(Mutex<Vec<Call>>);
 
 /// Names as the caller spells them, what they stood for, and the program for that.
 struct Call {
-    names: Vec<Py<PyAny>>,
-    types: Vec<Type>,
-    /// For each name its place among the inputs.
-    places: Vec<usize>,
+    arguments: Vec<(Py<PyAny>, Argument)>,
     program: Py<Program>,
+    /// Memory for the inputs, and for the values of the steps.
+    inputs: Vec<Given>,
+    values: Vec<Graded>,
+}
+
+/// What a name stands for.
+pub(crate) enum Argument {
+    /// A value or number, and its place among the inputs.
+    Value(Type, usize),
+    /// A linear map of vectors or bivectors, whose inputs are there.
+    Map(Py<PyAny>, u16),
 }
 
 impl Calls {
@@ -33,11 +44,11 @@ impl Calls {
         // Nothing that Python sees is made while the calls are locked.
         let found = {
             let mut calls = self.0.lock().map_err(bad)?;
-            let place = calls.iter().enumerate().find_map(|(i, call)| Some((i, call.inputs(named)?)));
-            place.and_then(|(i, inputs)| {
+            let place = calls.iter_mut().position(|call| call.takes(named).is_some());
+            place.and_then(|i| {
                 calls[..=i].rotate_right(1);
-                let program = &calls[0].program;
-                Some(program.get().value(&inputs)?.map_err(|error| (error, program.clone_ref(py))))
+                let Call { program, inputs, values, .. } = &mut calls[0];
+                Some(program.get().value(inputs, values)?.map_err(|error| (error, program.clone_ref(py))))
             })
         };
         match found {
@@ -49,17 +60,22 @@ impl Calls {
 
     /// Keeps a call for the next time.
     pub fn keep(&self, named: &Bound<'_, PyDict>, program: Py<Program>) -> PyResult<()> {
-        let Some(types) = named.iter().map(|(_, value)| Some(single(&value)?.1)).collect() else {
-            return Ok(());
-        };
-        let order = &program.get().order;
-        let places: Option<Vec<usize>> =
-            (0..named.len()).map(|i| order.iter().position(|&given| given == i)).collect();
-        let Some(places) = places else { return Ok(()) };
-        let names = named.keys().iter().map(Bound::unbind).collect();
+        let Program { order, program: steps, .. } = program.get();
+        let mut inputs = vec![Given::Determinant(0.0); order.len()];
+        let mut arguments = Vec::with_capacity(named.len());
+        for (i, (name, value)) in named.iter().enumerate() {
+            let Some(mut argument) = Argument::of(&value)? else { return Ok(()) };
+            for (place, input) in steps.inputs.iter().enumerate().filter(|(place, _)| order[*place] == i) {
+                match &mut argument {
+                    Argument::Value(_, own) => *own = place,
+                    Argument::Map(..) => inputs[place] = of_map(&value, input.kind)?,
+                }
+            }
+            arguments.push((name.unbind(), argument));
+        }
         let gone = {
             let mut calls = self.0.lock().map_err(bad)?;
-            calls.insert(0, Call { names, types, places, program });
+            calls.insert(0, Call { arguments, program, inputs, values: Vec::new() });
             (calls.len() > KEPT).then(|| calls.pop())
         };
         drop(gone);
@@ -68,28 +84,60 @@ impl Calls {
 }
 
 impl Call {
-    /// The inputs of the program, if the names and kinds of values are those of this call.
-    fn inputs(&self, named: &Bound<'_, PyDict>) -> Option<Vec<Given>> {
-        if named.len() != self.names.len() {
+    /// Takes the values for inputs, if their names and kinds are those of this call.
+    fn takes(&mut self, named: &Bound<'_, PyDict>) -> Option<()> {
+        if named.len() != self.arguments.len() {
             return None;
         }
-        let mut inputs = vec![Given::Determinant(0.0); self.places.len()];
-        for (i, (name, value)) in named.iter().enumerate() {
-            let (value, ty) = single(&value)?;
-            if !name.is(&self.names[i]) || ty != self.types[i] {
-                return None;
+        for ((name, value), (known, argument)) in named.iter().zip(&self.arguments) {
+            match (argument, operand(&value)) {
+                _ if !name.is(known) => return None,
+                (Argument::Value(ty, place), Operand::Value(value, unit))
+                    if value.grades() == ty.grades && unit == ty.unit =>
+                {
+                    self.inputs[*place] = Given::Value(*value);
+                }
+                (Argument::Value(Type::SCALAR, place), Operand::Number(x)) => {
+                    self.inputs[*place] = Given::Value(scalar(x));
+                }
+                (Argument::Map(map, _), Operand::Other) if value.is(map) => {}
+                _ => return None,
             }
-            inputs[self.places[i]] = Given::Value(value);
         }
-        Some(inputs)
+        Some(())
     }
 }
 
-/// A single value of 3-d space over float64, or a number.
-pub(crate) fn single(value: &Bound<'_, PyAny>) -> Option<(Graded, Type)> {
-    match operand(value) {
-        Operand::Value(value, unit) => Some((*value, Type { grades: value.grades(), unit })),
-        Operand::Number(x) => Some((scalar(x), Type::SCALAR)),
-        Operand::Other => None,
+impl Argument {
+    /// A single value of 3-d space over float64, a number, or a single linear map; `None` for anything else.
+    pub fn of(value: &Bound<'_, PyAny>) -> PyResult<Option<Argument>> {
+        let py = value.py();
+        match operand(value) {
+            Operand::Value(value, unit) => {
+                Ok(Some(Argument::Value(Type { grades: value.grades(), unit }, 0)))
+            }
+            Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, 0))),
+            Operand::Other => {
+                static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+                let one = value.is_instance(CLASS.import(py, "polhode._linear", "LinearMap")?)?
+                    && value.getattr(intern!(py, "shape"))?.is_empty()?;
+                let grade = || value.getattr(intern!(py, "grade"))?.extract();
+                Ok(if one { Some(Argument::Map(value.clone().unbind(), grade()?)) } else { None })
+            }
+        }
     }
+}
+
+/// The matrix or the determinant of a single linear map.
+fn of_map(map: &Bound<'_, PyAny>, kind: InputKind) -> PyResult<Given> {
+    let py = map.py();
+    let name = match kind {
+        InputKind::Determinant => {
+            return Ok(Given::Determinant(map.getattr(intern!(py, "determinant"))?.extract()?));
+        }
+        InputKind::Matrix { grade: 1 } => intern!(py, "matrix"),
+        _ => intern!(py, "bivector_matrix"),
+    };
+    let rows: [[f64; 3]; 3] = map.getattr(name)?.call_method0(intern!(py, "tolist"))?.extract()?;
+    Ok(Given::Matrix(std::array::from_fn(|i| rows[i / 3][i % 3])))
 }

@@ -1,7 +1,7 @@
 //! Formulas in Python: texts, what they mean for values of given kinds, and calls on single values.
 
 use crate::arrays::bad;
-use crate::calls::{Calls, single};
+use crate::calls::{Argument, Calls};
 use crate::program::{Program, characters, error};
 use crate::signature::{Algebra, g3};
 use crate::value::Object;
@@ -141,8 +141,11 @@ impl Formula {
         let py = named.py();
         let mut said = Vec::with_capacity(named.len());
         for (name, value) in named.iter() {
-            let Some((_, ty)) = single(&value) else { return Ok(None) };
-            said.push((name.extract()?, ty.grades.0, ty.unit.into()));
+            said.push(match Argument::of(&value)? {
+                None => return Ok(None),
+                Some(Argument::Value(ty, _)) => (name.extract()?, ty.grades.0, ty.unit.into()),
+                Some(Argument::Map(_, grade)) => (name.extract()?, grade, 2),
+            });
         }
         if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
             return Ok(None);

@@ -58,6 +58,16 @@ impl Program {
         self.program.results.clone()
     }
 
+    /// The grades of the value as bits, its number of components, and whether it is a rotor; None for an
+    /// equation, and for an algebra whose programs are not run here.
+    #[getter]
+    fn value_type(&self) -> Option<(u16, usize, bool)> {
+        self.runner.as_ref()?;
+        let &[result] = &self.program.results.first()?[..] else { return None };
+        let ty = self.program.steps[result].ty;
+        Some((ty.grades.0, ty.grades.indices(&G3).len(), ty.unit))
+    }
+
     /// The steps.
     #[getter]
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Step<'py>>> {
@@ -120,13 +130,18 @@ impl Program {
         Ok(())
     }
 
-    /// The value for single values, and whether it is a rotor; `None` if it is not run here.
-    pub(crate) fn value(&self, inputs: &[Given]) -> Option<Result<(Graded, bool), RowError>> {
+    /// The value for single values, and whether it is a rotor; `None` if it is not run here. The values of the
+    /// steps are left in `values`.
+    pub(crate) fn value(
+        &self,
+        inputs: &[Given],
+        values: &mut Vec<Graded>,
+    ) -> Option<Result<(Graded, bool), RowError>> {
         let &[result] = &self.program.results.first()?[..] else { return None };
         let unit = self.program.steps[result].ty.unit;
-        let values = self.runner.as_ref()?.value(inputs);
+        let done = self.runner.as_ref()?.value_to(inputs, values);
         let failed = |(step, error)| RowError { row: 0, step, error };
-        Some(values.map(|values| (values[result], unit)).map_err(failed))
+        Some(done.map(|()| (values[result], unit)).map_err(failed))
     }
 
     /// The exception for a row without a value.

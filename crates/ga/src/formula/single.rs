@@ -1,7 +1,7 @@
 //! A program on single values.
 
 use super::program::{Id, InputKind, Program};
-use super::steps::{Ready, Selection, Work, applied};
+use super::steps::{Ready, Selection, Sum, Work, applied};
 use crate::MathError;
 use crate::graded::Graded;
 use crate::map::Map;
@@ -46,8 +46,18 @@ impl Runner {
     /// # Panics
     /// If the inputs are not of their kinds and grades.
     pub fn value(&self, inputs: &[Given]) -> Result<Vec<Graded>, (Id, MathError)> {
+        let mut values = Vec::new();
+        self.value_to(inputs, &mut values)?;
+        Ok(values)
+    }
+
+    /// The same, in memory that may be used again and again.
+    ///
+    /// # Panics
+    /// As [`Runner::value`].
+    pub fn value_to(&self, inputs: &[Given], values: &mut Vec<Graded>) -> Result<(), (Id, MathError)> {
         assert_eq!(inputs.len(), self.inputs.len(), "a value for each input");
-        self.values(|i| inputs[i], |_| true)
+        self.values_to(values, |i| inputs[i], |_| true)
     }
 
     /// The values of the steps that are wanted; others are 0.
@@ -56,12 +66,24 @@ impl Runner {
         input: impl Fn(usize) -> Given,
         wanted: impl Fn(Id) -> bool,
     ) -> Result<Vec<Graded>, (Id, MathError)> {
-        let mut values = Vec::with_capacity(self.steps.len());
-        for (id, step) in self.steps.iter().enumerate() {
-            let value = if wanted(id) { step.value(&values, &input) } else { Ok(Graded::default()) };
-            values.push(value.map_err(|error| (id, error))?);
-        }
+        let mut values = Vec::new();
+        self.values_to(&mut values, input, wanted)?;
         Ok(values)
+    }
+
+    fn values_to(
+        &self,
+        values: &mut Vec<Graded>,
+        input: impl Fn(usize) -> Given,
+        wanted: impl Fn(Id) -> bool,
+    ) -> Result<(), (Id, MathError)> {
+        // Each is computed where it stays: what was just written number by number is slow to copy.
+        values.resize(self.steps.len(), Graded::default());
+        for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| wanted(*id)) {
+            let (before, rest) = values.split_at_mut(id);
+            step.set(&mut rest[0], before, &input).map_err(|error| (id, error))?;
+        }
+        Ok(())
     }
 }
 
@@ -87,23 +109,39 @@ fn known<const N: usize>(numbers: [f64; N], grades: Grades) -> Result<Graded, Ma
 }
 
 impl Ready {
+    /// Computes the value from those of earlier steps.
     #[inline]
-    fn value(&self, values: &[Graded], input: impl Fn(usize) -> Given) -> Result<Graded, MathError> {
+    fn set(
+        &self,
+        out: &mut Graded,
+        values: &[Graded],
+        input: impl Fn(usize) -> Given,
+    ) -> Result<(), MathError> {
         let operand = |k: usize| &values[self.operands[k]];
-        Ok(match &self.work {
+        *out = match &self.work {
             Work::Input(i) => match input(*i) {
                 Given::Value(value) if value.grades() == self.grades => value,
                 other => panic!("input {i} is a value of the grades {:?}, got {other:?}", self.grades),
             },
             Work::Constant(value) => *value,
-            Work::Sum(sum) => operand(0).zip(operand(1), |x, y| x + sum.sign * y),
+            Work::Sum(sum) => {
+                sum.set(out, operand(0), operand(1), self.grades);
+                return Ok(());
+            }
             Work::Selection(selection) => selection.of(operand(0), self.grades),
-            Work::Product(plan) => operand(0).multiply(plan, operand(1)),
+            Work::Product(plan) => {
+                out.set_product(plan, operand(0), operand(1));
+                return Ok(());
+            }
             Work::Compose => {
                 let product = rotor(operand(0)).compose(rotor(operand(1))).components();
                 Graded::from_fn(self.grades, |k| product[k])
             }
-            Work::Turn => operand(1).turned(rotor(operand(0))),
+            Work::Turn => {
+                *out = *operand(1);
+                out.turn(rotor(operand(0)));
+                return Ok(());
+            }
             Work::Divide => {
                 let divisor = number(operand(1));
                 if divisor == 0.0 {
@@ -111,14 +149,14 @@ impl Ready {
                 }
                 operand(0).map(|x| x / divisor)
             }
-            Work::Exp => return known(maps::exp_one(three(operand(0))), self.grades),
-            Work::Log => return known(maps::log_one(rotor(operand(0)).components()), self.grades),
-            Work::Power(t) => return known(maps::power_one(rotor(operand(0)).components(), *t), self.grades),
-            Work::Function(f) => return applied(*f, operand(0), self.grades),
+            Work::Exp => known(maps::exp_one(three(operand(0))), self.grades)?,
+            Work::Log => known(maps::log_one(rotor(operand(0)).components()), self.grades)?,
+            Work::Power(t) => known(maps::power_one(rotor(operand(0)).components(), *t), self.grades)?,
+            Work::Function(f) => applied(*f, operand(0), self.grades)?,
             Work::Norm => Graded::from_fn(self.grades, |_| norm(operand(0).components())),
-            Work::Sin => return known(Sin::value([number(operand(0))], []), self.grades),
-            Work::Cos => return known(Cos::value([number(operand(0))], []), self.grades),
-            Work::Tan => return known(Tan::value([number(operand(0))], []), self.grades),
+            Work::Sin => known(Sin::value([number(operand(0))], []), self.grades)?,
+            Work::Cos => known(Cos::value([number(operand(0))], []), self.grades)?,
+            Work::Tan => known(Tan::value([number(operand(0))], []), self.grades)?,
             Work::Map(i) => match input(*i) {
                 Given::Matrix(m) => {
                     let [x, y, z] = three(operand(0));
@@ -127,7 +165,20 @@ impl Ready {
                 Given::Determinant(d) => operand(0).map(|x| 0.0 + x * d),
                 Given::Value(_) => panic!("input {i} is a linear map, got a value"),
             },
-        })
+        };
+        Ok(())
+    }
+}
+
+impl Sum {
+    /// As [`Graded::zip`], in place.
+    fn set(&self, out: &mut Graded, a: &Graded, b: &Graded, grades: Grades) {
+        let (a, b) = (a.components(), b.components());
+        let held = |place: Option<usize>, c: &[f64]| place.map_or(0.0, |k| c[k]);
+        out.fill(grades, |k| {
+            let [i, j] = self.places[k];
+            held(i, a) + self.sign * held(j, b)
+        });
     }
 }
 

@@ -114,6 +114,7 @@ fn primes_are_derivatives() {
     same(&["(~R)'", "~(R')"]);
     same(&["(R v ~R)'", "R' v ~R + R v' ~R + R v ~(R')"]);
     same(&["(2v + e1)'", "2v'"]);
+    same(&["(R inertia(Ω_B) ~R)'", "R' inertia(Ω_B) ~R + R inertia(Ω_B') ~R + R inertia(Ω_B) ~(R')"]);
     same(&["(v²)'", "v'v + v v'"]);
     assert_eq!(program("f_k' = (R e_k R̃)'").results.len(), 3);
 }

@@ -4,6 +4,7 @@ Where an equation defines a name, its value is found in another way: by componen
 cosine. Rotors are rational where the numbers are, so that all but exponentials holds exactly.
 """
 
+import math
 from fractions import Fraction
 from itertools import count
 
@@ -33,7 +34,10 @@ class Numbers:
             return np.array([sympy.Symbol(f"s{next(self._made)}", real=True) for _ in range(count)])
         if self.kind == "Fraction":
             return np.array(
-                [Fraction(int(p), int(q)) for p, q in self._signed(self._rng.integers(1, 10, (count, 2)))]
+                [
+                    Fraction(int(p), int(q))
+                    for p, q in self._signed(self._rng.integers((1, 11), (11, 21), (count, 2)))
+                ]
             )
         return self._signed(self._rng.uniform(0.1, 1.0, (ROWS, count) if self.kind == "batch" else count))
 
@@ -66,19 +70,22 @@ class Numbers:
         """
         if self.kind == "SymPy":
             (t,) = self.numbers(1)
-            return ph.Rotor.from_components(
-                [(1 - t**2) / (1 + t**2), *(2 * t / (1 + t**2) * b for b in _SKEW)]
-            )
+            sine = [2 * t / (1 + t**2) * b for b in (_THIRD, 2 * _THIRD, 2 * _THIRD)]
+            return ph.Rotor.from_components([(1 - t**2) / (1 + t**2), *sine])
         q = 1 + self.bivector()
         return ph.Rotor.from_components((q * q / q.norm_squared()).components)
 
     def plane(self):
         """A unit bivector, rational where the numbers are."""
-        return ph.bivector(_SKEW) if self.kind == "SymPy" else self.rotor()(_E12)
+        if self.kind == "SymPy":
+            return ph.bivector([2 * _THIRD, -_THIRD, 2 * _THIRD])
+        return self.rotor()(_E12)
 
     @property
     def _functions(self):
-        return (sympy.cos, sympy.sin) if self.kind == "SymPy" else (np.cos, np.sin)
+        return {"SymPy": (sympy.cos, sympy.sin), "Fraction": (math.cos, math.sin)}.get(
+            self.kind, (np.cos, np.sin)
+        )
 
     def turned(self, plane, angle, X):
         """X turned by an angle in a unit plane, without an exponential: the part in the plane turns."""
@@ -93,7 +100,13 @@ class Numbers:
 
     def whole(self, count):
         """The same, but whole where they are exact: a map's matrix is of floats, and whole ones are exact."""
-        return self._signed(self._rng.integers(1, 10, count)) if self.exact else self.numbers(count)
+        if not self.exact:
+            return self.numbers(count)
+        return np.array([Fraction(int(n)) for n in self._signed(self._rng.integers(1, 10, count))])
+
+    def exactly(self, n):
+        """A whole number, of the kind."""
+        return Fraction(n) if self.exact else float(n)
 
 
 # --- section 1
@@ -152,22 +165,24 @@ def sum_of_grades(v):
 
 
 def in_plane(v):
-    """A vector of the plane e1e2, an angle, and a rotor of that plane; none by an angle over fractions."""
-    a = v.number() * ph.e1 + v.number() * ph.e2
-    if v.kind == "Fraction":
-        return {"a": a, "R": ph.Rotor.from_components([Fraction(4, 5), 0, 0, Fraction(-3, 5)])}
-    θ = v.number()
-    return {"a": a, "θ": θ, "R": v.rotation(_E12, θ)}
+    """A vector of the plane e1e2, an angle, and a rotor of that plane, rational where the numbers are."""
+    a, t = v.number() * ph.e1 + v.number() * ph.e2, v.number()
+    R = ph.Rotor.from_components(
+        np.stack([(1 - t**2) / (1 + t**2), 0 * t, 0 * t, 2 * t / (1 + t**2)], axis=-1)
+    )
+    return {"a": a, "R": R, "θ": v.number()}
 
 
 def turn(v):
-    """A turn by θ in the unit plane B, and a vector that it turns; over fractions by the matrix."""
-    a, B = v.vector(), v.plane()
-    if v.kind == "Fraction":
-        R = v.rotor()
-        return {"a": a, "B": B, "R": R, "a'": ph.vector(R.to_matrix() @ a.components)}
-    θ = v.number()
+    """A turn by θ in the unit plane B, and a vector that it turns."""
+    a, B, θ = v.vector(), v.plane(), v.number()
     return {"a": a, "B": B, "θ": θ, "R": v.rotation(B, θ), "a'": v.turned(B, θ, a)}
+
+
+def turned_vector(v):
+    """A rotor, and a vector that its matrix turns."""
+    R, a = v.rotor(), v.vector()
+    return {"R": R, "a": a, "a'": ph.vector((R.to_matrix() @ a.components[..., None])[..., 0])}
 
 
 def turned_grades(v):
@@ -224,22 +239,24 @@ def steady(v):
 def three_points(v):
     """Three masses about their centre that move as a body, of inertia ``Σ m (|x|² − x xᵀ)``."""
     first, second = v.whole(3), v.whole(3)
-    points, masses = [first, second, -2 * first - 3 * second], (2, 3, 1)
+    points, masses = [first, second, -2 * first - 3 * second], [v.exactly(m) for m in (2, 3, 1)]
     R, Ω_B, x0, v0 = v.rotor(), v.bivector(), v.vector(), v.vector()
-    matrix = sum(m * _inertia(x.astype(float)) for m, x in zip(masses, points, strict=True))
-    L = R(_bivector([sum(matrix[..., i, j] * c for j, c in enumerate(_each(Ω_B))) for i in range(3)]))
-    names = {"m": 6, "I": ph.LinearMap.from_matrix(matrix, grade=2), "A": v.bivector(), "B": v.bivector()}
-    names |= {"R": R, "Ω_B": Ω_B, "x0": x0, "v0": v0, "L": L}
-    for k, (m, x) in enumerate(zip(masses, points, strict=True), start=1):
-        x_k = ph.vector(x, dtype=object if v.exact else None)
-        names |= {f"m{k}": m, f"x{k}": x_k, f"y{k}": R(x_k) + x0}
-        names |= {f"v{k}": ph.cross(R(Ω_B).dual(), R(x_k)) + v0}
+    matrix = sum(m * _inertia(x) for m, x in zip(masses, points, strict=True))
+    L = _bivector([sum(matrix[..., i, j] * c for j, c in enumerate(_each(Ω_B))) for i in range(3)])
+    inertia = ph.LinearMap.from_matrix(matrix.astype(float), grade=2)
+    names = {"m": sum(masses), "I": inertia, "A": v.bivector(), "B": v.bivector()}
+    names |= {"R": R, "Ω_B": Ω_B, "x0": x0, "v0": v0, "L": R(L)}
+    for k, (m, x) in enumerate(zip(masses, map(ph.vector, points), strict=True), start=1):
+        names |= {f"m{k}": m, f"x{k}": x, f"y{k}": R(x) + x0}
+        names |= {f"v{k}": ph.cross(R(Ω_B).dual(), R(x)) + v0}
     return names
 
 
 def _inertia(x):
     """The matrix of a point mass 1 over axial vectors."""
-    return (x * x).sum(axis=-1)[..., None, None] * np.eye(3) - x[..., :, None] * x[..., None, :]
+    return (x * x).sum(axis=-1, keepdims=True)[..., None] * np.eye(3, dtype=int) - x[..., :, None] * x[
+        ..., None, :
+    ]
 
 
 def heavy_body(v):
@@ -269,7 +286,7 @@ def two_turns(v):
 
 def _moments(v):
     """Three different moments; a map's matrix is of floats, and whole floats are exact."""
-    return tuple(map(Fraction, (5, 7, 11))) if v.exact else tuple(1 + abs(x) for x in v.each(3))
+    return tuple(map(v.exactly, (5, 7, 11))) if v.exact else tuple(1 + abs(x) for x in v.each(3))
 
 
 def _body(v, moments, torque):
@@ -303,6 +320,6 @@ def _each(value):
     return tuple(np.moveaxis(value.components, -1, 0))
 
 
-_SKEW = [sympy.Rational(2, 3), sympy.Rational(-1, 3), sympy.Rational(2, 3)]
+_THIRD = sympy.Rational(1, 3)
 _BASIS = (ph.e1, ph.e2, ph.e3)
 _E12 = ph.e1.wedge(ph.e2)

@@ -37,7 +37,7 @@ def test_the_algebra_page_runs_and_prints_what_it_says():
 
 
 def test_there_are_scenes():
-    assert len(SCENES) == 3
+    assert len(SCENES) == 4
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ and symbols vanish identically.
 
 from functools import cache
 
+import numpy as np
 import pytest
 
 import polhode as ph
@@ -15,7 +16,7 @@ from handout_values import ROWS, Numbers
 CASES = [
     pytest.param(equation, kind, id=f"{equation.number}: {equation.text}, {kind}")
     for equation in EQUATIONS
-    for kind in equation.kinds
+    for kind in KINDS
 ]
 
 
@@ -28,22 +29,17 @@ def names_of(make, kind):
 def test_the_equation_holds(equation, kind):
     agreement = ph.evaluate(equation.text, names_of(equation.names, kind))
     assert agreement
-    if kind == "Fraction":
-        assert agreement.rtol == 0
+    if kind == "Fraction" and equation.exact:
+        assert agreement.residual == 0
 
 
 @pytest.mark.parametrize(("equation", "kind"), CASES)
 def test_a_wrong_version_does_not(equation, kind):
-    assert not ph.evaluate(equation.wrong, names_of(equation.names, kind))
+    assert not np.any(ph.evaluate(equation.wrong, names_of(equation.names, kind)).holds)
 
 
 def test_a_batch_is_told_row_by_row():
-    names = names_of(EQUATIONS[1].names, "batch")
-    assert ph.evaluate("(a∧b)∧c = a∧(b∧c)", names).holds.shape == (ROWS,)
-    assert not ph.evaluate("(a∧b)∧c = a∧(c∧b)", names).holds.any()
-
-
-def test_the_four_kinds_are_evaluated():
-    for number in {equation.number for equation in EQUATIONS} - {"2.2", "2.3", "4.14", "4.35"}:
-        kinds = {kind for equation in EQUATIONS if equation.number == number for kind in equation.kinds}
-        assert kinds == set(KINDS), number
+    a, b = ph.vector(np.ones((ROWS, 3))), ph.vector(np.arange(3.0 * ROWS).reshape(ROWS, 3))
+    agreement = ph.evaluate("a∧b = 0", a=a, b=a + b * (np.arange(ROWS) == 7.0).astype(float))
+    assert not agreement
+    assert list(np.flatnonzero(~agreement.holds)) == [7]

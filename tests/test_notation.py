@@ -13,7 +13,7 @@ import sympy
 import polhode as ph
 from polhode import I, e1, e2, e3
 
-x, y = sympy.symbols("x y")
+x, y = sympy.symbols("x y", positive=True)
 PGA = ph.algebra(3, 0, 1)
 n1, n2, n3, n0 = PGA.basis_vectors
 
@@ -67,6 +67,25 @@ def test_single_values_as_text_and_in_latex(value, text, latex):
 def test_matplotlib_reads_the_latex(value):
     mathtext = pytest.importorskip("matplotlib.mathtext")
     assert mathtext.MathTextParser("path").parse(value._repr_latex_()).width > 0
+
+
+READABLE = [(value, text) for value, text, _ in SINGLE if not {"nan", "inf"} & set(text.split())]
+
+
+@pytest.mark.parametrize(("value", "text"), READABLE, ids=[text for _, text in READABLE])
+def test_formulas_read_the_text_back(value, text):
+    read = ph.formula(text, algebra=value.algebra)({"x": x, "y": y})
+    if {"x", "y"} & set(text):
+        assert (read - value).map(sympy.simplify) == 0
+    else:  # eight digits
+        assert read.is_close(value.astype(float), rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    "value", [2 * e1 + 3 * e2 * e3, -e1 - I, 0.3 - 1.5e-7 * e3 * e1, 1e20 * I, 0 * e1, 3 - e1], ids=repr
+)
+def test_values_are_set_as_the_formulas_that_make_them(value):
+    assert value._repr_latex_() == f"${ph.formula(repr(value)).latex}$"
 
 
 def test_batches_in_latex_are_the_first_and_last_values_in_lines():

@@ -1,22 +1,11 @@
 //! Any text is a formula, which prints as text that is read as the same formula, or is refused at a place in it.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use polhode_ga::formula::{Error, Meaning, Names, Node, Space, Span, Style, Tree, Type, compile, define, parse};
-use polhode_ga::product::Grades;
-use std::sync::LazyLock;
+mod names;
 
-static BOUND: LazyLock<Names> = LazyLock::new(|| {
-    let vectors = ["a", "b", "x", "a∥", "f1", "f2", "f3"].map(|name| (name, Grades(0b0010)));
-    let others = [("B", Grades::BIVECTOR), ("M", Grades::ALL), ("θ", Grades::SCALAR), ("a'", Grades::ALL)];
-    let values = vectors.into_iter().chain(others).map(|(name, grades)| (name, Type::of(grades)));
-    let values = values.chain([("R", Type::ROTOR), ("spin", Type::ROTOR)]);
-    let mut names = Names::new(values.map(|(name, ty)| (name.to_owned(), Meaning::Value(ty))));
-    names.bind("I".to_owned(), Meaning::Map { grade: 2 });
-    names.bind("F".to_owned(), Meaning::Map { grade: 1 });
-    define("V(x)", "½ x·x", Space::g3(), &mut names).expect("a formula");
-    names
-});
+use libfuzzer_sys::fuzz_target;
+use names::BOUND;
+use polhode_ga::formula::{Error, Names, Node, Space, Span, Style, Tree, compile, parse};
 
 // The first byte says what the names are; the text follows.
 fuzz_target!(|data: (u8, &str)| {

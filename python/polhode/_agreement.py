@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -158,10 +159,18 @@ def _symbolic_residual(data: Any) -> Any:
     """Return 0 for a difference that vanishes identically, row by row; else its size."""
     result = np.zeros(data.shape[:-1], dtype=object)
     for index in np.ndindex(result.shape):
-        row = [x for x in data[index] if not is_zero(x)]
+        row = [x for x in map(_without_floats, data[index]) if not is_zero(x)]
         if row:
             result[index] = sqrt(sum(x * x for x in row))
     return result
+
+
+def _without_floats(x: Any) -> Any:
+    """Return an expression in which each float is the ratio that it is, so that digits are not cut off."""
+    sympy = sys.modules["sympy"]
+    if not isinstance(x, sympy.Expr):
+        return x
+    return x.xreplace({number: sympy.Rational(number) for number in x.atoms(sympy.Float)})
 
 
 def _residual(walk: Walk, data: Any) -> Any:

@@ -35,16 +35,23 @@ impl Graded {
     /// From the components of some grades of G3, each by its place.
     #[inline]
     pub(crate) fn from_fn(grades: Grades, component: impl FnMut(usize) -> f64) -> Graded {
-        let mut held = [0.0; 8];
-        let places = held[..size(grades)].iter_mut();
+        let mut held = Graded::default();
+        held.fill(grades, component);
+        held
+    }
+
+    /// Becomes what [`Graded::from_fn`] is.
+    #[inline]
+    pub(crate) fn fill(&mut self, grades: Grades, component: impl FnMut(usize) -> f64) {
+        *self = Graded { components: [0.0; 8], grades };
+        let places = self.components[..size(grades)].iter_mut();
         places.zip((0..8).map(component)).for_each(|(held, x)| *held = x);
-        Graded { components: held, grades }
     }
 
     /// Becomes the other, field by field: a copy of the whole, right after its grades were written, would wait
     /// for them.
     #[inline]
-    pub(crate) fn set(&mut self, other: &Graded) {
+    pub(crate) fn assign(&mut self, other: &Graded) {
         self.components = other.components;
         self.grades = other.grades;
     }
@@ -92,30 +99,26 @@ impl Graded {
     /// A named product, by the terms of the table, in their order.
     #[inline]
     pub fn product(&self, product: Product, other: &Graded) -> Graded {
-        self.multiply(Plan::g3(product, self.grades, other.grades), other)
-    }
-
-    /// The product of a plan of G3 for the grades of the two.
-    #[inline]
-    pub(crate) fn multiply(&self, plan: &Plan, other: &Graded) -> Graded {
         let mut out = Graded::default();
-        self.multiply_to(plan, other, &mut out);
+        out.set_product(Plan::g3(product, self.grades, other.grades), self, other);
         out
     }
 
-    /// The same, to where it stays.
+    /// Becomes the product of two values by a plan of G3 for their grades. In place: components written one by
+    /// one are slow to be copied at once.
     #[inline]
-    pub(crate) fn multiply_to(&self, plan: &Plan, other: &Graded, out: &mut Graded) {
-        *out = Graded { components: [0.0; 8], grades: plan.grades };
+    pub(crate) fn set_product(&mut self, plan: &Plan, a: &Graded, b: &Graded) {
+        self.grades = plan.grades;
         if matches!(plan.engine, Engine::Geometric) {
             // A sum that begins with 0, as in the plan, is never −0.
-            out.components = geometric(self.components, other.components).map(|x| x + 0.0);
+            self.components = geometric(a.components, b.components).map(|x| x + 0.0);
             return;
         }
+        self.components = [0.0; 8];
         for term in &plan.terms {
             // The masks only tell the compiler that no index leaves the eight.
-            out.components[term.out & 7] +=
-                f64::from(term.sign) * self.components[term.a & 7] * other.components[term.b & 7];
+            self.components[term.out & 7] +=
+                f64::from(term.sign) * a.components[term.a & 7] * b.components[term.b & 7];
         }
     }
 
@@ -158,6 +161,13 @@ impl Graded {
     /// `R A ~R`: vector and bivector each turn as three numbers, scalar and trivector stay.
     pub fn turned(&self, rotor: Rotor) -> Graded {
         let mut out = *self;
+        out.turn(rotor);
+        out
+    }
+
+    /// Becomes `R A ~R`.
+    #[inline]
+    pub(crate) fn turn(&mut self, rotor: Rotor) {
         let mut next = 0;
         for k in (0..4).filter(|&k| self.grades.contains(k)) {
             if k % 3 == 0 {
@@ -165,10 +175,9 @@ impl Graded {
                 continue;
             }
             let [x, y, z] = [next, next + 1, next + 2].map(|i| self.components[i & 7]);
-            out.components[next..next + 3].copy_from_slice(&rotor.apply(Vector([x, y, z])).0);
+            self.components[next..next + 3].copy_from_slice(&rotor.apply(Vector([x, y, z])).0);
             next += 3;
         }
-        out
     }
 }
 

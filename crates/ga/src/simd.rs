@@ -17,6 +17,8 @@ mod squares;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use std::ops::Range;
+
 #[cfg(target_arch = "aarch64")]
 use neon::Registers;
 #[cfg(target_arch = "x86_64")]
@@ -244,6 +246,15 @@ impl Path {
                 lane.0[done + row] = x.into();
             }
         }
+    }
+
+    /// Asks for some cache lines, counted from an address on: a hint, wherever it leads.
+    #[inline(always)]
+    pub fn prefetch<T>(self, from: *const T, lines: Range<usize>) {
+        #[cfg(target_arch = "x86_64")]
+        lines.for_each(|line| x86::prefetch(from.wrapping_byte_add(64 * line)));
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = (from, lines);
     }
 
     /// Turns lanes into rows: the inverse of [`Path::gather`].

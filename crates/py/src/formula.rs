@@ -291,6 +291,7 @@ fn described<'py>(py: Python<'py>, node: &Node) -> PyResult<(&'static str, Bound
             let generators: Vec<usize> = generators.iter().map(|&i| i.into()).collect();
             ("blade", generators.into_pyobject(py)?)
         }
+        Kind::Pseudoscalar => ("pseudoscalar", none),
         Kind::Name(name) => ("name", name.into_pyobject(py)?.into_any()),
         Kind::Sum(terms) => {
             let signs: Vec<&str> = terms.iter().map(|&(minus, _)| if minus { "-" } else { "+" }).collect();

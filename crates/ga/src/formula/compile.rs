@@ -15,6 +15,9 @@ use std::collections::HashMap;
 /// Most nodes that are looked at: a node of a definition or of a sum counts each time that it is written out.
 const MOST_VISITS: usize = 20 * MAX_NODES;
 
+/// Most nodes within each other. A formula has fewer by itself, but a definition may call one that calls one ….
+const MOST_LEVELS: usize = 1000;
+
 /// What a formula does with values of these types.
 ///
 /// # Errors
@@ -42,6 +45,7 @@ fn compiled(tree: &Tree, space: Space, names: &Names) -> Result<(Program, Types)
         types: HashMap::new(),
         frame: Frame::default(),
         visits: MOST_VISITS,
+        depth: 0,
     };
     let free = compiler.free_indices(tree)?;
     for number in 0..compiler.steps.count().pow(free.len() as u32) {
@@ -75,6 +79,8 @@ struct Compiler<'a> {
     frame: Frame,
     /// How many more nodes may be looked at.
     visits: usize,
+    /// How many nodes are being looked at, each in another.
+    depth: usize,
 }
 
 impl Compiler<'_> {
@@ -113,7 +119,14 @@ fn shown(grades: Grades) -> String {
 impl Compiler<'_> {
     fn node(&mut self, node: &Node) -> Built {
         self.visits = self.visits.checked_sub(1).ok_or_else(|| self.steps.error(node.span, TOO_LONG))?;
+        if self.depth >= MOST_LEVELS {
+            let message =
+                format!("more than {MOST_LEVELS} levels within each other, definitions written out");
+            return Err(self.steps.error(node.span, message));
+        }
+        self.depth += 1;
         let id = self.kind(node)?;
+        self.depth -= 1;
         if self.steps.call.is_none() {
             let ty = self.steps.ty(id);
             self.types.entry(std::ptr::from_ref(node)).or_insert(ty);
@@ -127,6 +140,10 @@ impl Compiler<'_> {
             Kind::Number(number) => self.steps.constant(*number, 0, span),
             Kind::Pi => self.steps.step(Op::Pi, Type::SCALAR, span),
             Kind::Blade(generators) => self.blade(generators, span),
+            Kind::Pseudoscalar => {
+                let all: Vec<u8> = (1..=self.steps.count() as u8).collect();
+                self.blade(&all, span)
+            }
             Kind::Name(name) => self.name(name, span),
             Kind::Sum(terms) => self.sum(terms, span),
             Kind::Product(factors) => {
@@ -287,14 +304,19 @@ impl Compiler<'_> {
 
     fn call(&mut self, name: &str, arguments: &[Node], span: Span) -> Built {
         let ids = self.nodes(arguments)?;
-        match self.names.get(name) {
-            Some(Meaning::Map { grade }) => self.map(name, *grade, ids[0], &arguments[0], span),
-            Some(Meaning::Function(definition)) => self.write_out(name, definition, &ids, span),
+        match (self.names.get(name), &ids[..]) {
+            (Some(Meaning::Map { grade }), &[x]) => self.map(name, *grade, x, &arguments[0], span),
+            (Some(Meaning::Function(definition)), ids) => self.write_out(name, definition, ids, span),
+            (Some(Meaning::Value(_)), _) => Err(self.steps.error(span, format!("`{name}` is no function"))),
             // Not known yet.
-            _ => {
+            (None, &[argument]) => {
                 let input = self.steps.input(name, InputKind::Matrix { grade: 1 });
                 let ty = Type::of(self.steps.all());
-                self.steps.step(Op::Map { input, argument: ids[0] }, ty, span)
+                self.steps.step(Op::Map { input, argument }, ty, span)
+            }
+            (_, ids) => {
+                let message = format!("`{name}` is a linear map, which takes 1 argument, got {}", ids.len());
+                Err(self.steps.error(span, message))
             }
         }
     }

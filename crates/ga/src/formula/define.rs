@@ -6,6 +6,7 @@ use super::token::{Lexeme, Sign, joined, tokens};
 use super::tree::{Kind, Node, Span};
 use super::{Error, Space};
 use crate::product::Grades;
+use std::collections::BTreeSet;
 
 /// Defines a function, `V(x)`, or a value, `c`, by a formula.
 ///
@@ -22,7 +23,7 @@ pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result
     let [body] = <[Node; 1]>::try_from(tree.sides).map_err(|_| {
         Error::new(whole, format!("`{head}` is defined by an equation; write the value alone"))
     })?;
-    if calls(&body, &name, &parameters, names, &mut Vec::new()) {
+    if calls(&body, &name, &parameters, names) {
         return Err(Error::new(whole, format!("`{name}` would call itself; formulas have no recursion")));
     }
     names.bind(name, Meaning::Function(Definition { parameters, body }));
@@ -61,7 +62,23 @@ pub fn heading(head: &str) -> Result<(String, Vec<String>), Error> {
 }
 
 /// Whether a body calls a function, itself or through others.
-fn calls(body: &Node, name: &str, parameters: &[String], names: &Names, seen: &mut Vec<String>) -> bool {
+fn calls(body: &Node, name: &str, parameters: &[String], names: &Names) -> bool {
+    let mut waiting = called(body, parameters);
+    let mut seen = BTreeSet::new();
+    while let Some(other) = waiting.pop() {
+        let Some(Meaning::Function(definition)) = names.get(&other) else { continue };
+        if other == name {
+            return true;
+        }
+        if seen.insert(other) {
+            waiting.extend(called(&definition.body, &definition.parameters));
+        }
+    }
+    false
+}
+
+/// The names in a body that are no parameters.
+fn called(body: &Node, parameters: &[String]) -> Vec<String> {
     let mut called = Vec::new();
     body.visit(&mut |node| {
         if let Kind::Call(other, _) | Kind::Name(other) = &node.kind
@@ -70,15 +87,5 @@ fn calls(body: &Node, name: &str, parameters: &[String], names: &Names, seen: &m
             called.push(other.clone());
         }
     });
-    called.into_iter().any(|other| {
-        let Some(Meaning::Function(definition)) = names.get(&other) else { return false };
-        if other == name {
-            return true;
-        }
-        if seen.contains(&other) {
-            return false;
-        }
-        seen.push(other);
-        calls(&definition.body, name, &definition.parameters, names, seen)
-    })
+    called
 }

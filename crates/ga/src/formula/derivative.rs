@@ -3,8 +3,8 @@
 
 use super::Error;
 use super::indices::is_built_in;
-use super::names::Names;
-use super::tree::{Kind, Named, Node, Tight};
+use super::names::{Meaning, Names};
+use super::tree::{Kind, Named, Node};
 
 /// Powers above this are not written out.
 const MOST_FACTORS: i32 = 32;
@@ -28,7 +28,7 @@ impl Derivation<'_> {
         self.count(1, node)?;
         let made = |kind| Node::new(kind, node.span);
         match &node.kind {
-            Kind::Number(_) | Kind::Pi | Kind::Blade(_) => Ok(None),
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar => Ok(None),
             Kind::Name(name) if is_built_in(name) && self.names.get(name).is_none() => Ok(None),
             Kind::Name(name) => Ok(Some(made(Kind::Name(format!("{name}'"))))),
             Kind::Sum(terms) => {
@@ -64,12 +64,21 @@ impl Derivation<'_> {
                 Some(x) => self.of(&x),
                 None => Ok(None),
             },
+            // Linear maps, such as the inertia in body axes, do not change.
+            Kind::Call(name, arguments) if self.is_map(name) => {
+                let rate = arguments.first().map_or(Ok(None), |x| self.of(x))?;
+                Ok(rate.map(|rate| made(Kind::Call(name.clone(), vec![rate]))))
+            }
             Kind::Power(..) | Kind::Function(..) | Kind::Call(..) => Err(Error::new(
                 node.span,
-                "a prime means the derivative by the product rule, which knows sums and products only; \
+                "a prime means the derivative by the product rule, which knows sums, products and linear maps only; \
                  give this part a name, and its derivative the primed name",
             )),
         }
+    }
+
+    fn is_map(&self, name: &str) -> bool {
+        matches!(self.names.get(name), Some(Meaning::Map { .. }))
     }
 
     fn count(&mut self, nodes: usize, node: &Node) -> Result<(), Error> {

@@ -66,9 +66,19 @@ pub(crate) fn count_indices(node: &Node, names: &Names, found: &mut Vec<(char, u
             add(found, index, 1);
         }
     }
-    let mut inner = Vec::new();
+    let mut inner: Vec<(char, usize)> = Vec::new();
     for child in node.children() {
-        count_indices(child, names, &mut inner);
+        let mut counts = Vec::new();
+        count_indices(child, names, &mut counts);
+        for (index, count) in counts {
+            let before = inner.iter_mut().find(|(c, _)| *c == index);
+            match before {
+                None => inner.push((index, count)),
+                // In a sum each term has the index for itself.
+                Some((_, most)) if matches!(node.kind, Kind::Sum(_)) => *most = count.max(*most),
+                Some((_, total)) => *total += count,
+            }
+        }
     }
     if let Kind::Total(index, _) = &node.kind {
         inner.retain(|(c, _)| !index.contains(*c));

@@ -62,7 +62,7 @@ fn bare(node: &Node, followed: bool) -> String {
     match &node.kind {
         Kind::Number(x) => number(x),
         Kind::Pi => "\\pi".to_owned(),
-        Kind::Blade(_) | Kind::Name(_) => letters(node, "").unwrap_or_default(),
+        Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => letters(node, "").unwrap_or_default(),
         Kind::Sum(terms) => sum(terms),
         Kind::Product(factors) => product(factors, followed),
         Kind::Quotient(pair) => format!("\\frac{{{}}}{{{}}}", bare(&pair.0, false), bare(&pair.1, false)),
@@ -145,7 +145,7 @@ fn sign(product: Tight) -> (&'static str, &'static str) {
 /// Whether it is about as wide as a letter.
 fn is_narrow(node: &Node) -> bool {
     match &node.kind {
-        Kind::Number(_) | Kind::Pi | Kind::Blade(_) => true,
+        Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar => true,
         Kind::Name(name) => core(name).chars().count() == 1 && !name.contains('('),
         Kind::Reverse(x) | Kind::Power(x, _) => is_narrow(x),
         Kind::Quotient(_) => true,
@@ -178,7 +178,7 @@ const SHORT: usize = 3;
 /// How many letters it is made of, if of nothing else.
 fn leaves(node: &Node) -> Option<usize> {
     match &node.kind {
-        Kind::Name(_) | Kind::Blade(_) => Some(1),
+        Kind::Name(_) | Kind::Blade(_) | Kind::Pseudoscalar => Some(1),
         Kind::Product(parts) | Kind::Tight(_, parts) => parts.iter().map(leaves).sum(),
         _ => None,
     }
@@ -200,6 +200,7 @@ fn letters(node: &Node, accent: &str) -> Option<String> {
     match &node.kind {
         Kind::Name(name) => Some(word(name, accent)),
         Kind::Blade(generators) => Some(word(&blade(generators), accent)),
+        Kind::Pseudoscalar => Some(word("I", accent)),
         _ => None,
     }
 }

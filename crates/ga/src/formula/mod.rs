@@ -38,6 +38,8 @@ mod program;
 mod reading;
 mod rules;
 mod run;
+#[cfg(test)]
+mod run_tests;
 mod schedule;
 mod single;
 mod steps;

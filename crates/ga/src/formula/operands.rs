@@ -18,6 +18,7 @@ impl Parser<'_> {
             Item::Number(number) => self.build(Kind::Number(number), start, 0),
             Item::Pi => self.build(Kind::Pi, start, 0),
             Item::Blade(generators) => self.build(Kind::Blade(generators), start, 0),
+            Item::Pseudoscalar => self.build(Kind::Pseudoscalar, start, 0),
             Item::Name(name) => self.build(Kind::Name(name), start, 0),
             Item::Callable(name, count) => self.call(start, name, count),
             Item::Function(function) => {

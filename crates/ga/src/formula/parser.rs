@@ -388,13 +388,13 @@ impl Parser<'_> {
             }
             count += 1;
         }
-        let whole = number.ratio.filter(|&(_, d)| d == 1).and_then(|(n, _)| i32::try_from(n).ok());
-        let Some(n) = whole else {
+        let whole = number.ratio.filter(|&(_, d)| d == 1).map(|(n, _)| if minus { -n } else { n });
+        let Some(n) = whole.and_then(|n| i32::try_from(n).ok()) else {
             let message = "a power is a whole number of 32 bits; other powers of a rotor are `exp(½ log(R))`";
             return Err(Error::new(span, message));
         };
         self.at += count;
-        Ok(Some(if minus { -n } else { n }))
+        Ok(Some(n))
     }
 }
 

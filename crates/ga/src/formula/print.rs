@@ -107,6 +107,7 @@ impl Printer {
             }
             Kind::Pi => self.push("π", "pi"),
             Kind::Blade(generators) => self.out.push_str(&blade(generators)),
+            Kind::Pseudoscalar => self.out.push('I'),
             Kind::Name(name) => self.out.push_str(name),
             Kind::Sum(terms) => self.sum(terms),
             Kind::Product(factors) => self.product(factors, followed),
@@ -263,11 +264,8 @@ pub(super) const FRACTIONS: [(char, i64, i64); 11] = [
     ('⅞', 7, 8),
 ];
 
-/// `e12`, or `I`.
+/// `e12`
 pub(super) fn blade(generators: &[u8]) -> String {
-    if generators == [1, 2, 3] {
-        return "I".to_owned();
-    }
     generators.iter().fold("e".to_owned(), |text, g| text + &g.to_string())
 }
 

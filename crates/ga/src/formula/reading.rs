@@ -15,6 +15,8 @@ pub(crate) enum Item {
     Pi,
     /// Generators from 1, in the order written.
     Blade(Vec<u8>),
+    /// `I`
+    Pseudoscalar,
     /// A value, or a name in an index that is not decided yet.
     Name(String),
     /// A linear map, or a defined function with so many parameters.
@@ -158,7 +160,7 @@ impl Reader<'_> {
             Meaning::Value(_) => Item::Name(name.to_owned()),
             Meaning::Map { .. } if called => Item::Callable(name.to_owned(), 1),
             // The handout writes I for the inertia and for the pseudoscalar; only one of them is called.
-            Meaning::Map { .. } if name == "I" => Item::Blade(self.pseudoscalar()),
+            Meaning::Map { .. } if name == "I" => Item::Pseudoscalar,
             Meaning::Map { .. } => {
                 return Some(Err(Error::new(
                     span,
@@ -182,7 +184,7 @@ impl Reader<'_> {
         if name == "pi" {
             return Some(Item::Pi);
         }
-        if let Some(index) = name.strip_prefix("sum_").filter(|index| INDICES.contains(index)) {
+        if let Some(index) = name.strip_prefix("sum_").filter(|i| i.len() == 1 && INDICES.contains(i)) {
             return Some(Item::Total(Some(index.to_owned())));
         }
         let product = Tight::ALL.into_iter().find(|tight| tight.name() == name).map(Item::Product);
@@ -195,7 +197,7 @@ impl Reader<'_> {
     fn built_in_atom(&self, name: &str) -> Option<Item> {
         match name {
             "π" => Some(Item::Pi),
-            "I" => Some(Item::Blade(self.pseudoscalar())),
+            "I" => Some(Item::Pseudoscalar),
             "e" => Some(Item::Euler),
             "Σ" => Some(Item::Total(None)),
             _ => {
@@ -213,10 +215,6 @@ impl Reader<'_> {
 
     fn count(&self) -> usize {
         self.space.algebra.signature().generators()
-    }
-
-    fn pseudoscalar(&self) -> Vec<u8> {
-        (1..=self.count() as u8).collect()
     }
 
     /// `e_k` or `ε_ijk` written as `ek` or `εijk`, if some of these letters have no meaning of their own.

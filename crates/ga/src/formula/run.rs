@@ -19,6 +19,9 @@ const FEW: usize = 8;
 /// Lanes of 64 rows fill the first-level cache from so many on.
 const MANY: usize = 64;
 
+/// How many bytes before the next block lines are asked for.
+const AHEAD: usize = 2048;
+
 /// The first row that has no value, and the first of its steps that has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowError {
@@ -192,9 +195,10 @@ impl Sweep<'_> {
         for (first, numbers) in &self.schedule.fixed {
             lanes[*first..].iter_mut().zip(numbers).for_each(|(lane, &x)| *lane = Lane::filled(x));
         }
+        let ahead = self.ahead::<T, W>(factors);
         let mut result = Ok(());
         by_blocks((self.path, self.streamed), total, &mut lanes, targets, |first, count, lanes| {
-            if !self.block(factors, first, count, lanes) {
+            if !self.block(factors, &ahead, first, count, lanes) {
                 result = (first..first + count).try_for_each(|row| self.runner.row(factors, row).map(drop));
             }
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -202,16 +206,38 @@ impl Sweep<'_> {
         result
     }
 
+    /// Beyond the caches, the cache lines of a block that each task asks for ahead, of some inputs. Memory
+    /// answers only so many at a time, and would wait while the arithmetic is done.
+    fn ahead<T: Element, const W: usize>(&self, factors: &[Factor<T>]) -> Vec<Vec<(usize, Range<usize>)>> {
+        let tasks = self.schedule.tasks.len();
+        let lines = |factor: &Factor<T>| W * size_of_val(factor.rows(0, 1)) / 64;
+        let rows = factors.iter().enumerate().filter(|(_, factor)| self.streamed && !factor.one);
+        let lines: Vec<_> =
+            rows.flat_map(|(i, factor)| (0..lines(factor)).map(move |line| (i, line))).collect();
+        let share = |task: usize| {
+            let share = &lines[task * lines.len() / tasks..(task + 1) * lines.len() / tasks];
+            let of_inputs = share.chunk_by(|s, t| s.0 == t.0);
+            of_inputs.map(|lines| (lines[0].0, lines[0].1..lines[0].1 + lines.len())).collect()
+        };
+        (0..tasks).map(share).collect()
+    }
+
     /// A block of rows; false if perhaps one has no value.
     fn block<T: Element, const W: usize>(
         &self,
         factors: &[Factor<T>],
+        ahead: &[Vec<(usize, Range<usize>)>],
         first: usize,
         count: usize,
         lanes: &mut [Lane<W>],
     ) -> bool {
         let mut known = true;
-        for task in &self.schedule.tasks {
+        for (task, ahead) in self.schedule.tasks.iter().zip(ahead) {
+            for (input, lines) in ahead {
+                let row = factors[*input].rows(first, 1);
+                let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
+                self.path.prefetch(block, lines.clone());
+            }
             match task {
                 Task::Read { input, to } => {
                     self.path.gather(factors[*input].rows(first, count), &mut lanes[to.clone()]);

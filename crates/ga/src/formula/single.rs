@@ -1,7 +1,7 @@
 //! A program on single values.
 
 use super::program::{Id, InputKind, Program};
-use super::steps::{Ready, Selection, Work, applied};
+use super::steps::{Ready, Selection, Sum, Work, applied};
 use crate::MathError;
 use crate::graded::Graded;
 use crate::map::Map;
@@ -77,11 +77,10 @@ impl Runner {
         input: impl Fn(usize) -> Given,
         wanted: impl Fn(Id) -> bool,
     ) -> Result<(), (Id, MathError)> {
-        // Each is computed where it stays: what was just written number by number is slow to copy.
         values.resize(self.steps.len(), Graded::default());
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| wanted(*id)) {
             let (before, rest) = values.split_at_mut(id);
-            step.value(before, &input, &mut rest[0]).map_err(|error| (id, error))?;
+            step.set(&mut rest[0], before, &input).map_err(|error| (id, error))?;
         }
         Ok(())
     }
@@ -109,12 +108,13 @@ fn known<const N: usize>(numbers: [f64; N], grades: Grades) -> Result<Graded, Ma
 }
 
 impl Ready {
+    /// Computes the value from those of earlier steps.
     #[inline]
-    fn value(
+    fn set(
         &self,
+        out: &mut Graded,
         values: &[Graded],
         input: impl Fn(usize) -> Given,
-        out: &mut Graded,
     ) -> Result<(), MathError> {
         let operand = |k: usize| &values[self.operands[k]];
         let value = match &self.work {
@@ -123,17 +123,24 @@ impl Ready {
                 other => panic!("input {i} is a value of the grades {:?}, got {other:?}", self.grades),
             },
             Work::Constant(value) => *value,
-            Work::Sum(sum) => operand(0).zip(operand(1), |x, y| x + sum.sign * y),
+            Work::Sum(sum) => {
+                sum.set(out, operand(0), operand(1), self.grades);
+                return Ok(());
+            }
             Work::Selection(selection) => selection.of(operand(0), self.grades),
             Work::Product(plan) => {
-                operand(0).multiply_to(plan, operand(1), out);
+                out.set_product(plan, operand(0), operand(1));
                 return Ok(());
             }
             Work::Compose => {
                 let product = rotor(operand(0)).compose(rotor(operand(1))).components();
                 Graded::from_fn(self.grades, |k| product[k])
             }
-            Work::Turn => operand(1).turned(rotor(operand(0))),
+            Work::Turn => {
+                *out = *operand(1);
+                out.turn(rotor(operand(0)));
+                return Ok(());
+            }
             Work::Divide => {
                 let divisor = number(operand(1));
                 if divisor == 0.0 {
@@ -158,8 +165,20 @@ impl Ready {
                 Given::Value(_) => panic!("input {i} is a linear map, got a value"),
             },
         };
-        out.set(&value);
+        out.assign(&value);
         Ok(())
+    }
+}
+
+impl Sum {
+    /// As [`Graded::zip`], in place.
+    fn set(&self, out: &mut Graded, a: &Graded, b: &Graded, grades: Grades) {
+        let (a, b) = (a.components(), b.components());
+        let held = |place: Option<usize>, c: &[f64]| place.map_or(0.0, |k| c[k]);
+        out.fill(grades, |k| {
+            let [i, j] = self.places[k];
+            held(i, a) + self.sign * held(j, b)
+        });
     }
 }
 

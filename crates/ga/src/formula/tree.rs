@@ -71,7 +71,7 @@ impl Node {
     /// The nodes it is made of, from left to right.
     pub fn children(&self) -> Vec<&Node> {
         match &self.kind {
-            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Name(_) => Vec::new(),
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
             Kind::Sum(terms) => terms.iter().map(|(_, term)| term).collect(),
             Kind::Product(factors) | Kind::Call(_, factors) => factors.iter().collect(),
             Kind::Tight(_, operands) => operands.iter().collect(),
@@ -93,8 +93,10 @@ pub enum Kind {
     Number(Number),
     /// `π`
     Pi,
-    /// `e1`, `e12`, or the pseudoscalar: the generators in the order written, from 1. `I` has all of them.
+    /// `e1`, `e12`: the generators in the order written, from 1.
     Blade(Vec<u8>),
+    /// `I`, the product of all generators.
+    Pseudoscalar,
     /// A value, by its canonical name.
     Name(String),
     /// `a + b − c`, or `−a` alone: for each term, whether it is subtracted.

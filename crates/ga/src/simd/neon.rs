@@ -16,7 +16,7 @@ pub(super) fn apply_neon<const W: usize, K: Kernel<W>>(
 
 /// The machine's own prefetching is relied on.
 #[inline(always)]
-fn prefetch<T>(_: *const T) {}
+fn prefetch_ahead<T>(_: *const T) {}
 
 /// Numbers of a row as registers of `f64`, and back.
 ///

@@ -19,7 +19,7 @@ macro_rules! squares {
                         // SAFETY: `$n` numbers from `(done + i) size + column` on are within the rows.
                         unsafe {
                             let row = rows.as_ptr().add((done + i) * size + column);
-                            prefetch(row);
+                            prefetch_ahead(row);
                             square[i] = T::$load(row);
                         }
                     }

@@ -27,9 +27,15 @@ pub(super) fn apply_avx512<const W: usize, K: Kernel<W>>(
 /// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own
 /// prefetching stops.
 #[inline(always)]
-fn prefetch<T>(from: *const T) {
+fn prefetch_ahead<T>(from: *const T) {
+    prefetch(from.wrapping_byte_add(4096));
+}
+
+/// Asks for a cache line.
+#[inline(always)]
+pub(super) fn prefetch<T>(at: *const T) {
     // SAFETY: a hint; it reads nothing, so that the address may be any.
-    unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_byte_add(4096).cast()) };
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
 }
 
 /// Numbers of a row as registers of `f64`, and back.
@@ -182,7 +188,7 @@ unsafe fn gather_few<T: Element, const W: usize, const SIZE: usize>(
             // SAFETY: `8 SIZE` numbers from `8 SIZE group` on are within the rows.
             unsafe {
                 let from = rows.as_ptr().add((group * SIZE + r) * 8);
-                prefetch(from);
+                prefetch_ahead(from);
                 registers[r] = T::load_8(from);
             }
         }

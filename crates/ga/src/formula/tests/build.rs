@@ -20,7 +20,7 @@ pub(crate) fn x(text: &str) -> Node {
     node(match text {
         "½" => Kind::Number(Number::ratio(1, 2).unwrap()),
         "π" => Kind::Pi,
-        "I" => Kind::Blade(vec![1, 2, 3]),
+        "I" => Kind::Pseudoscalar,
         "e1" => Kind::Blade(vec![1]),
         "e2" => Kind::Blade(vec![2]),
         "e12" => Kind::Blade(vec![1, 2]),
@@ -106,6 +106,7 @@ fn leaf() -> impl Strategy<Value = Node> {
     prop_oneof![
         6 => proptest::sample::select(&NAMES).prop_map(x),
         2 => blades.prop_map(|blade| node(Kind::Blade(blade))),
+        1 => Just(x("I")),
         2 => number(),
         1 => Just(x("π")),
     ]

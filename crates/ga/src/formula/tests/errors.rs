@@ -65,6 +65,7 @@ fn mistakes_are_named_and_pointed_at() {
         ("\\theta", "write `θ/2 e1∧e2`, not LaTeX", "\\"),
         ("a_", "a subscript is letters and digits", "_"),
         ("1e+999", "beyond the range", "1e+999"),
+        ("sum_ij e_i", "`sum_ij` has no value", "sum_ij"),
     ];
     for (text, message, place) in cases {
         let (found, at) = error(text);
@@ -92,6 +93,8 @@ fn long_and_deep_formulas_are_refused() {
         ("Σ_k ".repeat(20) + "e_k", "too long when they are written out"),
         ("e^".repeat(4_000) + "a", "more than 100 levels"),
         ("(v'".repeat(3_000), "more than 100 levels"),
+        ("(".repeat(90) + "v v" + &")'".repeat(90), "too long when they are written out"),
+        ("(".to_owned() + &"v".repeat(5_000) + ")'", "too long when they are written out"),
     ];
     for (text, message) in cases {
         let (found, _) = error(&text);
@@ -100,6 +103,22 @@ fn long_and_deep_formulas_are_refused() {
     // Within the limits there is no trouble with the stack.
     program(&("(".repeat(99) + "a" + &")".repeat(99)));
     program(&("a".to_owned() + &" a".repeat(9_000)));
+}
+
+/// However many definitions call each other in turn, the stack holds.
+#[test]
+fn chains_of_definitions_have_an_end() {
+    let space = Space::g3();
+    let mut names = names();
+    define("f0(x)", "x", space, &mut names).unwrap();
+    for k in 1..600 {
+        define(&format!("f{k}(x)"), &format!("f{}(x) + 1", k - 1), space, &mut names).unwrap();
+    }
+    let compiled = |text| compile(&parse(text, space, &names).unwrap(), space, &names);
+    assert!(compiled("f99(a)").is_ok());
+    assert!(compiled("f599(a)").unwrap_err().message.contains("more than 1000 levels"));
+    let error = define("f0(x)", "f599(x)", space, &mut names).unwrap_err();
+    assert!(error.message.contains("would call itself"));
 }
 
 #[test]

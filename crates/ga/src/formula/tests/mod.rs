@@ -105,6 +105,8 @@ fn indices_are_summed_or_free() {
     assert_eq!(program("ei ej = δij + I εijk ek").results.len(), 9);
     assert_eq!(program("B_i B_j − B_j B_i = −2 ε_ijk B_k").results.len(), 9);
     same(&["Σ_k f_k'", "f1' + f2' + f3'"]);
+    // Each term of a sum has the index once: it is free.
+    assert_eq!(program("(f_k + e_k) v = (e_k + f_k) v").results.len(), 3);
 }
 
 #[test]
@@ -112,6 +114,7 @@ fn primes_are_derivatives() {
     same(&["(~R)'", "~(R')"]);
     same(&["(R v ~R)'", "R' v ~R + R v' ~R + R v ~(R')"]);
     same(&["(2v + e1)'", "2v'"]);
+    same(&["(R inertia(Ω_B) ~R)'", "R' inertia(Ω_B) ~R + R inertia(Ω_B') ~R + R inertia(Ω_B) ~(R')"]);
     same(&["(v²)'", "v'v + v v'"]);
     assert_eq!(program("f_k' = (R e_k R̃)'").results.len(), 3);
 }

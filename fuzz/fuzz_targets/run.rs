@@ -1,0 +1,103 @@
+//! A formula of many rows has the same bits as row by row, and the same error.
+#![no_main]
+
+mod names;
+
+use libfuzzer_sys::fuzz_target;
+use names::BOUND;
+use polhode_ga::formula::{Given, InputKind, Program, Runner, Space, compile, parse};
+use polhode_ga::graded::Graded;
+use polhode_ga::product::Grades;
+use polhode_ga::table::G3;
+use polhode_ga::threads::Threads;
+
+// The number of rows, where the components begin, and the text.
+fuzz_target!(|data: (u8, u64, &str)| {
+    let (rows, seed, text) = data;
+    let Ok(tree) = parse(text, Space::g3(), &BOUND) else { return };
+    let Ok(program) = compile(&tree, Space::g3(), &BOUND) else { return };
+    if program.steps.len() < 1000 {
+        agrees(&program, 1 + usize::from(rows), seed);
+    }
+});
+
+fn agrees(program: &Program, rows: usize, mut seed: u64) {
+    let runner = Runner::new(program).expect("a program of 3-d space");
+    let inputs: Vec<Vec<f64>> = program
+        .inputs
+        .iter()
+        .map(|input| {
+            let rows = if random(&mut seed) < 0.0 { 1 } else { rows };
+            (0..rows).flat_map(|_| components(input.kind, &mut seed)).collect()
+        })
+        .collect();
+    let results = program.results.concat();
+    let sizes: Vec<usize> = results.iter().map(|&id| size(program.steps[id].ty.grades)).collect();
+    let mut outputs: Vec<Vec<f64>> = sizes.iter().map(|size| vec![0.0; size * rows]).collect();
+
+    let given: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+    let mut places: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+    let outcome = runner.run(Threads::ONE, &given, &mut places, 0..rows);
+
+    for row in 0..rows {
+        let kinds = program.inputs.iter().map(|input| input.kind);
+        let one: Vec<Given> =
+            kinds.zip(&inputs).map(|(kind, data)| given_row(kind, data, rows, row)).collect();
+        match (runner.value(&one), outcome) {
+            (Ok(_), Err(error)) => assert_ne!(error.row, row, "{error:?}"),
+            (Ok(values), Ok(())) => {
+                for ((id, size), output) in results.iter().zip(&sizes).zip(&outputs) {
+                    let (found, expected) = (&output[row * size..][..*size], values[*id].components());
+                    assert!(found.iter().zip(expected).all(same), "row {row}: {found:?}, alone {expected:?}");
+                }
+            }
+            (Err((step, error)), Err(found)) => {
+                assert_eq!((found.row, found.step, found.error), (row, step, error));
+                return;
+            }
+            (Err((_, error)), Ok(())) => panic!("row {row}: {error:?}"),
+        }
+    }
+}
+
+fn same((a, b): (&f64, &f64)) -> bool {
+    a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+}
+
+fn size(grades: Grades) -> usize {
+    grades.indices(&G3).len()
+}
+
+/// From −2 to 2.
+fn random(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    ((*seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 4.0
+}
+
+fn components(kind: InputKind, seed: &mut u64) -> Vec<f64> {
+    match kind {
+        InputKind::Value(ty) if ty.unit => {
+            let four: [f64; 4] = std::array::from_fn(|_| random(seed));
+            let norm = four.iter().map(|x| x * x).sum::<f64>().sqrt();
+            four.map(|x| x / norm).to_vec()
+        }
+        InputKind::Value(ty) => (0..size(ty.grades)).map(|_| random(seed)).collect(),
+        InputKind::Matrix { .. } => (0..9).map(|_| random(seed)).collect(),
+        InputKind::Determinant => vec![random(seed)],
+    }
+}
+
+fn given_row(kind: InputKind, data: &[f64], rows: usize, row: usize) -> Given {
+    let size = match kind {
+        InputKind::Value(ty) => size(ty.grades),
+        InputKind::Matrix { .. } => 9,
+        InputKind::Determinant => 1,
+    };
+    let row = if data.len() == size && rows > 1 { 0 } else { row };
+    let numbers = &data[row * size..][..size];
+    match kind {
+        InputKind::Value(ty) => Given::Value(Graded::new(numbers, ty.grades).expect("so many components")),
+        InputKind::Matrix { .. } => Given::Matrix(numbers.try_into().expect("nine numbers")),
+        InputKind::Determinant => Given::Determinant(numbers[0]),
+    }
+}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -118,7 +118,17 @@ def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
     residual, size = _worst(kind, [(r, s) for r, s in found])
     if kind.native:
         residual, size = residual[()], size[()]
+    _generic.pytrees.register(Agreement, _flattened, _restored)
     return Agreement(residual, size, _rtol(walk, differences))
+
+
+def _flattened(found: Agreement) -> tuple[tuple[Any, Any], float]:
+    return (found.residual, found.size), found.rtol
+
+
+def _restored(rtol: float, leaves: Iterable[Any]) -> Agreement:
+    residual, size = leaves
+    return Agreement(residual, size, rtol)
 
 
 def _floats(walk: Walk) -> tuple[Any, Numeric]:

@@ -39,7 +39,8 @@ class Formula:
     Made by `formula`; equal to any of the same text, algebra and definitions.
     """
 
-    __slots__ = ("__call__", "_core")
+    # The native function in a slot is what a call of the formula calls; JAX wants weak references.
+    __slots__ = ("__call__", "__weakref__", "_core")
     __call__: Callable[..., Any]
     _core: _native.Formula
 

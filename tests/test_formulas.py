@@ -258,6 +258,15 @@ def test_division_by_zero(zero):
         ph.evaluate("e1/s", s=zero)
 
 
+def test_values_that_are_not_finite():
+    for algebra in (ph.algebra(3), ph.algebra(4, 1)):
+        for bad in (np.nan, np.inf):
+            s = algebra.scalar(np.array([1.0, bad]))
+            with pytest.raises(ph.FormulaError, match=r"at index \(1,\): .*NaN or infinite"):
+                ph.evaluate("1 + sin(s)", s=s)
+            assert ph.evaluate("1 + s", s=s).components[0] == 2
+
+
 def test_singular_values():
     for text in ("A⁻¹", "log(A)"):
         with pytest.raises(ph.FormulaError, match=r"singular[^$]*\^"):

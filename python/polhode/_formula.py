@@ -57,24 +57,31 @@ class Formula:
 
     def __str__(self) -> str:
         """The formula in canonical spelling, as on paper."""
-        return self._core.spelled("unicode")
+        return self.spelled("unicode")
 
     @property
     def ascii(self) -> str:
         """The formula in ASCII spelling, but for names, which stay."""
-        return self._core.spelled("ascii")
+        return self.spelled("ascii")
 
     @property
     def latex(self) -> str:
         """The formula as LaTeX, for mathematics mode."""
-        return self._core.spelled("latex")
+        return self.spelled("latex")
 
     def _repr_latex_(self) -> str:
         return f"${self.latex}$"
 
     # --- what is known of it before there are values
 
-    def tree(self, **kinds: Any) -> dict[str, Any]:
+    def spelled(self, style: str, /, **kinds: Any) -> str:
+        """Return it in canonical spelling, "unicode", "ascii" or "latex", for names as `tree` explains.
+
+        So it is known which letters stand side by side: without any `kinds`, each word counts as one name.
+        """
+        return self._core.spelled(style, *kinds_of(self._core.algebra, kinds))
+
+    def tree(self, /, **kinds: Any) -> dict[str, Any]:
         """Return the syntax tree: nested dictionaries of kind, text, span (in characters), grades, children.
 
         `kinds` say what the names stand for: a grade or several, ``a=1, M=(0, 2)``; ``R="rotor"``;
@@ -84,7 +91,7 @@ class Formula:
         algebra, items = kinds_of(self._core.algebra, kinds)
         return self._core.tree(algebra, items)
 
-    def grades(self, **kinds: Any) -> tuple[int, ...]:
+    def grades(self, /, **kinds: Any) -> tuple[int, ...]:
         """Return the grades of the value, for names that stand for what `tree` explains."""
         program = self._program(kinds)
         masks = [step[3] for step in program.steps]
@@ -94,7 +101,7 @@ class Formula:
                 mask |= masks[side]
         return tuple(k for k in range(mask.bit_length()) if mask >> k & 1)
 
-    def steps(self, **kinds: Any) -> list[str]:
+    def steps(self, /, **kinds: Any) -> list[str]:
         """Return what is computed, step by step, for names that stand for what `tree` explains."""
         program = self._program(kinds)
         return described(self.text, [Step(*step) for step in program.steps], program.names)

@@ -72,9 +72,17 @@ impl Formula {
         self.definitions.clone()
     }
 
-    /// The formula in canonical spelling, of whatever names: `unicode`, `ascii` or `latex`.
-    fn spelled(&self, py: Python<'_>, style: &str) -> PyResult<String> {
-        let (tree, _) = self.read(py, self.algebra_or_g3(py)?, Names::open())?;
+    /// The formula in canonical spelling, `unicode`, `ascii` or `latex`, for values of these kinds; without any, of
+    /// whatever names.
+    fn spelled(
+        &self,
+        py: Python<'_>,
+        style: &str,
+        algebra: Py<Algebra>,
+        given: Vec<Said>,
+    ) -> PyResult<String> {
+        let names = if given.is_empty() { Names::open() } else { self.names(&given)?.0 };
+        let (tree, _) = self.read(py, &algebra, names)?;
         Ok(match style {
             "latex" => tree.latex(),
             "ascii" => tree.text(Style::Ascii),

@@ -1,12 +1,11 @@
 """``polhode repl``: what it answers, typed or through a pipe; history and completion."""
 
 import contextlib
-import fcntl
 import os
 import pty
 import select
 import subprocess
-import termios
+import sys
 import time
 
 import pytest
@@ -177,6 +176,14 @@ def test_a_reader_that_leaves_early():
 # --- typed
 
 
+# Ctrl-C interrupts the programs whose terminal it is. (A `preexec_fn` would fork, which threads of JAX forbid.)
+_LAUNCH = """
+import fcntl, os, sys, termios
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+
+
 class Terminal:
     """The prompt in a terminal of its own."""
 
@@ -184,14 +191,12 @@ class Terminal:
         self.master, slave = pty.openpty()
         environment = {**os.environ, "XDG_STATE_HOME": str(state), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
         self.process = subprocess.Popen(
-            [POLHODE, "repl"],
+            [sys.executable, "-c", _LAUNCH, POLHODE, "repl"],
             stdin=slave,
             stdout=slave,
             stderr=slave,
             env=environment,
             start_new_session=True,
-            # Ctrl-C interrupts the programs whose terminal it is.
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
         )
         os.close(slave)
         self.until("> ")

@@ -238,8 +238,8 @@ def test_a_reader_that_leaves_early():
 # --- typed
 
 
-# Ctrl-C interrupts the programs whose terminal it is. A program that makes it its own and becomes another.
-IN_ITS_TERMINAL = """
+# Ctrl-C interrupts the programs whose terminal it is. (A `preexec_fn` would fork, which threads of JAX forbid.)
+_LAUNCH = """
 import fcntl, os, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 os.execv(sys.argv[1], sys.argv[1:])
@@ -253,7 +253,7 @@ class Terminal:
         self.master, slave = pty.openpty()
         environment = {**os.environ, "XDG_STATE_HOME": str(state), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
         self.process = subprocess.Popen(
-            [sys.executable, "-c", IN_ITS_TERMINAL, POLHODE, "repl"],
+            [sys.executable, "-c", _LAUNCH, POLHODE, "repl"],
             stdin=slave,
             stdout=slave,
             stderr=slave,

@@ -13,6 +13,7 @@ from polhode._agreement import Agreement, agreement
 from polhode._algebra import Algebra
 from polhode._algebra import algebra as algebra_of
 from polhode._arrays import is_float, new, rows
+from polhode._coefficients import kind_of
 from polhode._formula_error import FormulaError
 from polhode._formula_values import Given, given, kinds_of
 from polhode._multivector import Multivector
@@ -38,7 +39,8 @@ class Formula:
     Made by `formula`; equal to any of the same text, algebra and definitions.
     """
 
-    __slots__ = ("__call__", "_core")
+    # The native function in a slot is what a call of the formula calls; JAX wants weak references.
+    __slots__ = ("__call__", "__weakref__", "_core")
     __call__: Callable[..., Any]
     _core: _native.Formula
 
@@ -192,7 +194,11 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
             return _run(program, kind, data)
     walk = Walk(text, [Step(*step) for step in program.steps], inputs, known.algebra)
     results = program.results
-    return agreement(walk, results) if len(results[0]) > 1 else walk.last()
+    if len(results[0]) == 1:
+        return walk.last()
+    if not inputs and known.algebra is _G3:  # numbers alone are compared as they are written
+        walk.kind = kind_of(np.empty(0, dtype=object))
+    return agreement(walk, results)
 
 
 def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:

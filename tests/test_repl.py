@@ -238,7 +238,7 @@ def test_a_reader_that_leaves_early():
 # --- typed
 
 
-# Ctrl-C interrupts the programs whose terminal it is. (A `preexec_fn` would fork, which threads of JAX forbid.)
+# Ctrl-C interrupts the programs whose terminal it is. (A `preexec_fn` would fork, which JAX forbids.)
 _LAUNCH = """
 import fcntl, os, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)

@@ -61,12 +61,12 @@ class Given:
 
 
 def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
-    """Return the values by name, numbers and arrays as scalars; those that the text may use."""
+    """Return the values by name, numbers and arrays as scalars; of those that are not used, what fits."""
     letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
-    everything = {
-        name: value for name, value in _together(values, named).items() if _may_use(letters, name)
-    }
-    algebra = _common_algebra(core.algebra, everything)
+    everything = _together(values, named)
+    used = {name: value for name, value in everything.items() if _may_use(letters, name)}
+    algebra = _common_algebra(core.algebra, used)
+    everything = {name: value for name, value in everything.items() if name in used or _fits(value, algebra)}
     if all(isinstance(value, Multivector | LinearMap) for value in everything.values()):
         known = everything
     else:
@@ -84,6 +84,12 @@ def _may_use(letters: set[str], name: str) -> bool:
     if name.isidentifier() and _native.canonical(name) is None:
         return False
     return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
+
+
+def _fits(value: Any, algebra: Any) -> bool:
+    if isinstance(value, Multivector):
+        return value.algebra is algebra
+    return isinstance(value, LinearMap) or type(value) in (int, float)
 
 
 def _narrowed(value: Any) -> Any:

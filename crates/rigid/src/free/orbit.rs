@@ -24,8 +24,25 @@ pub(super) struct Orbit {
     pub mean: Option<DoubleDouble>,
     /// u at time 0: so many K, and the rest.
     pub start: (f64, f64),
-    /// η and K' − η.
-    pub eta: [f64; 2],
+    /// Squared sine and cosine of the amplitudes of η and of K' − η.
+    amplitudes_of_eta: [[f64; 2]; 2],
+}
+
+impl Orbit {
+    /// η, finite unless k = 0.
+    pub fn eta(&self) -> f64 {
+        self.integral(self.amplitudes_of_eta[0])
+    }
+
+    /// K' − η.
+    pub fn rest_of_eta(&self) -> f64 {
+        self.integral(self.amplitudes_of_eta[1])
+    }
+
+    /// Of the first kind to the modulus k'.
+    fn integral(&self, [sin2, cos2]: [f64; 2]) -> f64 {
+        sin2.sqrt() * r_f(cos2, cos2 + self.k2 * sin2, 1.0)
+    }
 }
 
 /// Moments and invariants in twice the precision, differences and all else positive.
@@ -80,8 +97,19 @@ impl Orbit {
             (precession, Some(mean))
         };
         let start = argument(w[a] / amplitudes[0], w[b] / amplitudes[1], kc2.value());
-        let eta = inv.eta(k2);
-        Some(Orbit { axes: [a, b, c], s, signs, amplitudes, lambda, k2, precession, mean, start, eta })
+        let amplitudes_of_eta = inv.amplitudes_of_eta();
+        Some(Orbit {
+            axes: [a, b, c],
+            s,
+            signs,
+            amplitudes,
+            lambda,
+            k2,
+            precession,
+            mean,
+            start,
+            amplitudes_of_eta,
+        })
     }
 }
 
@@ -123,15 +151,11 @@ impl Invariants {
         }
     }
 
-    /// η and K' − η, from the squares of the sines and cosines of their amplitudes.
-    fn eta(&self, k2: f64) -> [f64; 2] {
-        let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = *self;
-        let integral = |sin2: f64, cos2: f64| sin2.sqrt() * r_f(cos2, cos2 + k2 * sin2, 1.0);
-        let (whole, other) = (b.hi * ac.hi, ac.hi * g2.hi);
-        [
-            integral(a.hi * bc.hi / whole, c.hi * ab.hi / whole),
-            integral(c.hi * q.hi / other, a.hi * p.hi / other),
-        ]
+    /// Squared sine and cosine for η and for K' − η.
+    fn amplitudes_of_eta(&self) -> [[f64; 2]; 2] {
+        let [a, b, c, p, q] = [self.a, self.b, self.c, self.p, self.q].map(|x| x.hi);
+        let (whole, other) = (b * self.ac.hi, self.ac.hi * self.g2.hi);
+        [[a * self.bc.hi / whole, c * self.ab.hi / whole], [c * q / other, a * p / other]]
     }
 }
 

@@ -36,32 +36,26 @@ pub(super) trait Series: Copy + Sync {
     fn normalizers(&self) -> [f64; 3];
 }
 
-/// `Σ h_n p_n(x)` in powers of x, `p_0 = 1` and `p_1 = first`.
-fn chebyshev<const N: usize>(h: [f64; N], first: [f64; 2]) -> [f64; N] {
-    let mut sum = [0.0; N];
-    let (mut previous, mut p) = ([0.0; N], [0.0; N]);
+/// `Σ h_n p_n(x)` in powers of x; `p_0 = 1`, and `p_{−1}`, in powers of x too, tells which polynomials.
+fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
+    let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [0.0; N]);
+    previous[..2].copy_from_slice(&before);
     p[0] = 1.0;
-    for n in 0..N {
+    for h in h {
         for k in 0..N {
-            sum[k] += h[n] * p[k];
+            sum[k] += h * p[k];
         }
-        let mut next = [0.0; N];
-        next[0] = if n == 0 { first[0] } else { -previous[0] };
-        for k in 1..N {
-            next[k] = 2.0 * p[k - 1] - previous[k];
-        }
-        if n == 0 && N > 1 {
-            next[1] = first[1];
-        }
-        (previous, p) = (p, next);
+        let twice = |k: usize| if k == 0 { 0.0 } else { 2.0 * p[k - 1] };
+        (previous, p) = (p, std::array::from_fn(|k| twice(k) - previous[k]));
     }
     sum
 }
 
-const T: [f64; 2] = [0.0, 1.0];
-const U: [f64; 2] = [0.0, 2.0];
-const V: [f64; 2] = [-1.0, 2.0];
-const W: [f64; 2] = [1.0, 2.0];
+/// T_n, U_n, V_n and W_n by the polynomial at −1.
+const FIRST: [f64; 2] = [0.0, 1.0];
+const SECOND: [f64; 2] = [0.0, 0.0];
+const THIRD: [f64; 2] = [1.0, 0.0];
+const FOURTH: [f64; 2] = [-1.0, 0.0];
 
 /// −1 for odd n.
 fn sign(n: usize) -> f64 {
@@ -94,22 +88,22 @@ impl Circular {
             weight * (power(rho, 2 * n + 1) + o * power(other, 2 * n + 1))
         };
         let mut z = [
-            chebyshev::<4>(std::array::from_fn(|n| even(n, 1.0)), T),
-            chebyshev::<4>(std::array::from_fn(|n| s * odd(n, 1.0)), W),
-            chebyshev::<4>(std::array::from_fn(|n| -odd(n, -1.0)), V),
+            chebyshev::<4>(std::array::from_fn(|n| even(n, 1.0)), FIRST),
+            chebyshev::<4>(std::array::from_fn(|n| s * odd(n, 1.0)), FOURTH),
+            chebyshev::<4>(std::array::from_fn(|n| -odd(n, -1.0)), THIRD),
             [0.0; 4],
         ];
-        z[3][..3].copy_from_slice(&chebyshev::<3>(std::array::from_fn(|n| s * even(n + 1, -1.0)), U));
+        z[3][..3].copy_from_slice(&chebyshev::<3>(std::array::from_fn(|n| s * even(n + 1, -1.0)), SECOND));
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(q, n * n) };
         let pronics = |n: usize| power(q, n * n + n);
         Circular {
             z,
             functions: [
-                chebyshev(std::array::from_fn(pronics), V),
-                chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), W),
-                chebyshev(std::array::from_fn(squares), T),
+                chebyshev(std::array::from_fn(pronics), THIRD),
+                chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
+                chebyshev(std::array::from_fn(squares), FIRST),
             ],
-            denominator: chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), T),
+            denominator: chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST),
         }
     }
 
@@ -181,17 +175,17 @@ impl Hyperbolic {
             border,
             nome,
             z: [
-                chebyshev(std::array::from_fn(|n| weight(n) * cos(n)), V),
-                chebyshev(std::array::from_fn(|n| s * sign(n) * weight(n) * cos(n)), W),
-                chebyshev(std::array::from_fn(|n| -sign(n) * weight(n) * sin(n)), V),
-                chebyshev(std::array::from_fn(|n| -s * weight(n) * sin(n)), W),
+                chebyshev(std::array::from_fn(|n| weight(n) * cos(n)), THIRD),
+                chebyshev(std::array::from_fn(|n| s * sign(n) * weight(n) * cos(n)), FOURTH),
+                chebyshev(std::array::from_fn(|n| -sign(n) * weight(n) * sin(n)), THIRD),
+                chebyshev(std::array::from_fn(|n| -s * weight(n) * sin(n)), FOURTH),
             ],
             functions: [
                 [1.0, -(third + fifth), third * fifth, 0.0],
-                chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), W),
-                chebyshev(std::array::from_fn(squares), T),
+                chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
+                chebyshev(std::array::from_fn(squares), FIRST),
             ],
-            denominator: chebyshev(std::array::from_fn(pronics), V),
+            denominator: chebyshev(std::array::from_fn(pronics), THIRD),
             ahead: s * alpha / PI,
         }
     }

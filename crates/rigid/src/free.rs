@@ -142,14 +142,11 @@ impl FreeMotion {
 
     /// How far in time, in s, the phase is known: to 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        let fastest = match (&self.flow, &self.orbit) {
-            (AnyFlow::Circular(flow), _) => flow.orbit.rate.hi.max(flow.precession.rate.hi.abs()),
-            (AnyFlow::Hyperbolic(flow), orbit) => {
-                let lambda = orbit.as_ref().map_or(0.0, |orbit| orbit.lambda.hi);
-                (lambda / (4.0 * PI)).max(flow.precession.rate.hi.abs())
-            }
+        let fastest = match &self.orbit {
+            Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * self.scale,
+            None => self.omega.norm(),
         };
-        MOST_TURNS / (fastest * self.scale)
+        MOST_TURNS * 4.0 * PI / fastest
     }
 
     /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
@@ -236,42 +233,34 @@ fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
 
 /// Any other motion.
 fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
-    let half = DoubleDouble::from(0.5);
-    let precession = Phase { rate: orbit.precession * DoubleDouble::OVER_TWO_PI * half, start: [0.0; 2] };
     let (whole, rest) = orbit.start;
     // AGM(1, k) = π/2K'.
     let other = mean(orbit.k2.sqrt());
-    let alpha = 0.5 * orbit.eta[0] * other;
     let Some(mean) = orbit.mean else {
         let rate = orbit.lambda / Hyperbolic::NEVER.into();
         let phase = Phase { rate, start: [rest / Hyperbolic::NEVER, 0.0] };
-        let series = Hyperbolic::separatrix(alpha, orbit.s);
-        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, precession, series, rotor, frame));
+        let series = Hyperbolic::separatrix(0.5 * orbit.eta() * other, orbit.s);
+        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame));
     };
+    // 1/4K.
     let per_u = mean * DoubleDouble::OVER_TWO_PI;
     let phase = Phase { rate: orbit.lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
     let nome = if other > 0.0 { (-PI * mean.hi / other).exp() } else { 0.0 };
     if nome <= LARGEST_NOME {
-        let rho = (-orbit.eta[1] * mean.hi).exp();
+        let rho = (-orbit.rest_of_eta() * mean.hi).exp();
         let series = Circular::new(nome, rho, orbit.s);
-        AnyFlow::Circular(flow(orbit, scale, phase, precession, series, rotor, frame))
+        AnyFlow::Circular(flow(orbit, scale, phase, series, rotor, frame))
     } else {
-        // πK/4K'.
-        let border = 0.25 * PI * other / mean.hi;
-        let series = Hyperbolic::new(border, alpha, orbit.s);
-        AnyFlow::Hyperbolic(flow(orbit, scale, phase, precession, series, rotor, frame))
+        // πK/4K' and πη/4K'.
+        let series = Hyperbolic::new(0.25 * PI * other / mean.hi, 0.5 * orbit.eta() * other, orbit.s);
+        AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame))
     }
 }
 
-fn flow<S: Series>(
-    top: &Orbit,
-    scale: f64,
-    orbit: Phase,
-    precession: Phase,
-    series: S,
-    rotor: Rotor,
-    frame: Rotor,
-) -> Flow<S> {
+/// Phases, series and frames together.
+fn flow<S: Series>(top: &Orbit, scale: f64, phase: Phase, series: S, rotor: Rotor, frame: Rotor) -> Flow<S> {
+    let rate = top.precession * DoubleDouble::OVER_TWO_PI * 0.5.into();
+    let precession = Phase { rate, start: [0.0; 2] };
     let axis = |k: usize| {
         let mut axis = [0.0; 3];
         axis[top.axes[k]] = 1.0;
@@ -287,6 +276,6 @@ fn flow<S: Series>(
         frame.apply_bivector(Bivector(axis(k)) * (top.amplitudes[k] * factors[k] * scale)).0
     });
     let omega = std::array::from_fn(|i| columns.map(|c| c[i]));
-    let flow = Flow { scale, orbit, precession, series, rotor: [[0.0; 4]; 4], omega };
+    let flow = Flow { scale, orbit: phase, precession, series, rotor: [[0.0; 4]; 4], omega };
     flow.with_frames(rotor, [Rotor::IDENTITY, unit(0), unit(1), unit(2)], frame.reverse())
 }

@@ -53,7 +53,7 @@ fn moments() -> impl Strategy<Value = [f64; 3]> {
 
 /// Angular velocities of either regime and at its ends; moments decide what is near the separatrix.
 fn spin([i, j, k]: [f64; 3]) -> impl Strategy<Value = [f64; 3]> {
-    let rate = || prop_oneof![6 => size(-2..2), 1 => size(-60..0), 1 => Just(0.0)];
+    let rate = || prop_oneof![6 => size(-2..2), 1 => size(-60..0), 1 => size(-960..0), 1 => Just(0.0)];
     let far = (0..56).prop_map(|e: i32| if e < 54 { 2f64.powi(-e) } else { 0.0 });
     let separatrix = (size(-2..2), rate(), far, any::<bool>()).prop_map(move |(w, other, far, short)| {
         let mut axes = [(i, 0), (j, 1), (k, 2)];

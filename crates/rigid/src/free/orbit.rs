@@ -69,16 +69,17 @@ impl Orbit {
         let mut order = [0, 1, 2];
         order.sort_by(|&x, &y| i[x].total_cmp(&i[y]));
         let [small, b, large] = order;
-        let d = difference(i, w, order);
+        let (d, scale) = difference(i, w, order);
         let (a, c) = if d.hi >= 0.0 { (small, large) } else { (large, small) };
         let s = if c == large { 1.0 } else { -1.0 };
         let inv = Invariants::new([a, b, c].map(|k| i[k]), [a, b, c].map(|k| w[k]));
-        if inv.p.hi == 0.0 || inv.q.hi == 0.0 {
+        // A wobble of 1e-140, or so slow a turn about the axis of a symmetric body, is none up to any horizon.
+        if inv.p.hi.min(inv.q.hi) < 1e-280 {
             return None;
         }
         let bcq = inv.bc * inv.q;
         let lambda = (bcq / (inv.a * inv.b * inv.c)).sqrt();
-        let kc2 = inv.ac * d.abs() / bcq;
+        let kc = (inv.ac * d.abs() / bcq).sqrt() * scale.into();
         let k2 = (inv.ab * inv.p / bcq).value().min(1.0);
 
         // The order (a, b, c) is even if it is a cyclic one.
@@ -93,10 +94,10 @@ impl Orbit {
         let (precession, mean) = if on_separatrix {
             (inv.g2.sqrt() / inv.b, None)
         } else {
-            let (precession, mean) = inv.precession(s, k2, kc2.sqrt(), lambda);
+            let (precession, mean) = inv.precession(s, k2, kc, lambda);
             (precession, Some(mean))
         };
-        let start = argument(w[a] / amplitudes[0], w[b] / amplitudes[1], kc2.value());
+        let start = argument(w[a] / amplitudes[0], w[b] / amplitudes[1], kc.value());
         let amplitudes_of_eta = inv.amplitudes_of_eta();
         Some(Orbit {
             axes: [a, b, c],
@@ -159,34 +160,32 @@ impl Invariants {
     }
 }
 
-/// D, without any rounding but the last where its terms nearly cancel.
-fn difference(i: [f64; 3], w: [f64; 3], [small, b, large]: [usize; 3]) -> DoubleDouble {
+/// `D/x²` and x, a power of two near the rates in D: no square underflows. Where the two terms of D nearly
+/// cancel, without any rounding but the last.
+fn difference(i: [f64; 3], w: [f64; 3], [small, b, large]: [usize; 3]) -> (DoubleDouble, f64) {
     /// A difference of no more than this times its terms.
     const CANCELLED: f64 = 1e-2;
+    let scale = power_of_two([w[small], w[large], 0.0]);
     // i_x (i_x − i_b) ω_x²
     let term = |x: usize| {
-        let (ix, ib, wx): (DoubleDouble, DoubleDouble, DoubleDouble) =
-            (i[x].into(), i[b].into(), w[x].into());
+        let [ix, ib, wx] = [i[x], i[b], w[x] / scale].map(DoubleDouble::from);
         ix * (ix - ib) * wx * wx
     };
     let (high, low) = (term(large), term(small));
     let d = high + low;
     if d.hi.abs() > CANCELLED * (high.hi - low.hi) {
-        return d;
+        return (d, scale);
     }
-    // The squares of small rates keep their rounding errors if scaled.
-    let scale = power_of_two([w[small], w[large], 0.0]);
     let term = |x: usize| {
         let (ix, wx) = (i[x], w[x] / scale);
         Exact::ZERO.plus(ix).plus(-i[b]).times(ix).times(wx).times(wx)
     };
-    term(large).add(term(small)).value() * (scale * scale).into()
+    (term(large).add(term(small)).value(), scale)
 }
 
 /// The u in [−2K, 2K] with given cn u and sn u, up to a factor, as so many K and a rest of at most K/2. On the
-/// separatrix, where `k'² = 0`, all is rest.
-fn argument(cn: f64, sn: f64, kc2: f64) -> (f64, f64) {
-    let kc = kc2.sqrt();
+/// separatrix, where `k' = 0`, all is rest.
+fn argument(cn: f64, sn: f64, kc: f64) -> (f64, f64) {
     // Beyond K/2 tan am(u − K) = −cn u / (k' sn u).
     let (whole, sin, cos) = if cn * cn >= kc * (sn * sn) {
         (if cn < 0.0 { 2.0 } else { 0.0 }, sn.copysign(sn * cn), cn.abs())
@@ -195,9 +194,10 @@ fn argument(cn: f64, sn: f64, kc2: f64) -> (f64, f64) {
     };
     let size = cos.hypot(sin);
     let (cos, sin) = (cos / size, sin / size);
-    if kc2 == 0.0 {
+    if kc == 0.0 {
         return (whole, (sin / cos).asinh());
     }
-    // Δ² = 1 − k² sin² = cos² + k'² sin².
-    (whole, sin * r_f(cos * cos, cos * cos + kc2 * sin * sin, 1.0))
+    // Δ² = 1 − k² sin² = cos² + k'² sin², and cos² >= k'/2.
+    let first = sin * r_f(cos * cos, cos * cos + (kc * sin) * (kc * sin), 1.0);
+    (whole, first)
 }

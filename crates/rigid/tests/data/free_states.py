@@ -9,6 +9,7 @@ at that time, each number as a float and what is left of it. All start at the ro
 """
 
 import itertools
+import math
 import random
 
 from mpmath import atan2, ellipf, ellipfun, ellipk, ellippi, mp, mpf, nint, pi, sqrt
@@ -104,7 +105,7 @@ def kinds(rng):
             i = sorted(1 + 9 * u() for _ in range(3))
             w, ratio = beside_separatrix(i, sign * far)
             yield "beside the separatrix", i, [w[0], w[1], w[0] * ratio]
-    for tiny in (1e-2, 1e-6, 1e-16, 1e-60, 1e-100):
+    for tiny in (1e-2, 1e-6, 1e-16, 1e-60, 1e-100, 1e-250):
         yield "about the middle axis", sorted(1 + 9 * u() for _ in range(3)), [u() * tiny, 1, u() * tiny]
     for e in (1e2, 1e4, 1e6):
         yield "needle", [1, e, e * (1 + u())], [u() * e**0.5, u(), u()]
@@ -135,7 +136,8 @@ def main():
         moments = [float(moments[k]) for k in order]
         omega = [float(omega[k]) * rng.choice((1, -1)) for k in order]
         times = [-0.7, 1e3 * rng.random(), -1e7 * rng.random(), 1e12 * rng.random()]
-        mp.dps = 60 if min(abs(x) for x in omega) > 1e-12 else 300
+        # Twice the digits by which k falls short of 1.
+        mp.dps = 60 - 4 * int(math.log10(min(abs(x) for x in omega)))
         for t, (rotor, then) in zip(times, state(moments, omega, times), strict=True):
             inputs = " ".join(repr(x) for x in [*moments, *omega, t])
             print(kind.replace(" ", "_"), inputs, *map(split, rotor), *map(split, then))

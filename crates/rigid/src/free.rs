@@ -59,13 +59,13 @@
 //! `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term times κ is π/2. The one with the smaller parameter is taken.
 //!
 //! **Near the separatrix** K grows and q tends to 1. Jacobi's imaginary transformation leads to the nome
-//! `q' = exp(−πK/K')` and, with `x = πu/4K'` and `α = πη/4K'` for u within a half period,
+//! `q' = exp(−πK/K')` and, with `x = πu/4K'` and `γ = πη/4K'` for u within a half period,
 //!
 //! ```text
-//! θ4(v − i s y | q²) ~ exp(2i s v α/π) θ2(s α + i x | √q'),   θ1 ~ −i exp(…) θ1(s α + i x | √q'):
+//! θ4(v − i s y | q²) ~ exp(2i s v γ/π) θ2(s γ + i x | √q'),   θ1 ~ −i exp(…) θ1(s γ + i x | √q'):
 //! ```
 //!
-//! circular functions of α times hyperbolic ones of x; the exponential joins the precession. On the separatrix
+//! circular functions of γ times hyperbolic ones of x; the exponential joins the precession. On the separatrix
 //! itself one term is left, and ν is G/b.
 //!
 //! **Digits.** v and νt/2 are reduced in twice the precision, so that the error does not grow with time. All

@@ -96,14 +96,18 @@ impl Circular {
         z[3][..3].copy_from_slice(&chebyshev::<3>(std::array::from_fn(|n| s * even(n + 1, -1.0)), SECOND));
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(q, n * n) };
         let pronics = |n: usize| power(q, n * n + n);
+        let functions = [
+            chebyshev(std::array::from_fn(pronics), THIRD),
+            chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
+            chebyshev(std::array::from_fn(squares), FIRST),
+        ];
+        let denominator = chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST);
+        // Subnormal numbers, slow on many machines, are nothing beside the first coefficients.
+        let normal = |c: f64| if c.abs() < 1e-100 { 0.0 } else { c };
         Circular {
-            z,
-            functions: [
-                chebyshev(std::array::from_fn(pronics), THIRD),
-                chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
-                chebyshev(std::array::from_fn(squares), FIRST),
-            ],
-            denominator: chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST),
+            z: z.map(|z| z.map(normal)),
+            functions: functions.map(|f| f.map(normal)),
+            denominator: denominator.map(normal),
         }
     }
 
@@ -160,12 +164,12 @@ pub(super) struct Hyperbolic {
 }
 
 impl Hyperbolic {
-    /// From X, `α = πη/4K'` and s.
-    pub fn new(border: f64, alpha: f64, s: f64) -> Hyperbolic {
+    /// From X, `γ = πη/4K'` and s.
+    pub fn new(border: f64, gamma: f64, s: f64) -> Hyperbolic {
         let nome = (-4.0 * border).exp();
         let root = (-2.0 * border).exp();
-        let sin = |n: usize| ((2 * n + 1) as f64 * alpha).sin();
-        let cos = |n: usize| ((2 * n + 1) as f64 * alpha).cos();
+        let sin = |n: usize| ((2 * n + 1) as f64 * gamma).sin();
+        let cos = |n: usize| ((2 * n + 1) as f64 * gamma).cos();
         let weight = |n: usize| power(root, n * n + n);
         let pronics = |n: usize| power(nome, n * n + n);
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(nome, n * n) };
@@ -186,7 +190,7 @@ impl Hyperbolic {
                 chebyshev(std::array::from_fn(squares), FIRST),
             ],
             denominator: chebyshev(std::array::from_fn(pronics), THIRD),
-            ahead: s * alpha / PI,
+            ahead: s * gamma / PI,
         }
     }
 
@@ -194,8 +198,8 @@ impl Hyperbolic {
     pub const NEVER: f64 = (1u128 << 70) as f64;
 
     /// The limit K → ∞, with `u = NEVER · turns`.
-    pub fn separatrix(alpha: f64, s: f64) -> Hyperbolic {
-        Hyperbolic { ahead: 0.0, ..Hyperbolic::new(Hyperbolic::NEVER / 8.0, alpha, s) }
+    pub fn separatrix(gamma: f64, s: f64) -> Hyperbolic {
+        Hyperbolic { ahead: 0.0, ..Hyperbolic::new(Hyperbolic::NEVER / 8.0, gamma, s) }
     }
 }
 

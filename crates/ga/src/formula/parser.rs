@@ -28,7 +28,7 @@ pub fn parse(text: &str, space: Space, names: &Names) -> Result<Tree, Error> {
         sides.push(parser.sum()?.node);
     }
     match parser.peek() {
-        None => Ok(Tree { sides: sum_repeated(sides, names) }),
+        None => Ok(Tree { sides: sum_repeated(sides, names)? }),
         Some(_) => Err(parser.unexpected()),
     }
 }

@@ -58,6 +58,8 @@ fn mistakes_are_named_and_pointed_at() {
         ("0^-1", "division by zero", "0^-1"),
         ("a = B", "no grade in common", "a = B"),
         ("f_k", "the index k is free", "f_k"),
+        ("2(f_k e_k + f_k)", "the index k is free", "2(f_k e_k + f_k)"),
+        ("1 + (f_k e_k)(e_k f_k)", "k stands here 4 times", "(f_k e_k)(e_k f_k)"),
         ("Σ a", "a sum over which index?", "Σ"),
         ("(exp(B))'", "a prime means the derivative", "exp(B)"),
         ("(S)'", "`S'` has no value, and a derivative here needs it", "S"),

@@ -107,6 +107,13 @@ fn indices_are_summed_or_free() {
     same(&["Σ_k f_k'", "f1' + f2' + f3'"]);
     // Each term of a sum has the index once: it is free.
     assert_eq!(program("(f_k + e_k) v = (e_k + f_k) v").results.len(), 3);
+    // The sum is around what has the index, and nothing else.
+    same(&["2(f_k·e_k + 5)", "2(Σ_k f_k·e_k + 5)"]);
+    same(&["norm(ω_k e_k)", "norm(ω1 e1 + ω2 e2 + ω3 e3)"]);
+    same(&["(ω_k ω_k)²", "(ω1 ω1 + ω2 ω2 + ω3 ω3)²"]);
+    same(&["1/(f_k·f_k) a", "1/(Σ_k f_k·f_k) a"]);
+    same(&["(f_k e_k)' + 2", "(Σ_k f_k e_k)' + 2"]);
+    same(&["(ω_k f_k)·(ω_j e_j)", "(Σ_k ω_k f_k)·(Σ_j ω_j e_j)"]);
 }
 
 #[test]

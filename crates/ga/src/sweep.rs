@@ -104,7 +104,8 @@ impl<'a, T: Element, const W: usize> Stream<'a, T, W> {
     }
 
     fn finish(mut self) {
-        self.out[self.written..].copy_from_slice(&Lane::flat(&mut self.buffer)[..self.waiting]);
+        let rest = &mut self.out[self.written..self.written + self.waiting];
+        rest.copy_from_slice(&Lane::flat(&mut self.buffer)[..self.waiting]);
         self.path.fence();
     }
 }

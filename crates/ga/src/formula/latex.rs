@@ -3,6 +3,7 @@
 //! A fraction and an exponent need no brackets inside, so that they are fewer than in a line of text. As a
 //! factor, a tight product is set close, `a{\wedge}b`, so that one sees what binds first.
 
+use super::glyphs::{core, subscript, word};
 use super::number::Number;
 use super::print::{FRACTIONS, Hold, blade};
 use super::tree::{Kind, Named, Node, Tight, Tree};
@@ -224,119 +225,6 @@ fn grades_of(grades: Grades) -> String {
     if list == ["0"] { String::new() } else { format!("_{{{}}}", list.join(",")) }
 }
 
-/// The letters of a name before its indices, primes and label.
-fn core(name: &str) -> &str {
-    let end = name.find(|c: char| c.is_ascii_digit() || "_'(∥⊥".contains(c));
-    &name[..end.unwrap_or(name.len())]
-}
-
-/// A name: letters, indices below, primes, a label `(t)`.
-fn word(name: &str, accent: &str) -> String {
-    let letters = core(name);
-    let rest = &name[letters.len()..];
-    let (rest, label) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
-    let indices = rest.trim_end_matches('\'');
-    let primes = &rest[indices.len()..];
-
-    let mut text = upright(letters);
-    if !accent.is_empty() {
-        text = format!("{accent}{{{text}}}");
-    }
-    if !indices.is_empty() {
-        text += &format!("_{{{}}}", subscript(indices.trim_start_matches('_')));
-    }
-    let label: Vec<String> = label.chars().map(letter).collect();
-    text + primes + &label.join(" ")
-}
-
-/// Several Latin letters are a word, set upright.
-fn upright(letters: &str) -> String {
-    if letters.len() > 1 && letters.bytes().all(|c| c.is_ascii_alphabetic()) {
-        return format!("\\mathrm{{{letters}}}");
-    }
-    let mut marked: Vec<String> = Vec::new();
-    for c in letters.chars() {
-        match (ACCENTS.iter().find(|(mark, _)| *mark == c), marked.last_mut()) {
-            (Some((_, accent)), Some(last)) => *last = format!("\\{accent}{{{last}}}"),
-            _ => marked.push(letter(c)),
-        }
-    }
-    marked.join(" ")
-}
-
-fn subscript(indices: &str) -> String {
-    let parts: Vec<String> = indices.split('_').map(upright_or_digits).collect();
-    parts.join(",")
-}
-
-fn upright_or_digits(index: &str) -> String {
-    if index.bytes().all(|c| c.is_ascii_digit()) { index.to_owned() } else { upright(index) }
-}
-
-/// Combining marks.
-const ACCENTS: [(char, &str); 10] = [
-    ('\u{300}', "grave"),
-    ('\u{301}', "acute"),
-    ('\u{302}', "hat"),
-    ('\u{303}', "tilde"),
-    ('\u{304}', "bar"),
-    ('\u{306}', "breve"),
-    ('\u{307}', "dot"),
-    ('\u{308}', "ddot"),
-    ('\u{30c}', "check"),
-    ('\u{20d7}', "vec"),
-];
-
-/// One character of a name.
-fn letter(c: char) -> String {
-    match GREEK.iter().find(|(letter, _)| *letter == c) {
-        Some((_, command)) => format!("\\{command}"),
-        None if "#$%&_{}~^\\".contains(c) => format!("\\{c}"),
-        None => c.to_string(),
-    }
-}
-
-/// The letters that Latin ones do not serve for, and the signs of directions.
-const GREEK: [(char, &str); 37] = [
-    ('α', "alpha"),
-    ('β', "beta"),
-    ('γ', "gamma"),
-    ('δ', "delta"),
-    ('ε', "varepsilon"),
-    ('ζ', "zeta"),
-    ('η', "eta"),
-    ('θ', "theta"),
-    ('ι', "iota"),
-    ('κ', "kappa"),
-    ('λ', "lambda"),
-    ('μ', "mu"),
-    ('ν', "nu"),
-    ('ξ', "xi"),
-    ('π', "pi"),
-    ('ρ', "rho"),
-    ('ς', "varsigma"),
-    ('σ', "sigma"),
-    ('τ', "tau"),
-    ('υ', "upsilon"),
-    ('φ', "varphi"),
-    ('χ', "chi"),
-    ('ψ', "psi"),
-    ('ω', "omega"),
-    ('Γ', "Gamma"),
-    ('Δ', "Delta"),
-    ('Θ', "Theta"),
-    ('Λ', "Lambda"),
-    ('Ξ', "Xi"),
-    ('Π', "Pi"),
-    ('Σ', "Sigma"),
-    ('Υ', "Upsilon"),
-    ('Φ', "Phi"),
-    ('Ψ', "Psi"),
-    ('Ω', "Omega"),
-    ('∥', "parallel"),
-    ('⊥', "perp"),
-];
-
 #[cfg(test)]
 mod tests {
     use super::super::tests::build::*;
@@ -356,7 +244,7 @@ mod tests {
             ("omega_body", "\\mathrm{omega}_{\\mathrm{body}}"),
             ("a∥", "a_{\\parallel}"),
             ("R(0)", "R( 0 )"),
-            ("a\u{302}_k", "\\hat{a}_{k}"),
+            ("a\u{302}\u{20d7}_k", "\\vec{\\hat{a}}_{k}"),
             ("T_a_b", "T_{a,b}"),
             ("ω''", "\\omega''"),
         ] {

@@ -25,6 +25,7 @@ mod builder;
 mod compile;
 mod define;
 mod derivative;
+mod glyphs;
 mod indices;
 mod lanes;
 mod latex;

@@ -8,7 +8,7 @@ use super::steps::{Work, size_of_input};
 use crate::MathError;
 use crate::graded::{Graded, size};
 use crate::simd::{Element, Lane, Path};
-use crate::sweep::{Factor, SHARED, STREAMED, Target, by_blocks};
+use crate::sweep::{Factor, SHARED, Target, by_blocks};
 use crate::threads::{Threads, for_each};
 use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
@@ -16,8 +16,16 @@ use std::sync::{Mutex, PoisonError};
 /// Below so many rows, turning them into lanes does not pay.
 const FEW: usize = 8;
 
-/// Lanes of 64 rows fill the first-level cache from so many on.
-const MANY: usize = 64;
+/// From so many bytes on, inputs and results together, the results go past the caches: earlier than those of
+/// a single product, for what is read comes from all inputs at once.
+const STREAMED: usize = 8 << 20;
+
+/// So many lanes of 128 rows leave room in the first-level cache. Each step of a block costs some nanoseconds
+/// besides the arithmetic, so that large blocks are faster.
+const FEW_LANES: usize = 24;
+
+/// So many lanes of 64 rows still fit it.
+const MANY_LANES: usize = 64;
 
 /// How many bytes before the next block lines are asked for.
 const AHEAD: usize = 2048;
@@ -105,10 +113,11 @@ impl Runner {
         targets.iter_mut().zip(&schedule.results).for_each(|(target, &at)| target.at = at);
         let streamed = path.streams() && bytes >= STREAMED;
         let sweep = Sweep { runner: self, schedule, path, streamed, failure: Mutex::new(None) };
-        if sweep.schedule.lanes <= MANY {
-            sweep.run::<T, 64>(threads, &factors, targets, rows.len());
-        } else {
-            sweep.run::<T, 16>(threads, &factors, targets, rows.len());
+        match sweep.schedule.lanes {
+            // Small blocks mix reading and writing memory with the arithmetic more finely.
+            0..=FEW_LANES if !streamed => sweep.run::<T, 128>(threads, &factors, targets, rows.len()),
+            0..=MANY_LANES => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
+            _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
         }
         let failure = sweep.failure.into_inner().unwrap_or_else(PoisonError::into_inner);
         failure.map_or(Ok(()), |error| Err(late(error)))

@@ -184,14 +184,22 @@ fn definitions_are_written_out() {
     define("V(x)", "½ x·x", space, &mut names).unwrap();
     define("d", "a + b", space, &mut names).unwrap();
     define("W(x, y)", "V(x) − V(y) + d·x", space, &mut names).unwrap();
-    let grades = |text: &str| {
-        let tree = parse(text, space, &names).unwrap();
-        let program = compile(&tree, space, &names).unwrap();
+    let compiled = |text: &str, names: &Names| compile(&parse(text, space, names)?, space, names);
+    let grades = |text: &str, names: &Names| {
+        let program = compiled(text, names).unwrap();
         let mut grades: Vec<u16> = program.steps.iter().map(|step| step.ty.grades.0).collect();
         grades.sort_unstable();
         grades
     };
-    assert_eq!(grades("W(a, b)"), grades("½ a·a − ½ b·b + (a + b)·a"));
+    assert_eq!(grades("W(a, b)", &names), grades("½ a·a − ½ b·b + (a + b)·a", &names));
+    // A parameter hides a name of outside while the body is read, and no longer.
+    assert_eq!(grades("x", &names), [0b0010]);
+    // The derivative of a parameter is no name of outside.
+    define("E(v)", "(v v)'", space, &mut names).unwrap();
+    define("P(v, v')", "(v v)'", space, &mut names).unwrap();
+    let error = compiled("E(a)", &names).unwrap_err();
+    assert!(error.message.contains("`v'`, the derivative of a parameter"), "{}", error.message);
+    assert_eq!(grades("P(a, b)", &names), grades("b a + a b", &names));
     for (head, body) in
         [("f(y)", "f(y)"), ("V(x)", "W(x, x)"), ("2", "a"), ("f(x, x)", "x"), ("f(", "a"), ("g", "a = b")]
     {

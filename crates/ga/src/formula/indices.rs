@@ -45,7 +45,8 @@ pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<No
 /// Puts the sum around the smallest part that has the index all the times, each term of a sum for itself:
 /// `(a_k b_k + 1)²` is `(Σ_k a_k b_k + 1)²`.
 fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
-    let count = |node: &Node| indices_in(node, names).iter().find(|(c, _)| *c == index).map_or(0, |(_, n)| *n);
+    let count =
+        |node: &Node| indices_in(node, names).iter().find(|(c, _)| *c == index).map_or(0, |(_, n)| *n);
     if let Kind::Sum(terms) = &mut node.kind {
         let with = terms.iter_mut().filter(|(_, term)| count(term) > 0);
         return with.map(|(_, term)| sum_over(index, term, names)).collect();

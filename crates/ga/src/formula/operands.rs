@@ -64,7 +64,7 @@ impl Parser<'_> {
         }
         let bracket = self.slice(open).chars().next().unwrap_or('(');
         match self.peek() {
-            None | Some(Item::Sign(Sign::Equals | Sign::Comma)) => {
+            None | Some(Item::Sign(Sign::Equals)) => {
                 Err(Error::new(open, format!("`{bracket}` is never closed")))
             }
             Some(Item::Sign(Sign::Close(_) | Sign::CloseAngle)) => {
@@ -181,6 +181,8 @@ impl Parser<'_> {
             let exponent = self.exponent()?;
             self.depth -= 1;
             exponent
+        } else if self.names.is_open() {
+            return self.build(Kind::Name("e".to_owned()), start, 0);
         } else {
             let message = "`e` has no value; an exponential is written `e^(…)` or `exp(…)`, the basis vectors e1, e2, …";
             return Err(Error::new(start, message));

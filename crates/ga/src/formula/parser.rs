@@ -95,7 +95,12 @@ impl Parser<'_> {
         };
         let text = self.slice(read.span);
         let message = match &read.item {
-            Item::Sign(Sign::Close(_) | Sign::CloseAngle) => format!("`{text}` closes no bracket"),
+            Item::Sign(Sign::Close(_) | Sign::CloseAngle) if self.depth == 0 => {
+                format!("`{text}` closes no bracket")
+            }
+            Item::Sign(Sign::Tight(Tight::Dot)) if text == "|" => {
+                "`|` is a dot product, `a|b`, and needs its left factor; a magnitude is `norm(a)`".to_owned()
+            }
             Item::Sign(Sign::Comma) => "a comma only stands between the arguments of a function".to_owned(),
             Item::Sign(Sign::Underscore) => "a subscript follows a letter or `⟨…⟩` directly".to_owned(),
             Item::Subscript(_) => "a subscript follows a letter or `⟩` directly".to_owned(),

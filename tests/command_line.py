@@ -1,6 +1,7 @@
 """The command, run as a program, and a small scene for it."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -25,9 +26,13 @@ def polhode(*arguments, cwd=None, through=(), **options):
     """The finished process, started through another program; whatever happened, no traceback."""
     options.setdefault("stdout", subprocess.PIPE)
     options.setdefault("encoding", "utf-8")
+    # As for most people: what is printed waits in memory until the end.
+    environment = {**os.environ, **options.pop("env", {})}
+    environment.pop("PYTHONUNBUFFERED", None)
     done = subprocess.run(
         [*through, POLHODE, *arguments],
         cwd=cwd,
+        env=environment,
         stderr=subprocess.PIPE,
         timeout=60,
         check=False,

@@ -1,5 +1,6 @@
 """The scenes in the documentation are scenes."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -24,16 +25,42 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
-def test_the_algebra_page_runs_and_prints_what_it_says():
+@pytest.mark.parametrize("name", ["algebra", "formulas"])
+def test_the_pages_run_and_print_what_they_say(name):
     for needed in ("jax", "sympy"):
         pytest.importorskip(needed)
-    page = (ROOT / "docs/algebra.md").read_text()
-    code = "\n".join(re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL))
+    blocks = blocks_of(ROOT / f"docs/{name}.md")
+    code = "\n".join(text for language, text in blocks if language == "python")
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines() == re.findall(r"^print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
+    told = []
+    for language, text in blocks:
+        if language == "python":
+            told += re.findall(r"^print\(.*\)  # (.*)$", text, flags=re.MULTILINE)
+        elif language == "text":
+            told += text.splitlines()
+    assert done.stdout.splitlines() == told
+
+
+def test_the_shell_answers_as_the_page_says():
+    text = "".join(text for language, text in blocks_of(ROOT / "docs/formulas.md") if language == "console")
+    commands = [part.split("\n", 1) for part in text.removeprefix("$ ").split("\n$ ")]
+    assert len(commands) == 4
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    for command, answer in commands:
+        done = subprocess.run(
+            ["bash", "-c", command], env=environment, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr) == (0, "")
+        # Residuals of rounding differ between machines.
+        got, expected = (re.sub(r"residual \S+", "residual …", x.strip()) for x in (done.stdout, answer))
+        assert got == expected
+
+
+def blocks_of(page):
+    return re.findall(r"```(\w+)\n(.*?)```", page.read_text(), flags=re.DOTALL)
 
 
 def test_there_are_scenes():

@@ -134,5 +134,9 @@ def test_equations_are_traced():
     a, b = (ph.vector(jnp.asarray(x)) for x in ([1.0, 2, 3], [0.5, 0, 1]))
     assert bool(jax.jit(lambda a, b: f(a=a, b=b).holds)(a, b))
     assert not bool(jax.jit(lambda a, b: ph.evaluate("a b = b a", a=a, b=b).holds)(a, b))
+    agreement = jax.jit(f)(a=a, b=b)
+    assert isinstance(agreement, ph.Agreement)
+    assert agreement
+    assert agreement.rtol == 1e-9
     with pytest.raises(jax.errors.TracerBoolConversionError):
         jax.jit(lambda a, b: bool(f(a=a, b=b)))(a, b)

@@ -92,3 +92,10 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *_LATER, "torque"} - {"Any", "TYPE_CHECKING", "importlib"})
+
+
+def load_ipython_extension(shell: Any) -> None:
+    """Add ``%ga`` and ``%%ga``, formulas in notebooks: ``%load_ext polhode`` calls this."""
+    from polhode._magic import load
+
+    load(shell)

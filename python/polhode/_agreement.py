@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -117,7 +118,17 @@ def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
     residual, size = _worst(kind, [(r, s) for r, s in found])
     if kind.native:
         residual, size = residual[()], size[()]
+    _generic.pytrees.register(Agreement, _flattened, _restored)
     return Agreement(residual, size, _rtol(walk, differences))
+
+
+def _flattened(found: Agreement) -> tuple[tuple[Any, Any], float]:
+    return (found.residual, found.size), found.rtol
+
+
+def _restored(rtol: float, leaves: Iterable[Any]) -> Agreement:
+    residual, size = leaves
+    return Agreement(residual, size, rtol)
 
 
 def _floats(walk: Walk) -> tuple[Any, Numeric]:
@@ -158,10 +169,18 @@ def _symbolic_residual(data: Any) -> Any:
     """Return 0 for a difference that vanishes identically, row by row; else its size."""
     result = np.zeros(data.shape[:-1], dtype=object)
     for index in np.ndindex(result.shape):
-        row = [x for x in data[index] if not is_zero(x)]
+        row = [x for x in map(_without_floats, data[index]) if not is_zero(x)]
         if row:
             result[index] = sqrt(sum(x * x for x in row))
     return result
+
+
+def _without_floats(x: Any) -> Any:
+    """Return an expression in which each float is the ratio that it is, so that digits are not cut off."""
+    sympy = sys.modules["sympy"]
+    if not isinstance(x, sympy.Expr):
+        return x
+    return x.xreplace({number: sympy.Rational(number) for number in x.atoms(sympy.Float)})
 
 
 def _residual(walk: Walk, data: Any) -> Any:

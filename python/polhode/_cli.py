@@ -6,6 +6,7 @@ import argparse
 import io
 import json
 import os
+import re
 import signal
 import sys
 from collections.abc import Iterator
@@ -29,19 +30,28 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
-    options = _parser().parse_args(arguments)
+    options = _parser().parse_args(_with_formulas(sys.argv[1:] if arguments is None else arguments))
     try:
-        return int(options.command(options))
+        code = int(options.command(options))
+        print(end="", flush=True)
     except KeyboardInterrupt:
-        return _complain("interrupted; no file was changed", INTERRUPTED)
+        code = _complain("interrupted; no file was changed", INTERRUPTED)
     except SceneError as error:
-        return _complain(str(error), BAD_INPUT)
+        code = _complain(str(error), BAD_INPUT)
     except BrokenPipeError:
-        # The reader of our output has gone; there is nobody to tell.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        code = FAILED  # the reader of our output has gone; there is nobody to tell
     except (OSError, ValueError, ImportError, MemoryError) as error:
-        return _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+        code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+    _let_go_of_output()
+    return code
+
+
+def _let_go_of_output() -> None:
+    """Drop what cannot be written, which Python would try once more, and complain of, when it ends."""
+    try:
+        print(end="", flush=True)
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(message: str, code: int) -> int:
@@ -54,8 +64,8 @@ def _parser() -> argparse.ArgumentParser:
         prog="polhode",
         description="Rigid-body motion in the language of geometric algebra.",
         epilog=(
-            "Exit codes: 0 ok, 1 the run failed, 2 wrong usage, 3 bad input file, "
-            "4 a conserved quantity drifted past its bound, 130 interrupted."
+            "Exit codes: 0 ok, 1 the run failed or an equation is false, 2 wrong usage, 3 bad input file "
+            "or formula, 4 a conserved quantity drifted past its bound, 130 interrupted."
         ),
     )
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
@@ -77,7 +87,66 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
     check.set_defaults(command=_check)
+    _add_formulas(commands)
     return parser
+
+
+def _add_formulas(commands: Any) -> None:
+    evaluate = commands.add_parser(
+        "eval",
+        help="evaluate formulas",
+        description="Evaluate formulas, written as on paper or in ASCII: `-I a∧b` is `-I a^b`.",
+        epilog="Lines of files and of standard input are formulas, `let NAME = VALUE`, or comments after #.",
+    )
+    evaluate.add_argument("formulas", metavar="FORMULA", nargs="*", help="a formula, or an equation to check")
+    evaluate.add_argument(
+        "-f", "--file", metavar="FILE", help="read formulas from this file first, from standard input for -"
+    )
+    evaluate.add_argument(
+        "--let",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        type=_definition,
+        help="give a name a value, which may have units (θ=90deg), or define a function (V(x)=½ x·x)",
+    )
+    form = evaluate.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print the values as JSON")
+    form.add_argument("--latex", action="store_true", help="print formulas and values as LaTeX")
+    evaluate.set_defaults(command=_eval)
+
+    repl = commands.add_parser("repl", help="evaluate formulas as you type them")
+    repl.set_defaults(command=_repl)
+
+
+def _definition(text: str) -> str:
+    """Return what --let is given; without a name and a value it is wrong usage."""
+    name, sign, value = text.partition("=")
+    if not (sign and name.strip() and value.strip()):
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as θ=90deg, found {text!r}")
+    return text
+
+
+def _with_formulas(arguments: list[str]) -> list[str]:
+    """Return arguments among which ``-a∧b`` is taken for a formula: argparse takes no option with a space."""
+    if arguments[:1] != ["eval"]:
+        return arguments
+    return [f" {x}" if re.match(r"-[^-fh]", x) else x for x in arguments]
+
+
+def _eval(options: argparse.Namespace) -> int:
+    from polhode import _eval
+
+    try:
+        return _eval.run(options)
+    except _eval.UnreadableError as error:
+        return _complain(str(error), BAD_INPUT)
+
+
+def _repl(_: argparse.Namespace) -> int:
+    from polhode import _repl
+
+    return _repl.run()
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -13,6 +13,7 @@ from polhode._agreement import Agreement, agreement
 from polhode._algebra import Algebra
 from polhode._algebra import algebra as algebra_of
 from polhode._arrays import is_float, new, rows
+from polhode._coefficients import kind_of
 from polhode._formula_error import FormulaError
 from polhode._formula_values import Given, given, kinds_of
 from polhode._multivector import Multivector
@@ -38,7 +39,8 @@ class Formula:
     Made by `formula`; equal to any of the same text, algebra and definitions.
     """
 
-    __slots__ = ("__call__", "_core")
+    # The native function in a slot is what a call of the formula calls; JAX wants weak references.
+    __slots__ = ("__call__", "__weakref__", "_core")
     __call__: Callable[..., Any]
     _core: _native.Formula
 
@@ -55,24 +57,31 @@ class Formula:
 
     def __str__(self) -> str:
         """The formula in canonical spelling, as on paper."""
-        return self._core.spelled("unicode")
+        return self.spelled("unicode")
 
     @property
     def ascii(self) -> str:
         """The formula in ASCII spelling, but for names, which stay."""
-        return self._core.spelled("ascii")
+        return self.spelled("ascii")
 
     @property
     def latex(self) -> str:
         """The formula as LaTeX, for mathematics mode."""
-        return self._core.spelled("latex")
+        return self.spelled("latex")
 
     def _repr_latex_(self) -> str:
         return f"${self.latex}$"
 
     # --- what is known of it before there are values
 
-    def tree(self, **kinds: Any) -> dict[str, Any]:
+    def spelled(self, style: str, /, **kinds: Any) -> str:
+        """Return it in canonical spelling, "unicode", "ascii" or "latex", for names as `tree` explains.
+
+        So it is known which letters stand side by side: without any `kinds`, each word counts as one name.
+        """
+        return self._core.spelled(style, *kinds_of(self._core.algebra, kinds))
+
+    def tree(self, /, **kinds: Any) -> dict[str, Any]:
         """Return the syntax tree: nested dictionaries of kind, text, span (in characters), grades, children.
 
         `kinds` say what the names stand for: a grade or several, ``a=1, M=(0, 2)``; ``R="rotor"``;
@@ -82,7 +91,7 @@ class Formula:
         algebra, items = kinds_of(self._core.algebra, kinds)
         return self._core.tree(algebra, items)
 
-    def grades(self, **kinds: Any) -> tuple[int, ...]:
+    def grades(self, /, **kinds: Any) -> tuple[int, ...]:
         """Return the grades of the value, for names that stand for what `tree` explains."""
         program = self._program(kinds)
         masks = [step[3] for step in program.steps]
@@ -92,7 +101,7 @@ class Formula:
                 mask |= masks[side]
         return tuple(k for k in range(mask.bit_length()) if mask >> k & 1)
 
-    def steps(self, **kinds: Any) -> list[str]:
+    def steps(self, /, **kinds: Any) -> list[str]:
         """Return what is computed, step by step, for names that stand for what `tree` explains."""
         program = self._program(kinds)
         return described(self.text, [Step(*step) for step in program.steps], program.names)
@@ -192,7 +201,11 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
             return _run(program, kind, data)
     walk = Walk(text, [Step(*step) for step in program.steps], inputs, known.algebra)
     results = program.results
-    return agreement(walk, results) if len(results[0]) > 1 else walk.last()
+    if len(results[0]) == 1:
+        return walk.last()
+    if not inputs and known.algebra is _G3:  # numbers alone are compared as they are written
+        walk.kind = kind_of(np.empty(0, dtype=object))
+    return agreement(walk, results)
 
 
 def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:

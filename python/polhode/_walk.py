@@ -137,8 +137,10 @@ def _map(walk: Walk, step: Step, argument: Multivector) -> Multivector:
 
 def _of_scalars(walk: Walk, step: Step, a: Multivector) -> Multivector:
     """sin, cos or tan."""
-    with np.errstate(invalid="ignore"):
-        return walk.scalars(getattr(walk.kind, step.name)(walk.kind.asarray(a._data)[..., 0]))
+    x = walk.kind.asarray(a._data)[..., 0]
+    if not walk.kind.exact:
+        walk.kind.require_finite([x])
+    return walk.scalars(getattr(walk.kind, step.name)(x))
 
 
 _STEPS: dict[str, Callable[..., Multivector]] = {

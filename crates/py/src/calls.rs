@@ -2,7 +2,6 @@
 //! known by the addresses of its names, which Python keeps once, so that little is added to the arithmetic.
 //! Linear maps are known by their addresses, too, and their matrices are at hand.
 
-use crate::arrays::bad;
 use crate::program::Program;
 use crate::value::{Held, Operand, operand, scalar, wrap};
 use polhode_ga::Graded;
@@ -41,9 +40,9 @@ impl Calls {
     /// The value for single values; `None` if no such call is known.
     pub fn value<'py>(&self, named: &Bound<'py, PyDict>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let py = named.py();
-        // Nothing that Python sees is made while the calls are locked.
         let found = {
-            let mut calls = self.0.lock().map_err(bad)?;
+            // Locked only if a finalizer, which Python may run anywhere, calls the formula within a call of it.
+            let Ok(mut calls) = self.0.try_lock() else { return Ok(None) };
             let place = calls.iter_mut().position(|call| call.takes(named).is_some());
             place.and_then(|i| {
                 calls[..=i].rotate_right(1);
@@ -74,7 +73,7 @@ impl Calls {
             arguments.push((name.unbind(), argument));
         }
         let gone = {
-            let mut calls = self.0.lock().map_err(bad)?;
+            let Ok(mut calls) = self.0.try_lock() else { return Ok(()) };
             calls.insert(0, Call { arguments, program, inputs, values: Vec::new() });
             (calls.len() > KEPT).then(|| calls.pop())
         };

@@ -71,9 +71,20 @@ impl Formula {
         self.definitions.clone()
     }
 
-    /// The formula in canonical spelling, of whatever names: `unicode`, `ascii` or `latex`.
-    fn spelled(&self, py: Python<'_>, style: &str) -> PyResult<String> {
-        let tree = self.read_open(py)?;
+    /// The formula in canonical spelling, `unicode`, `ascii` or `latex`, for values of these kinds; without any, of
+    /// whatever names.
+    fn spelled(
+        &self,
+        py: Python<'_>,
+        style: &str,
+        algebra: Py<Algebra>,
+        given: Vec<Said>,
+    ) -> PyResult<String> {
+        let tree = if given.is_empty() {
+            self.read_open(py)?
+        } else {
+            self.read(py, &algebra, self.names(&given)?.0)?.0
+        };
         Ok(match style {
             "latex" => tree.latex(),
             "ascii" => tree.text(Style::Ascii),

@@ -48,7 +48,7 @@ mod _native {
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};
     #[pymodule_export]
-    use crate::text::{diagnostic, quantities};
+    use crate::text::{diagnostic, near_unit, quantities};
 
     /// The version of the package.
     #[pymodule_export]

@@ -20,6 +20,12 @@ pub(crate) fn diagnostic(
     Diagnostic::in_line(Path::new(source), number, line, span, message).to_string()
 }
 
+/// The unit that a word is, or may stand for.
+#[pyfunction]
+pub(crate) fn near_unit(word: &str) -> Option<String> {
+    units::near(word)
+}
+
 /// The quantities in a formula, each with where it starts and ends in characters and its value in SI units.
 ///
 /// A ValueError's arguments are the message, and where the mistake starts and ends.

@@ -77,7 +77,6 @@ impl Runner {
         input: impl Fn(usize) -> Given,
         wanted: impl Fn(Id) -> bool,
     ) -> Result<(), (Id, MathError)> {
-        // Each is computed where it stays: what was just written number by number is slow to copy.
         values.resize(self.steps.len(), Graded::default());
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| wanted(*id)) {
             let (before, rest) = values.split_at_mut(id);
@@ -118,7 +117,7 @@ impl Ready {
         input: impl Fn(usize) -> Given,
     ) -> Result<(), MathError> {
         let operand = |k: usize| &values[self.operands[k]];
-        *out = match &self.work {
+        let value = match &self.work {
             Work::Input(i) => match input(*i) {
                 Given::Value(value) if value.grades() == self.grades => value,
                 other => panic!("input {i} is a value of the grades {:?}, got {other:?}", self.grades),
@@ -166,6 +165,7 @@ impl Ready {
                 Given::Value(_) => panic!("input {i} is a linear map, got a value"),
             },
         };
+        out.assign(&value);
         Ok(())
     }
 }

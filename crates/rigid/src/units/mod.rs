@@ -20,7 +20,7 @@ pub use within::{Within, WithinError, quantities};
 use factor::{Factor, Problem};
 use polhode_ga::diagnostic::quote;
 use std::fmt;
-use table::{ANGLE, Dimension, FREQUENCY, LENGTH, MASS, TIME, near_unit};
+use table::{ANGLE, Dimension, FREQUENCY, LENGTH, MASS, TIME, find_unit, near_unit};
 
 /// What a number measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -175,6 +175,11 @@ pub fn parse(text: &str, expected: Quantity) -> Result<f64, UnitError> {
 /// The SI value of one unit, `mm` or `kg m^2`.
 pub fn parse_unit(unit: &str, expected: Quantity) -> Result<f64, UnitError> {
     value(unit, &Number { mantissa: "1".to_owned(), exponent: 0 }, factor(unit, unit.trim(), expected)?)
+}
+
+/// The unit that a word is, `deg`, or that it may stand for, as `degrees` does.
+pub fn near(word: &str) -> Option<String> {
+    find_unit(word).map_or_else(|| near_unit(word).map(str::to_owned), |_| Some(word.to_owned()))
 }
 
 /// The unit that stands in `text`, if it measures what is expected.

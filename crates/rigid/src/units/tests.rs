@@ -148,6 +148,15 @@ fn an_unknown_unit_is_named_with_what_it_may_stand_for() {
 }
 
 #[test]
+fn a_word_is_a_unit_or_near_one() {
+    let table =
+        [("deg", Some("deg")), ("km", Some("km")), ("degrees", Some("deg")), ("1", Some("1")), ("x", None)];
+    for (word, unit) in table {
+        assert_eq!(near(word).as_deref(), unit, "{word}");
+    }
+}
+
+#[test]
 fn units_that_are_not_written_as_units_are() {
     let table = [
         ("3,5 m", "unexpected `,` (a decimal point is written `.`) in `3,5 m`"),
@@ -252,7 +261,8 @@ fn a_number_directly_before_a_unit_is_a_quantity_within_a_formula() {
         ("5 m_1", "5 m_1"),
         ("5 m' e1", "5 m' e1"),
         ("5 m(x)", "5 m(x)"),
-        ("2e1", "2e1"),
+        ("2e1 x", "2e1 x"),
+        ("2e-1", "2e-1"),
         ("2 e1 m", "2 e1 m"),
         ("5 parsnip", "5 parsnip"),
         ("m a", "m a"),
@@ -267,10 +277,15 @@ fn a_number_directly_before_a_unit_is_a_quantity_within_a_formula() {
 fn what_has_two_readings_within_a_formula_is_refused() {
     let table = [
         ("5 m e1", "`m` is a unit and a name here; for the name write `5*m`"),
-        ("5 rev/s m", "`m` is a unit and a name here; for the name write `(5 rev/s) m`"),
+        ("5 rev*m", "`m` is a unit and a name here; for the name write `(5 rev) m`"),
+        (
+            "5 cm/s t e1",
+            "`t` may be a unit or a name; for the name write `(5 cm/s) t`, for the unit `5 cm/s*t`",
+        ),
         ("5 ms", "`ms` is a unit and a name here; for the name write `5*ms`"),
         ("1/2 rev", "`/` before a quantity has two readings; put brackets around `2 rev`"),
-        ("2e1 kg", "`2e1` is a number or has a basis vector in it; for the number write `2e+1`"),
+        ("2e1 kg", "`2e1` has two readings; write `2e+1` for the number, `2 e1` for the product"),
+        (" -2e1 ", "`2e1` has two readings; write `2e+1` for the number, `2 e1` for the product"),
         ("5 kg^10", "a power is a whole number from -9 to 9, not 0, after the unit `kg`"),
         ("1e400 kg", "`1e400 kg` is beyond the range of floating point, about 1.8e308"),
     ];

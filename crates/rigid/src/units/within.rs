@@ -29,6 +29,11 @@ pub struct WithinError {
 
 /// The quantities in a formula whose other names are those that `is_name` knows, from left to right.
 pub fn quantities(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Vec<Within>, WithinError> {
+    let alone = text.trim().trim_start_matches(['-', '\u{2212}']);
+    if begins_number(alone) && number_length(alone) == alone.len() {
+        let start = text.find(alone).unwrap_or(0);
+        check_exponent(alone, &(start..start + alone.len()))?;
+    }
     let mut found = Vec::new();
     let mut at = 0;
     let mut before = ' ';
@@ -70,12 +75,7 @@ fn quantity(
         let message = format!("`/` before a quantity has two readings; put brackets around `{written}`");
         return Err(WithinError { message, span });
     }
-    if is_basis_element(number) {
-        let remedy = number.replacen('e', "e+", 1);
-        let message =
-            format!("`{number}` is a number or has a basis vector in it; for the number write `{remedy}`");
-        return Err(WithinError { message, span });
-    }
+    check_exponent(number, &span)?;
     let Some((number, _)) = split_number(number) else { return Ok(None) };
     match value(written, &number, factor) {
         Ok(value) => Ok(Some(Within { span, value })),
@@ -91,10 +91,21 @@ fn factor(
     is_name: &impl Fn(&str) -> bool,
 ) -> Result<(Factor, usize), WithinError> {
     let (mut factor, mut end) = (Factor::default(), first);
-    let mut next = Some((first, false));
-    while let Some((at, divides)) = next {
+    let mut divided = false;
+    let mut next = Some((first, None));
+    while let Some((at, operator)) = next {
         let Some((length, unit)) = unit_at(text, at) else { break };
         let (word, after) = (&text[at..at + length], &text[at + length..]);
+        let divides = operator == Some('/');
+        if divided && operator.is_none() {
+            let message = format!(
+                "`{word}` may be a unit or a name; for the name write `({}) {word}`, for the unit `{}*{word}`",
+                &text[start..end],
+                &text[start..end]
+            );
+            return Err(WithinError { message, span: at..at + length });
+        }
+        divided |= divides;
         if is_name(word) || word.chars().all(|c| is_name(c.encode_utf8(&mut [0; 4]))) {
             let name = match at == first {
                 true => format!("{}*{word}", text[start..first].trim_end()),
@@ -118,13 +129,13 @@ fn factor(
     Ok((factor, end))
 }
 
-/// Where the next unit would stand after one that has ended, and whether it divides.
-fn following(text: &str, end: usize) -> Option<(usize, bool)> {
+/// Where the next unit would stand after one that has ended, and the sign between them, if there is one.
+fn following(text: &str, end: usize) -> Option<(usize, Option<char>)> {
     let at = skip_spaces(text, end);
     match text[at..].chars().next()? {
-        c @ ('*' | '·' | '⋅' | '/') => Some((skip_spaces(text, at + c.len_utf8()), c == '/')),
+        c @ ('*' | '·' | '⋅' | '/') => Some((skip_spaces(text, at + c.len_utf8()), Some(c))),
         // Letters that touch, as in `90°e1`, are no further unit.
-        _ => (at > end).then_some((at, false)),
+        _ => (at > end).then_some((at, None)),
     }
 }
 
@@ -172,9 +183,16 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Whether a number could be read as one with a basis vector behind it: `2e1`, `2e12`.
-fn is_basis_element(number: &str) -> bool {
-    number.split_once('e').is_some_and(|(_, digits)| digits.chars().all(|c| ('1'..='9').contains(&c)))
+/// `2e1` is twice a basis vector in a formula, and 20 everywhere else.
+fn check_exponent(number: &str, span: &Range<usize>) -> Result<(), WithinError> {
+    let Some((digits, exponent)) = number.split_once('e') else { return Ok(()) };
+    if !exponent.chars().all(|c| ('1'..='9').contains(&c)) {
+        return Ok(());
+    }
+    let message = format!(
+        "`{number}` has two readings; write `{digits}e+{exponent}` for the number, `{digits} e{exponent}` for the product"
+    );
+    Err(WithinError { message, span: span.clone() })
 }
 
 /// Whether a character within a word belongs to it: letters, digits, subscripts, primes, combining marks.

@@ -348,7 +348,14 @@ impl Parser<'_> {
                 Kind::Power(node, n)
             } else if self.eat(&Sign::Dagger) || self.eat_tilde_behind() {
                 Kind::Reverse(node)
-            } else if self.eat(&Sign::Prime) {
+            } else if self.is(&Sign::Prime) {
+                if matches!(self.items[self.at - 1].item, Item::Number(_)) {
+                    return Err(Error::new(
+                        self.span(),
+                        "a prime means a derivative, not minutes of arc or feet",
+                    ));
+                }
+                self.at += 1;
                 Kind::Derivative(node)
             } else {
                 return Ok(Built { node: *node, ..operand });

@@ -155,7 +155,7 @@ impl Parser<'_> {
                 factors.push(self.tight()?);
             } else if self.eat(&Sign::Slash) {
                 let divisor_start = self.span();
-                let divisor = self.tight()?;
+                let divisor = self.prefix()?;
                 self.check_divisor(start, divisor_start)?;
                 let numerator = self.joined(factors, start)?;
                 let span = self.since(start);
@@ -186,7 +186,17 @@ impl Parser<'_> {
     }
 
     /// `x/2a` may mean `(x/2) a` or `x/(2a)`; only a space tells.
-    fn check_divisor(&self, start: Span, divisor: Span) -> Result<(), Error> {
+    /// So may `1/2·x`.
+    fn check_divisor(&mut self, start: Span, divisor: Span) -> Result<(), Error> {
+        if let Some(tight) = self.tight_sign() {
+            let x = self.slice(self.since(divisor)).to_owned();
+            self.at += 1;
+            let begin = self.span();
+            self.prefix()?;
+            let (sign, y, span) = (tight.symbol(), self.slice(self.since(begin)), self.since(start));
+            let message = format!("what is divided by? Write `(…/{x}){sign}{y}` or `…/({x}{sign}{y})`");
+            return Err(Error::new(span, message));
+        }
         if !self.begins_operand() || self.ahead(0).is_some_and(|read| read.space) {
             return Ok(());
         }

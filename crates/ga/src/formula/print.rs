@@ -114,7 +114,7 @@ impl Printer {
             Kind::Quotient(pair) => {
                 self.dividend(&pair.0);
                 self.out.push('/');
-                self.part(&pair.1, Hold::Tight);
+                self.part(&pair.1, Hold::Prefix);
             }
             Kind::Tight(tight, operands) => self.tight(*tight, operands),
             Kind::Reverse(x) | Kind::Function(Named::Reverse, x) => {

@@ -35,6 +35,8 @@ fn mistakes_are_named_and_pointed_at() {
         ("2 3", "two numbers", "2 3"),
         ("(a)2", "a number right after a bracket", "2"),
         ("α/2a", "what is divided by?", "α/2a"),
+        ("1/2·a", "`(…/2)·a` or `…/(2·a)`", "1/2·a"),
+        ("a/b∧c", "`(…/b)∧c` or `…/(b∧c)`", "a/b∧c"),
         ("R(a)", "looks like a function", "R(a)"),
         ("a^2.5", "a power is a whole number", "2.5"),
         ("a^(1+1)", "a power is a whole number", "(1+1)"),

@@ -215,6 +215,12 @@ def test_definitions():
 # --- names
 
 
+def test_marks_are_composed_or_apart():
+    for text in ("ẋ", "x\u0307"):
+        assert ph.evaluate(text, ẋ=2.0) == ph.evaluate(text, {"x\u0307": 2.0}) == 2
+        assert ph.formula(text).latex == r"\dot{x}"
+
+
 def test_names_that_are_no_identifiers():
     R, Ω = random_rotors(()), e1.wedge(e2)
     values = {"R'": Ω * R / 2, "a∥": e1, "a⊥": e3, "Ω_B": Ω}
@@ -363,6 +369,8 @@ def test_without_an_algebra_basis_vectors_are_those_of_the_values():
 def test_e_may_be_a_name():
     assert ph.evaluate("p/(1 + e cos(θ))", p=3.0, e=0.5, θ=0.0) == 2
     assert ph.evaluate("e^(0)") == 1
+    f = ph.formula("e∧x + (e)² a")
+    assert ph.formula(f.ascii)(e=2.0, x=e1, a=e2) == f(e=2.0, x=e1, a=e2) == 2 * e1 + 4 * e2
     with pytest.raises(ph.FormulaError, match="`e` has no value"):
         ph.evaluate("2 e a", a=e1)
 

@@ -53,6 +53,14 @@ def test_the_residual_is_measured_by_the_terms():
     assert not ph.evaluate("x - y = 0", x=1.0, y=1.0 + 1e-8)
 
 
+@pytest.mark.parametrize("size", [1e-170, 1.0, 1e170])
+def test_sizes_of_quotients_do_not_leave_the_floats(size):
+    assert ph.evaluate("a/s s = a", a=size * e1, s=size)
+    assert ph.evaluate("s/t = 1", s=size, t=size)
+    assert not ph.evaluate("s/t = 1.00000001", s=size, t=size)
+    assert ph.evaluate("s s⁻¹ = 1", s=size)
+
+
 def test_tolerances():
     single = ph.vector([1.0, 2, 3], dtype=np.float32)
     assert ph.evaluate("a a = a·a", a=single).rtol == 1e-4
@@ -108,6 +116,8 @@ def test_symbols_must_vanish_identically():
     assert sympy.simplify(agreement.residual - 2 * sympy.sqrt(y**2 + z**2)) == 0
     with pytest.raises(TypeError, match="identically"):
         agreement.within(1e-3)
+    with pytest.raises(ph.FormulaError, match="by name"):
+        ph.evaluate("x/3 = 0.3333333333333333 x", x=x)
 
 
 def test_digits_of_mpmath_count():

@@ -85,6 +85,8 @@ def test_what_has_no_gradient():
         ph.formula("F(a)·a").grad("F")(F=ph.LinearMap.from_matrix(np.eye(3)), a=e1)
     with pytest.raises(TypeError, match="names"):
         ph.formula("a²").grad()
+    with pytest.raises(TypeError, match="each name once"):
+        ph.formula("a1²").grad("a1", "a_1")
     with pytest.raises(TypeError, match="floats"):
         ph.formula("a²").grad("a")(a=ph.vector([1, 2, 3], dtype=object))
 

@@ -160,6 +160,22 @@ def test_numbers_are_exact_beside_exact_ones():
         assert abs(float(ph.evaluate("0.1 s π", s=one).components[0] - mpmath.pi / 10)) < 1e-39
 
 
+@pytest.mark.parametrize("whole", [3, 2**53, 2**53 + 1, 2**60, 10**18])
+def test_whole_numbers_stay_whole_beside_exact_ones(whole):
+    x = Fraction(whole + 1)
+    assert ph.evaluate("n - x", n=whole, x=x).components[0] == -1
+    assert not ph.evaluate("n = x", n=whole, x=x)
+    assert (ph.scalar(x) * whole).components[0] == x * whole
+    assert ph.evaluate("n = x - 1", n=whole, x=x).rtol == 0
+
+
+def test_numbers_that_are_not_exact_are_refused_beside_exact_ones():
+    for text in ("9007199254740993 x", "x 10^20", "0.3333333333333333333 x", "1e-30 x"):
+        with pytest.raises(ph.FormulaError, match="give this one by name"):
+            ph.evaluate(text, x=Fraction(1))
+        assert ph.evaluate(text, x=1.0).dtype == np.float64
+
+
 # --- linear maps and functions
 
 
@@ -197,6 +213,12 @@ def test_definitions():
 
 
 # --- names
+
+
+def test_marks_are_composed_or_apart():
+    for text in ("ẋ", "x\u0307"):
+        assert ph.evaluate(text, ẋ=2.0) == ph.evaluate(text, {"x\u0307": 2.0}) == 2
+        assert ph.formula(text).latex == r"\dot{x}"
 
 
 def test_names_that_are_no_identifiers():
@@ -242,6 +264,10 @@ def test_values_come_by_keyword_or_by_mapping():
 
 def test_what_is_no_value_is_named():
     f = ph.formula("a")
+    with pytest.raises(TypeError, match="a is an array of complex128"):
+        f(a=np.array([1j]))
+    with pytest.raises(TypeError, match="by name, got 1"):
+        f({1: e1})
     for value, remedy in [
         ([1.0, 2.0, 3.0], "ph.vector"),
         (lambda x: x, "linear maps"),
@@ -312,6 +338,19 @@ def test_wrong_texts_are_found_at_once():
         ph.formula(3)
     with pytest.raises(TypeError, match="algebra"):
         ph.formula("a", algebra="G3")
+    with pytest.raises(TypeError, match="text, got list"):
+        ph.evaluate(["a"])
+    with pytest.raises(TypeError, match="define must be a mapping"):
+        ph.formula("V(a)", define="V(x) = x")
+    with pytest.raises(TypeError, match="'c': 2"):
+        ph.formula("c", define={"c": 2})
+
+
+def test_batches_that_do_not_broadcast_are_named():
+    u, v = ph.vector(np.ones((3, 3))), ph.vector(np.ones((4, 3)))
+    for text in ("u v", "u v = 1", "u + v = v"):
+        with pytest.raises(ValueError, match=r"do not broadcast: u \(3,\), v \(4,\)"):
+            ph.evaluate(text, u=u, v=v)
 
 
 # --- other algebras
@@ -330,6 +369,40 @@ def test_other_algebras(signature, shape):
     size = np.sqrt((M.components**2).sum(axis=-1) * (a.components**2).sum(axis=-1))
     size = 1 + size * np.sqrt((b.components**2).sum(axis=-1))
     assert np.all(abs((got - expected).components).max(axis=-1) <= 64 * EPS * algebra.size * size)
+
+
+def test_without_an_algebra_basis_vectors_are_those_of_the_values():
+    p = ph.algebra(4, 1).vector([1, 0, 0, 0, 2])
+    *_, e4, e5 = ph.algebra(4, 1).basis_vectors
+    assert ph.evaluate("e5 p + e45", p=p) == e5 * p + e4 * e5
+    assert ph.formula("⟨e1 e2 e3 e4 p⟩_5")(p=p) == 2 * ph.algebra(4, 1).I
+    with pytest.raises(ph.FormulaError, match="e1 to e3"):
+        ph.evaluate("e4 a", a=e1)
+    with pytest.raises(ph.FormulaError, match="no basis element"):
+        ph.formula("e9")
+
+
+def test_e_may_be_a_name():
+    assert ph.evaluate("p/(1 + e cos(θ))", p=3.0, e=0.5, θ=0.0) == 2
+    assert ph.evaluate("e^(0)") == 1
+    f = ph.formula("e∧x + (e)² a")
+    assert ph.formula(f.ascii)(e=2.0, x=e1, a=e2) == f(e=2.0, x=e1, a=e2) == 2 * e1 + 4 * e2
+    with pytest.raises(ph.FormulaError, match="`e` has no value"):
+        ph.evaluate("2 e a", a=e1)
+
+
+def test_repeated_indices_are_summed_where_they_stand():
+    values = {"a1": 1.0, "a2": 2.0, "a3": 3.0, "b1": 4.0, "b2": 5.0, "b3": 6.0}
+    for text, value in [
+        ("2(a_k b_k + 5)", 74),
+        ("(a_k b_k)²", 32**2),
+        ("1/(a_k b_k)", 1 / 32),
+        ("norm(a_k e_k)²", 14),
+        ("1 + 2(1 + a_i b_i)(a_k a_k)", 1 + 2 * 33 * 14),
+    ]:
+        assert abs(float(ph.evaluate(text, values).components[0]) - value) <= 8 * EPS * value
+    with pytest.raises(ph.FormulaError, match="k stands here 4 times"):
+        ph.evaluate("(a_k b_k)(a_k b_k)", values)
 
 
 def test_values_of_different_algebras_do_not_meet():

@@ -243,8 +243,8 @@ _RULES: dict[str, Callable[..., Any]] = {
 
 # From the size of the value, that of the last operand, and those of the operands' terms.
 _STRETCHED: dict[str, Callable[..., Any]] = {
-    "divide": lambda v, b, s, t: s * t / (b * b),
-    "inverse": lambda v, a, s: v * v * s,
+    "divide": lambda v, b, s, t: s / b * (t / b),
+    "inverse": lambda v, a, s: v * (v * s),
     "exp": lambda v, a, s: v * (1 + s),
     "log": lambda v, a, s: v + s / a,
     "sqrt": lambda v, a, s: v * (1 + s / (a + (a == 0))),

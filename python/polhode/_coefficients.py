@@ -105,6 +105,8 @@ def scalars(value: Any, like: Any) -> Any:
     if type(value) in (int, float) and floating:
         number = as_floats(value, "scalar")[np.newaxis]
         return number.astype(like.dtype) if is_float(like) else number  # as a number in NumPy
+    if type(value) is int and like is not None and like.dtype == object:
+        return _whole(value)[np.newaxis]
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
@@ -119,7 +121,14 @@ def number_like(value: Any, what: str, like: Any) -> Any:
     """Return coefficients (…); numbers of Python take the precision of `like`, if that is of floats."""
     if is_float(like) and type(value) in (int, float):
         return as_floats(value, what).astype(like.dtype)
+    if type(value) is int and isinstance(like, np.ndarray) and like.dtype == object:
+        return _whole(value)
     return as_coefficients(value, what)
+
+
+def _whole(value: int) -> Any:
+    """Return an integer beside exact numbers: itself, though a float may hold it, as it does 2**60."""
+    return np.array(value, dtype=object)
 
 
 def foreign_kind(value: Any) -> Any:

@@ -160,12 +160,19 @@ def formula(text: str, algebra: Algebra | None = None, define: Mapping[str, str]
         raise TypeError(f"a formula is a text, got {type(text).__name__}")
     if algebra is not None and not isinstance(algebra, Algebra):
         raise TypeError(f"algebra must be one of ph.algebra(…), got {type(algebra).__name__}")
-    return Formula(_native.Formula(text, algebra, list((define or {}).items())))
+    if define is not None and not isinstance(define, Mapping):
+        raise TypeError(f'define must be a mapping such as {{"V(x)": "½ x·x"}}, got {type(define).__name__}')
+    definitions = list((define or {}).items())
+    for definition in definitions:
+        if not all(isinstance(part, str) for part in definition):
+            raise TypeError(f"define gives texts to texts, got {definition[0]!r}: {definition[1]!r}")
+    return Formula(_native.Formula(text, algebra, definitions))
 
 
 def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
     """Return the value of a formula: ``ph.evaluate("-I a∧b", a=a, b=b)``. See `Formula`."""
-    return _compiled(text)(*(() if values is None else (values,)), **named)
+    made = _compiled(text) if isinstance(text, str) else formula(text)
+    return made(*(() if values is None else (values,)), **named)
 
 
 @functools.lru_cache(maxsize=256)

@@ -21,6 +21,8 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     """Return the function of values that gives the gradients of a scalar formula by some names."""
     if not names or not all(isinstance(name, str) for name in names):
         raise TypeError(f'grad takes the names to differentiate by, as in f.grad("x"), got {names!r}')
+    if len({_native.canonical(name) for name in names}) < len(names):
+        raise TypeError(f"grad takes each name once, got {names!r}")
     jax = optional("jax", "jax", "the gradient of a formula")
     tell_jax()
 

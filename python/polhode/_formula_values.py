@@ -43,6 +43,7 @@ class Given:
 
     def inputs(self, program: _native.Program) -> list[Any]:
         """Return what a program takes: multivectors, and of maps matrices (..., 9), determinants (..., 1)."""
+        self._require_one_shape(program)
         return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
 
     def narrowed(self) -> Given:
@@ -51,6 +52,16 @@ class Given:
         kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
         return Given(self.algebra, kinds, values)
 
+    def _require_one_shape(self, program: _native.Program) -> None:
+        """Raise for batches that do not broadcast."""
+        used = dict.fromkeys(place for place, _, _ in program.inputs)
+        shapes = {self.kinds[place][0]: _batch(self.values[place]) for place in used}
+        try:
+            np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+            raise ValueError(f"the batches of values do not broadcast: {told}") from None
+
     def _input(self, value: Any, kind: str, grade: int) -> Any:
         if kind == "value":
             return value
@@ -58,6 +69,10 @@ class Given:
             return np.asarray(value.determinant)[..., np.newaxis]
         matrix = value.matrix if grade == 1 else value.bivector_matrix
         return matrix.reshape(*matrix.shape[:-2], 9)
+
+
+def _batch(value: Any) -> tuple[int, ...]:
+    return tuple(value.shape if isinstance(value, Multivector) else value.matrix.shape[:-2])
 
 
 def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
@@ -138,8 +153,11 @@ def _kind(value: Multivector | LinearMap) -> tuple[int, int]:
 def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[str, Any]:
     if values is None:
         return named
-    if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
+    if not isinstance(values, Mapping):
         raise TypeError(f"values are given as keywords or as a mapping by name, got {type(values).__name__}")
+    for name in values:
+        if not isinstance(name, str):
+            raise TypeError(f"values are given by name, got {name!r}, which is no text")
     twice = [name for name in values if name in named]
     if twice:
         raise TypeError(f"{twice[0]!r} is given twice, in the mapping and as a keyword")
@@ -184,4 +202,5 @@ def _value(name: str, value: Any, algebra: Any) -> Any:
         remedy = "formulas call linear maps (ph.LinearMap.from_function) and functions they define themselves"
     elif isinstance(value, list | tuple):
         remedy = "wrap components with ph.vector, a batch of numbers with np.array"
-    raise TypeError(f"{name} is a {type(value).__name__}; {remedy}")
+    kind = f"an array of {value.dtype}" if isinstance(value, np.ndarray) else f"a {type(value).__name__}"
+    raise TypeError(f"{name} is {kind}; {remedy}")

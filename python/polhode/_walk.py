@@ -94,8 +94,13 @@ class Walk:
 
     def number(self, value: float, ratio: tuple[int, int] | None) -> Any:
         """Return a number as it was written: exact beside exact ones."""
-        if ratio is None or not self.kind.exact:
+        if not self.kind.exact:
             return value
+        if ratio is None:
+            raise ValueError(
+                "numbers in a formula are exact up to 2⁵³, and ratios of such; "
+                "give this one by name to compute exactly"
+            )
         return sys.modules["sympy"].Rational(*ratio) if self.symbolic else divide(*ratio)
 
 

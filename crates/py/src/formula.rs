@@ -3,7 +3,7 @@
 use crate::arrays::bad;
 use crate::calls::{Argument, Calls};
 use crate::program::{Program, characters, error};
-use crate::signature::{Algebra, g3};
+use crate::signature::{Algebra, g3, largest};
 use crate::value::Object;
 use polhode_ga::formula::{
     Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
@@ -49,8 +49,7 @@ impl Formula {
     ) -> PyResult<Formula> {
         let formula =
             Formula { text, algebra, definitions, programs: Mutex::default(), calls: Calls::default() };
-        let algebra = formula.algebra_or_g3(py)?;
-        formula.read(py, algebra, Names::open())?;
+        formula.read_open(py)?;
         Ok(formula)
     }
 
@@ -81,8 +80,11 @@ impl Formula {
         algebra: Py<Algebra>,
         given: Vec<Said>,
     ) -> PyResult<String> {
-        let names = if given.is_empty() { Names::open() } else { self.names(&given)?.0 };
-        let (tree, _) = self.read(py, &algebra, names)?;
+        let tree = if given.is_empty() {
+            self.read_open(py)?
+        } else {
+            self.read(py, &algebra, self.names(&given)?.0)?.0
+        };
         Ok(match style {
             "latex" => tree.latex(),
             "ascii" => tree.text(Style::Ascii),
@@ -162,6 +164,17 @@ impl Formula {
             Some(algebra) => Ok(algebra),
             None => g3(py),
         }
+    }
+
+    /// The tree for values that are not known yet. Without an algebra there may be more basis vectors than in
+    /// 3-d space.
+    fn read_open(&self, py: Python<'_>) -> PyResult<Tree> {
+        let read = self.read(py, self.algebra_or_g3(py)?, Names::open());
+        let read = match (read, &self.algebra) {
+            (Err(first), None) => self.read(py, largest(py)?, Names::open()).map_err(|_| first),
+            (read, _) => read,
+        };
+        Ok(read?.0)
     }
 
     /// The tree, with names that include those defined.

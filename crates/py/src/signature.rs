@@ -36,6 +36,12 @@ pub(crate) fn g3(py: Python<'_>) -> PyResult<&Py<Algebra>> {
     G3.get_or_try_init(py, || Py::new(py, Algebra::new(3, 0, 0)?))
 }
 
+/// An algebra of as many generators as there are.
+pub(crate) fn largest(py: Python<'_>) -> PyResult<&Py<Algebra>> {
+    static LARGEST: PyOnceLock<Py<Algebra>> = PyOnceLock::new();
+    LARGEST.get_or_try_init(py, || Py::new(py, Algebra::new(table::MAX_GENERATORS, 0, 0)?))
+}
+
 impl Algebra {
     /// The plan of a product, made once.
     pub fn plan(&self, name: &str, ga: u16, gb: u16) -> PyResult<Arc<Plan>> {

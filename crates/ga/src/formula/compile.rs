@@ -196,6 +196,11 @@ impl Compiler<'_> {
         if let Some((_, id)) = self.frame.parameters.iter().find(|(parameter, _)| parameter == name) {
             return Ok(*id);
         }
+        let unprimed = name.trim_end_matches('\'');
+        if name != unprimed && self.frame.parameters.iter().any(|(parameter, _)| parameter == unprimed) {
+            let message = format!("`{name}`, the derivative of a parameter, has to be a parameter, too");
+            return Err(self.steps.error(span, message));
+        }
         let ty = match self.names.get(name) {
             Some(Meaning::Value(ty)) => *ty,
             Some(Meaning::Function(definition)) if definition.parameters.is_empty() => {

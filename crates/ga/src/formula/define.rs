@@ -14,11 +14,13 @@ use std::collections::BTreeSet;
 /// If the head is no name with parameters, the body no formula in them, or if the function would call itself.
 pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result<(), Error> {
     let (name, parameters) = heading(head)?;
-    let mut inside = names.clone();
-    for parameter in &parameters {
-        inside.bind(parameter.clone(), Meaning::Value(Type::of(Grades::ALL)));
+    let any = Meaning::Value(Type::of(Grades::ALL));
+    let hidden: Vec<_> = parameters.iter().map(|name| names.bind(name.clone(), any.clone())).collect();
+    let tree = parse(body, space, names);
+    for (name, meaning) in parameters.iter().zip(hidden) {
+        names.restore(name, meaning);
     }
-    let tree = parse(body, space, &inside)?;
+    let tree = tree?;
     let whole = Span { start: 0, end: body.len() };
     let [body] = <[Node; 1]>::try_from(tree.sides).map_err(|_| {
         Error::new(whole, format!("`{head}` is defined by an equation; write the value alone"))

@@ -1,5 +1,7 @@
 //! Names in LaTeX: letters, accents, indices, primes and labels.
 
+use super::letters::decomposed;
+
 /// The letters of a name before its indices, primes and label.
 pub(super) fn core(name: &str) -> &str {
     let end = name.find(|c: char| c.is_ascii_digit() || "_'(∥⊥".contains(c));
@@ -31,7 +33,8 @@ fn upright(letters: &str) -> String {
         return format!("\\mathrm{{{letters}}}");
     }
     let mut marked: Vec<(char, Vec<&str>)> = Vec::new();
-    for c in letters.chars() {
+    let apart = |c| decomposed(c).map_or([Some(c), None], |(letter, mark)| [Some(letter), Some(mark)]);
+    for c in letters.chars().flat_map(apart).flatten() {
         match (ACCENTS.iter().find(|(mark, _)| *mark == c), marked.last_mut()) {
             (Some((_, accent)), Some((_, accents))) => accents.push(accent),
             _ => marked.push((c, Vec::new())),

@@ -140,6 +140,39 @@ pub(crate) fn is_mark(c: char) -> bool {
     matches!(c, '\u{300}'..='\u{36f}' | '\u{1ab0}'..='\u{1aff}' | '\u{20d0}'..='\u{20ff}')
 }
 
+/// Letters that are one character with a mark, after the letter without it: as Python composes names.
+const COMPOSED: [(char, &str); 8] = [
+    ('\u{307}', "AȦBḂCĊDḊEĖFḞGĠHḢIİMṀNṄOȮPṖRṘSṠTṪWẆXẊYẎZŻaȧbḃcċdḋeėfḟgġhḣmṁnṅoȯpṗrṙsṡtṫwẇxẋyẏzż"),
+    ('\u{308}', "AÄEËHḦIÏOÖUÜWẄXẌYŸaäeëhḧiïoötẗuüwẅxẍyÿΙΪΥΫιϊυϋ"),
+    ('\u{302}', "AÂCĈEÊGĜHĤIÎJĴOÔSŜUÛWŴYŶZẐaâcĉeêgĝhĥiîjĵoôsŝuûwŵyŷzẑ"),
+    ('\u{304}', "AĀEĒGḠIĪOŌUŪYȲaāeēgḡiīoōuūyȳΑᾹΙῙΥῩαᾱιῑυῡ"),
+    (
+        '\u{301}',
+        "AÁCĆEÉGǴIÍKḰLĹMḾNŃOÓPṔRŔSŚUÚWẂYÝZŹaácćeégǵiíkḱlĺmḿnńoópṕrŕsśuúwẃyýzźΑΆΕΈΗΉΙΊΟΌΥΎΩΏαάεέηήιίοόυύωώ",
+    ),
+    ('\u{300}', "AÀEÈIÌNǸOÒUÙWẀYỲaàeèiìnǹoòuùwẁyỳΑᾺΕῈΗῊΙῚΟῸΥῪΩῺαὰεὲηὴιὶοὸυὺωὼ"),
+    ('\u{30c}', "AǍCČDĎEĚGǦHȞIǏKǨLĽNŇOǑRŘSŠTŤUǓZŽaǎcčdďeěgǧhȟiǐjǰkǩlľnňoǒrřsštťuǔzž"),
+    ('\u{306}', "AĂEĔGĞIĬOŎUŬaăeĕgğiĭoŏuŭΑᾸΙῘΥῨαᾰιῐυῠ"),
+];
+
+/// The character that a letter and a mark after it are.
+pub(crate) fn composed(letter: char, mark: char) -> Option<char> {
+    pairs().find(|&(plain, m, _)| (plain, m) == (letter, mark)).map(|(_, _, with)| with)
+}
+
+/// The letter and the mark that a character is.
+pub(crate) fn decomposed(c: char) -> Option<(char, char)> {
+    pairs().find(|&(_, _, with)| with == c).map(|(plain, mark, _)| (plain, mark))
+}
+
+/// Each letter, mark, and the letter with the mark.
+fn pairs() -> impl Iterator<Item = (char, char, char)> {
+    COMPOSED.into_iter().flat_map(|(mark, letters)| {
+        let plain = letters.chars().step_by(2);
+        plain.zip(letters.chars().skip(1).step_by(2)).map(move |(plain, with)| (plain, mark, with))
+    })
+}
+
 /// How many primes it is.
 pub(crate) fn primes(c: char) -> usize {
     match c {
@@ -174,6 +207,8 @@ mod tests {
             assert_eq!(folded(styled), plain, "{styled}");
         }
         assert_eq!(below_tilde('Ã'), Some('A'));
+        assert_eq!((composed('x', '\u{307}'), decomposed('ẋ')), (Some('ẋ'), Some(('x', '\u{307}'))));
+        assert_eq!((composed('n', '\u{302}'), decomposed('x')), (None, None));
         assert_eq!(subscript('₇'), Some('7'));
         assert_eq!(superscript('⁷'), Some('7'));
     }

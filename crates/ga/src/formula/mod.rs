@@ -3,7 +3,7 @@
 //! ```text
 //! equation = sum { "=" sum }
 //! sum      = [ "-" ] product { ( "+" | "-" ) product }
-//! product  = tight { [ "*" | "/" ] tight }             juxtaposition is the geometric product
+//! product  = tight { [ "*" ] tight | "/" prefix }     juxtaposition is the geometric product
 //! tight    = prefix { ( "∧" "^" | "·" "|" | "×" | "⨯" | "⌋" | "⌊" ) prefix }
 //! prefix   = { "~" | "-" } postfix
 //! postfix  = primary { "^" integer | superscript | "~" | "†" | "'" }

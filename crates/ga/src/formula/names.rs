@@ -80,9 +80,17 @@ impl Names {
         self.meanings.get(name)
     }
 
-    /// Binds a name.
-    pub fn bind(&mut self, name: String, meaning: Meaning) {
-        self.meanings.insert(name, meaning);
+    /// Binds a name; what it stood for before, if anything.
+    pub fn bind(&mut self, name: String, meaning: Meaning) -> Option<Meaning> {
+        self.meanings.insert(name, meaning)
+    }
+
+    /// Gives a name back what it stood for, or nothing.
+    pub(crate) fn restore(&mut self, name: &str, meaning: Option<Meaning>) {
+        match meaning {
+            Some(meaning) => self.meanings.insert(name.to_owned(), meaning),
+            None => self.meanings.remove(name),
+        };
     }
 
     /// Every bound name, in order.

@@ -64,7 +64,7 @@ impl Parser<'_> {
         }
         let bracket = self.slice(open).chars().next().unwrap_or('(');
         match self.peek() {
-            None | Some(Item::Sign(Sign::Equals | Sign::Comma)) => {
+            None | Some(Item::Sign(Sign::Equals)) => {
                 Err(Error::new(open, format!("`{bracket}` is never closed")))
             }
             Some(Item::Sign(Sign::Close(_) | Sign::CloseAngle)) => {
@@ -180,13 +180,27 @@ impl Parser<'_> {
             self.deeper(start)?;
             let exponent = self.exponent()?;
             self.depth -= 1;
+            self.check_exponent(start)?;
             exponent
+        } else if self.names.is_open() {
+            return self.build(Kind::Name("e".to_owned()), start, 0);
         } else {
             let message = "`e` has no value; an exponential is written `e^(…)` or `exp(…)`, the basis vectors e1, e2, …";
             return Err(Error::new(start, message));
         };
         let function = Kind::Function(Named::Function(Function::Exp), Box::new(exponent.node));
         self.build(function, self.since(start), exponent.height)
+    }
+
+    /// `e^-Bθ` may mean `e^(-B) θ` or `e^(-Bθ)`; only brackets or a space tell.
+    fn check_exponent(&self, start: Span) -> Result<(), Error> {
+        let last = &self.items[self.at - 1].item;
+        let ends = matches!(last, Item::Sign(Sign::Close(_) | Sign::CloseAngle));
+        if ends || !self.begins_operand() || self.ahead(0).is_some_and(|next| next.space) {
+            return Ok(());
+        }
+        let span = start.to(self.span());
+        Err(Error::new(span, "where does the exponent end? Put it in brackets, `e^(…)`"))
     }
 
     /// What stands above e: signs and one operand, without powers of its own.

@@ -28,7 +28,7 @@ pub fn parse(text: &str, space: Space, names: &Names) -> Result<Tree, Error> {
         sides.push(parser.sum()?.node);
     }
     match parser.peek() {
-        None => Ok(Tree { sides: sum_repeated(sides, names) }),
+        None => Ok(Tree { sides: sum_repeated(sides, names)? }),
         Some(_) => Err(parser.unexpected()),
     }
 }
@@ -95,7 +95,12 @@ impl Parser<'_> {
         };
         let text = self.slice(read.span);
         let message = match &read.item {
-            Item::Sign(Sign::Close(_) | Sign::CloseAngle) => format!("`{text}` closes no bracket"),
+            Item::Sign(Sign::Close(_) | Sign::CloseAngle) if self.depth == 0 => {
+                format!("`{text}` closes no bracket")
+            }
+            Item::Sign(Sign::Tight(Tight::Dot)) if text == "|" => {
+                "`|` is a dot product, `a|b`, and needs its left factor; a magnitude is `norm(a)`".to_owned()
+            }
             Item::Sign(Sign::Comma) => "a comma only stands between the arguments of a function".to_owned(),
             Item::Sign(Sign::Underscore) => "a subscript follows a letter or `⟨…⟩` directly".to_owned(),
             Item::Subscript(_) => "a subscript follows a letter or `⟩` directly".to_owned(),
@@ -150,7 +155,7 @@ impl Parser<'_> {
                 factors.push(self.tight()?);
             } else if self.eat(&Sign::Slash) {
                 let divisor_start = self.span();
-                let divisor = self.tight()?;
+                let divisor = self.prefix()?;
                 self.check_divisor(start, divisor_start)?;
                 let numerator = self.joined(factors, start)?;
                 let span = self.since(start);
@@ -181,7 +186,17 @@ impl Parser<'_> {
     }
 
     /// `x/2a` may mean `(x/2) a` or `x/(2a)`; only a space tells.
-    fn check_divisor(&self, start: Span, divisor: Span) -> Result<(), Error> {
+    /// So may `1/2·x`.
+    fn check_divisor(&mut self, start: Span, divisor: Span) -> Result<(), Error> {
+        if let Some(tight) = self.tight_sign() {
+            let x = self.slice(self.since(divisor)).to_owned();
+            self.at += 1;
+            let begin = self.span();
+            self.prefix()?;
+            let (sign, y, span) = (tight.symbol(), self.slice(self.since(begin)), self.since(start));
+            let message = format!("what is divided by? Write `(…/{x}){sign}{y}` or `…/({x}{sign}{y})`");
+            return Err(Error::new(span, message));
+        }
         if !self.begins_operand() || self.ahead(0).is_some_and(|read| read.space) {
             return Ok(());
         }
@@ -343,7 +358,14 @@ impl Parser<'_> {
                 Kind::Power(node, n)
             } else if self.eat(&Sign::Dagger) || self.eat_tilde_behind() {
                 Kind::Reverse(node)
-            } else if self.eat(&Sign::Prime) {
+            } else if self.is(&Sign::Prime) {
+                if matches!(self.items[self.at - 1].item, Item::Number(_)) {
+                    return Err(Error::new(
+                        self.span(),
+                        "a prime means a derivative, not minutes of arc or feet",
+                    ));
+                }
+                self.at += 1;
                 Kind::Derivative(node)
             } else {
                 return Ok(Built { node: *node, ..operand });

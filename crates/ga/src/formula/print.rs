@@ -114,7 +114,7 @@ impl Printer {
             Kind::Quotient(pair) => {
                 self.dividend(&pair.0);
                 self.out.push('/');
-                self.part(&pair.1, Hold::Tight);
+                self.part(&pair.1, Hold::Prefix);
             }
             Kind::Tight(tight, operands) => self.tight(*tight, operands),
             Kind::Reverse(x) | Kind::Function(Named::Reverse, x) => {
@@ -211,7 +211,11 @@ impl Printer {
                 let symbol = tight.symbol().encode_utf8(&mut [0; 4]).to_owned();
                 self.push(&symbol, if tight == Tight::Wedge { "^" } else { "|" });
             }
-            self.part(operand, Hold::Prefix);
+            // `e^x` is the exponential, where e has no value.
+            match &operand.kind {
+                Kind::Name(name) if name == "e" && self.ascii() => self.bracketed(operand),
+                _ => self.part(operand, Hold::Prefix),
+            }
         }
     }
 
@@ -229,6 +233,7 @@ impl Printer {
     fn power(&mut self, base: &Node, n: i32) {
         match &base.kind {
             Kind::Number(x) if !self.number(x).bytes().all(|c| c.is_ascii_digit()) => self.bracketed(base),
+            Kind::Name(name) if name == "e" => self.bracketed(base),
             _ => self.part(base, Hold::Primary),
         }
         if self.ascii() {

@@ -1,8 +1,8 @@
 //! Text cut into numbers, words and signs.
 
 use super::letters::{
-    TILDE, below_tilde, folded, fraction, is_letter, is_mark, is_space, part_sign, primes, subscript,
-    superscript,
+    TILDE, below_tilde, composed, folded, fraction, is_letter, is_mark, is_space, part_sign, primes,
+    subscript, superscript,
 };
 use super::number::Number;
 use super::tree::{Span, Tight};
@@ -226,7 +226,10 @@ impl Lexer<'_> {
                 reversed = !reversed;
             } else if is_mark(c) {
                 self.chars.next();
-                name.push(c);
+                match name.chars().next().and_then(|letter| composed(letter, c)) {
+                    Some(both) if name.chars().nth(1).is_none() => name = both.into(),
+                    _ => name.push(c),
+                }
             } else if primes(c) > 0 {
                 self.chars.next();
                 prime_count += primes(c);
@@ -381,6 +384,7 @@ mod tests {
             ("R(0)", "R(0)"),
             ("R( t )", "R(t)"),
             ("n̂", "n\u{302}"),
+            ("x\u{307}", "ẋ"),
         ];
         for (name, expected) in cases {
             assert_eq!(canonical(name).as_deref(), Some(expected), "{name}");

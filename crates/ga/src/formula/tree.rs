@@ -84,6 +84,23 @@ impl Node {
             | Kind::Total(_, x) => vec![x],
         }
     }
+
+    /// The same, to change them.
+    pub(crate) fn children_mut(&mut self) -> Vec<&mut Node> {
+        match &mut self.kind {
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
+            Kind::Sum(terms) => terms.iter_mut().map(|(_, term)| term).collect(),
+            Kind::Product(factors) | Kind::Call(_, factors) => factors.iter_mut().collect(),
+            Kind::Tight(_, operands) => operands.iter_mut().collect(),
+            Kind::Quotient(pair) => vec![&mut pair.0, &mut pair.1],
+            Kind::Reverse(x)
+            | Kind::Power(x, _)
+            | Kind::Part(x, _)
+            | Kind::Function(_, x)
+            | Kind::Derivative(x)
+            | Kind::Total(_, x) => vec![x],
+        }
+    }
 }
 
 /// The kinds of nodes.

@@ -107,6 +107,13 @@ fn indices_are_summed_or_free() {
     same(&["Σ_k f_k'", "f1' + f2' + f3'"]);
     // Each term of a sum has the index once: it is free.
     assert_eq!(program("(f_k + e_k) v = (e_k + f_k) v").results.len(), 3);
+    // The sum is around what has the index, and nothing else.
+    same(&["2(f_k·e_k + 5)", "2(Σ_k f_k·e_k + 5)"]);
+    same(&["norm(ω_k e_k)", "norm(ω1 e1 + ω2 e2 + ω3 e3)"]);
+    same(&["(ω_k ω_k)²", "(ω1 ω1 + ω2 ω2 + ω3 ω3)²"]);
+    same(&["1/(f_k·f_k) a", "1/(Σ_k f_k·f_k) a"]);
+    same(&["(f_k e_k)' + 2", "(Σ_k f_k e_k)' + 2"]);
+    same(&["(ω_k f_k)·(ω_j e_j)", "(Σ_k ω_k f_k)·(Σ_j ω_j e_j)"]);
 }
 
 #[test]
@@ -178,14 +185,22 @@ fn definitions_are_written_out() {
     define("V(x)", "½ x·x", space, &mut names).unwrap();
     define("d", "a + b", space, &mut names).unwrap();
     define("W(x, y)", "V(x) − V(y) + d·x", space, &mut names).unwrap();
-    let grades = |text: &str| {
-        let tree = parse(text, space, &names).unwrap();
-        let program = compile(&tree, space, &names).unwrap();
+    let compiled = |text: &str, names: &Names| compile(&parse(text, space, names)?, space, names);
+    let grades = |text: &str, names: &Names| {
+        let program = compiled(text, names).unwrap();
         let mut grades: Vec<u16> = program.steps.iter().map(|step| step.ty.grades.0).collect();
         grades.sort_unstable();
         grades
     };
-    assert_eq!(grades("W(a, b)"), grades("½ a·a − ½ b·b + (a + b)·a"));
+    assert_eq!(grades("W(a, b)", &names), grades("½ a·a − ½ b·b + (a + b)·a", &names));
+    // A parameter hides a name of outside while the body is read, and no longer.
+    assert_eq!(grades("x", &names), [0b0010]);
+    // The derivative of a parameter is no name of outside.
+    define("E(v)", "(v v)'", space, &mut names).unwrap();
+    define("P(v, v')", "(v v)'", space, &mut names).unwrap();
+    let error = compiled("E(a)", &names).unwrap_err();
+    assert!(error.message.contains("`v'`, the derivative of a parameter"), "{}", error.message);
+    assert_eq!(grades("P(a, b)", &names), grades("b a + a b", &names));
     for (head, body) in
         [("f(y)", "f(y)"), ("V(x)", "W(x, x)"), ("2", "a"), ("f(x, x)", "x"), ("f(", "a"), ("g", "a = b")]
     {

@@ -1,6 +1,7 @@
 """``polhode eval``: what it prints, where formulas come from, and every kind of mistake, read aloud."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -329,6 +330,15 @@ def test_files_that_cannot_be_read(tmp_path):
     )
 
 
+@pytest.mark.parametrize(("command", "code"), [("eval", 3), ("repl", 1)])
+def test_a_closed_standard_input(command, code):
+    done = subprocess.run(
+        ["bash", "-c", f"'{POLHODE}' {command} <&-"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == code
+    assert done.stderr.endswith("error: standard input is closed\n")
+
+
 def test_what_is_not_utf_8_has_its_place(tmp_path):
     (tmp_path / "latin.ga").write_bytes("e1\nn = café\ne2\n".encode("latin-1"))
     done = evaluate("-f", "latin.ga", cwd=tmp_path)
@@ -338,6 +348,8 @@ def test_what_is_not_utf_8_has_its_place(tmp_path):
     told = complaint(b"e1 + \xff")
     assert told.startswith("formula:1:6: error: not UTF-8\n")
     assert complaint("x", "--let", b"x=\xff").startswith("--let:1:3: error: not UTF-8\n")
+    (tmp_path / os.fsdecode(b"\xff.ga")).write_text("q")
+    assert complaint("-f", b"\xff.ga", cwd=tmp_path).startswith("?.ga:1:1: error: `q` has no value")
 
 
 def test_endless_lines_are_refused():

@@ -9,6 +9,8 @@ import sys
 import time
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from command_line import POLHODE, polhode
 from polhode._repl import Prompt, _history_path, _keep
@@ -132,6 +134,66 @@ def test_mistakes_have_their_place(name, prompt):
     assert "x" not in prompt.session.names
 
 
+PIECES = [
+    *(
+        "a",
+        "b",
+        "x",
+        "f(",
+        "V(x)",
+        "(",
+        ")",
+        "=",
+        "==",
+        "+",
+        "-",
+        "∧",
+        "^",
+        "·",
+        "/",
+        "~",
+        "⟨",
+        "⟩_2",
+        "_",
+        "'",
+        "²",
+    ),
+    *(
+        "2",
+        "0.5",
+        "1e3",
+        "1e-400",
+        "deg",
+        "m",
+        "rev/s",
+        "°",
+        "e1",
+        "I",
+        "Σ_k",
+        "e_k",
+        "exp(",
+        "log(",
+        "norm(",
+        ",",
+    ),
+    *(" ", " ", ":tree ", ":clear ", ":grades ", ":latex ", "#", "\u0303", "\ufffd", "𝑅", "½", "let ", "$"),
+]
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=12).map("".join) | st.text(max_size=30))
+def test_any_line_has_an_answer_or_a_place(line):
+    prompt = Prompt()
+    answers(prompt, "a = e1 + 2e2", "b = e12", "f(x) = a x", "a")
+    try:
+        assert isinstance(prompt.answer(line), str)
+    except LineError as error:
+        wrong = error
+    else:
+        return
+    assert 0 <= wrong.start <= wrong.end <= len(line)
+    assert wrong.shown("input", 1, line).count("\n") == 3
+
+
 def test_names_are_completed(prompt):
     answers(prompt, "omega_body = e12", "Ω_B = e23", "energy(x) = x·x")
     assert prompt.candidates("om") == ["omega_body"]
@@ -176,7 +238,7 @@ def test_a_reader_that_leaves_early():
 # --- typed
 
 
-# Ctrl-C interrupts the programs whose terminal it is. (A `preexec_fn` would fork, which threads of JAX forbid.)
+# Ctrl-C interrupts the programs whose terminal it is. (A `preexec_fn` would fork, which JAX forbids.)
 _LAUNCH = """
 import fcntl, os, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)

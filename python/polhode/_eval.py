@@ -7,7 +7,7 @@ import json
 import re
 import sys
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 from polhode._agreement import Agreement
 from polhode._session import Answer, LineError, Session, told, without_comment
@@ -88,10 +88,10 @@ def _lines(options: argparse.Namespace) -> Iterator[Line]:
 
 def _file(path: str) -> Iterator[Line]:
     """Return the lines of a file, as they come."""
-    source = "<stdin>" if path == "-" else path
+    source = "<stdin>" if path == "-" else path.encode(errors="replace").decode()
     empty = True
     try:
-        with sys.stdin.buffer if path == "-" else open(path, "rb") as file:
+        with _standard_input() if path == "-" else open(path, "rb") as file:
             for number, data in enumerate(iter(lambda: file.readline(_LONGEST + 1), b""), 1):
                 line = _decoded(source, number, data)
                 if line.text or line.mistake:
@@ -103,6 +103,13 @@ def _file(path: str) -> Iterator[Line]:
         raise UnreadableError(f"{source}: error: {(error.strerror or str(error)).lower()}") from error
     if empty:
         raise UnreadableError(f"{source}: error: there is no formula; write one a line")
+
+
+def _standard_input() -> BinaryIO:
+    stream = getattr(sys, "stdin", None)
+    if stream is None:  # as after `<&-`
+        raise OSError("standard input is closed")
+    return stream.buffer  # type: ignore[no-any-return]
 
 
 def _decoded(source: str, number: int, data: bytes) -> Line:

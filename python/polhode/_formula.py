@@ -33,7 +33,8 @@ class Formula:
 
     Called with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping:
     multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
-    coefficients are of any kind; grades are checked before anything is computed. An equation evaluates to an
+    coefficients are of any kind; grades are checked before anything is computed. Names that the formula does
+    not use may have any values. An equation evaluates to an
     `Agreement`.
 
     Made by `formula`; equal to any of the same text, algebra and definitions.
@@ -108,7 +109,7 @@ class Formula:
 
     def _program(self, kinds: dict[str, Any]) -> _native.Program:
         algebra, items = kinds_of(self._core.algebra, kinds)
-        return self._core.program(algebra, items, len(items))
+        return self._core.program(algebra, items)
 
     # --- derivatives
 
@@ -186,8 +187,13 @@ def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, A
     """Return the value of a formula, where it is not native: the general way of every call."""
     if len(arguments) > 1:
         raise TypeError(f"a formula takes one mapping of values and keywords, got {len(arguments)} values")
-    known = given(core.algebra, arguments[0] if arguments else None, named or {})
-    program = core.program(known.algebra, known.kinds, len(named or {}))
+    known = given(core, arguments[0] if arguments else None, named or {})
+    try:
+        program = core.program(known.algebra, known.kinds)
+    except FormulaError:
+        # As for methods, a single value without a scalar part, such as e1*e2, counts as a bivector.
+        known = known.narrowed()
+        program = core.program(known.algebra, known.kinds)
     return evaluated(core.text, program, known)
 
 

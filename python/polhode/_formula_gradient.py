@@ -27,8 +27,8 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     tell_jax()
 
     def gradients(values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
-        known = given(core.algebra, values, named)
-        program = core.program(known.algebra, known.kinds, len(named))
+        known = given(core, values, named)
+        program = core.program(known.algebra, known.kinds)
         _require_scalar(program)
         places = [_place(program, known, name) for name in names]
         data = [x._data if isinstance(x, Multivector) else x.matrix for x in known.values]

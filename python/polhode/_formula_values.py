@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -55,6 +56,12 @@ class Given:
             told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
             raise ValueError(f"the batches of values do not broadcast: {told}") from None
 
+    def narrowed(self) -> Given:
+        """Return the same with single values of those grades alone in which they are not zero."""
+        values = [_narrowed(value) for value in self.values]
+        kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
+        return Given(self.algebra, kinds, values)
+
     def _input(self, value: Any, kind: str, grade: int) -> Any:
         if kind == "value":
             return value
@@ -68,15 +75,37 @@ def _batch(value: Any) -> tuple[int, ...]:
     return tuple(value.shape if isinstance(value, Multivector) else value.matrix.shape[:-2])
 
 
-def given(algebra: Any, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
-    """Return the values by name, numbers and arrays as scalars."""
-    everything = _together(values, named)
-    algebra = _common_algebra(algebra, everything)
+def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
+    """Return the values by name, numbers and arrays as scalars; those that the text may use."""
+    letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
+    everything = {
+        name: value for name, value in _together(values, named).items() if _may_use(letters, name)
+    }
+    algebra = _common_algebra(core.algebra, everything)
     if all(isinstance(value, Multivector | LinearMap) for value in everything.values()):
         known = everything
     else:
         known = _with_scalars(everything, algebra)
     return Given(algebra, [(name, *_kind(value)) for name, value in known.items()], list(known.values()))
+
+
+def _folded(text: str) -> set[str]:
+    """Return the characters of a text, in whatever style of letters."""
+    return set(unicodedata.normalize("NFKD", text))
+
+
+def _may_use(letters: set[str], name: str) -> bool:
+    """Whether a text of these letters may use a name; subscripts and primes may be written in other ways."""
+    if name.isidentifier() and _native.canonical(name) is None:
+        return False
+    return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
+
+
+def _narrowed(value: Any) -> Any:
+    if not isinstance(value, Multivector) or isinstance(value, Rotor) or value.shape:
+        return value
+    held = value._held()
+    return value if held in (0, value._mask) else value._part(held)
 
 
 def kinds_of(algebra: Any, kinds: dict[str, Any]) -> tuple[Any, list[Kind]]:

@@ -119,6 +119,8 @@ def _branches(node: dict[str, Any], indent: str) -> Iterator[str]:
 def run() -> int:
     """Answer to standard input, line by line, until it ends."""
     prompt = Prompt()
+    if getattr(sys, "stdin", None) is None:  # as after `<&-`
+        raise OSError("standard input is closed")
     typed = sys.stdin.isatty()
     if not typed and isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(encoding="utf-8", errors="replace")
@@ -126,7 +128,7 @@ def run() -> int:
         number = 0
         while (line := _typed_line() if typed else _piped_line()) is not None:
             number += 1
-            line = without_comment(line)
+            line = without_comment(line.encode(errors="replace").decode())  # a terminal may send any bytes
             try:
                 text = prompt.answer(line) if line else ""
             except LineError as mistake:

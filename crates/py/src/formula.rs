@@ -34,8 +34,8 @@ pub(crate) struct Formula {
     calls: Calls,
 }
 
-/// The signature of the algebra, the names with their kinds, and how many of them came as keywords.
-type Key = ((usize, usize, usize), Vec<Said>, usize);
+/// The signature of the algebra, and the names with their kinds.
+type Key = ((usize, usize, usize), Vec<Said>);
 
 #[pymethods]
 impl Formula {
@@ -92,20 +92,14 @@ impl Formula {
         })
     }
 
-    /// The program for values of these kinds, in this algebra; the last `keywords` of them must be used.
-    fn program(
-        &self,
-        py: Python<'_>,
-        algebra: Py<Algebra>,
-        given: Vec<Said>,
-        keywords: usize,
-    ) -> PyResult<Py<Program>> {
+    /// The program for values of these kinds, in this algebra.
+    fn program(&self, py: Python<'_>, algebra: Py<Algebra>, given: Vec<Said>) -> PyResult<Py<Program>> {
         let signature = algebra.get().table.signature();
-        let key = ((signature.p, signature.q, signature.r), given, keywords);
+        let key = ((signature.p, signature.q, signature.r), given);
         if let Some(program) = self.programs.lock().map_err(bad)?.get(&key) {
             return Ok(program.clone_ref(py));
         }
-        let program = Py::new(py, self.compiled(py, &algebra, &key.1, keywords)?)?;
+        let program = Py::new(py, self.compiled(py, &algebra, &key.1)?)?;
         let mut programs = self.programs.lock().map_err(bad)?;
         if programs.len() >= KEPT {
             programs.clear();
@@ -160,8 +154,8 @@ impl Formula {
         if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
             return Ok(None);
         }
-        let count = said.len();
-        let program = self.program(py, g3(py)?.clone_ref(py), said, count)?;
+        // What is wrong with them is told by the general way.
+        let Ok(program) = self.program(py, g3(py)?.clone_ref(py), said) else { return Ok(None) };
         Ok((!program.get().program.is_equation()).then_some(program))
     }
 
@@ -227,26 +221,13 @@ impl Formula {
         Ok((names, spelled))
     }
 
-    fn compiled(
-        &self,
-        py: Python<'_>,
-        algebra: &Py<Algebra>,
-        given: &[Said],
-        keywords: usize,
-    ) -> PyResult<Program> {
+    fn compiled(&self, py: Python<'_>, algebra: &Py<Algebra>, given: &[Said]) -> PyResult<Program> {
         let (names, spelled) = self.names(given)?;
         let (tree, names) = self.read(py, algebra, names)?;
         let program = compile(&tree, space(algebra), &names).map_err(|e| error(py, &self.text, &e))?;
         let place = |name: &String| spelled.iter().position(|other| other == name);
         let order: Option<Vec<usize>> = program.inputs.iter().map(|input| place(&input.name)).collect();
         let order = order.ok_or_else(|| bad("a program needs a value that nobody gave"))?;
-        let unused = (given.len().saturating_sub(keywords)..given.len()).find(|i| !order.contains(i));
-        if let Some(i) = unused {
-            let name = &given[i].0;
-            return Err(PyTypeError::new_err(format!(
-                "the formula does not use {name:?}; values that it may leave unused are given as a mapping"
-            )));
-        }
         let runner = Runner::new(&program);
         Ok(Program { program, order, text: self.text.clone(), runner })
     }

@@ -36,8 +36,8 @@ pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<No
     let free = |index: char| counts.iter().flatten().any(|&(c, count)| c == index && count == 1);
     let mut next = counts.iter();
     for_each_term(&mut sides, &mut |term| {
-        let repeated = next.next().into_iter().flatten().filter(|&&(index, _)| !free(index));
-        repeated.map(|&(index, _)| sum_over(index, term, names)).collect()
+        let mut repeated = next.next().into_iter().flatten().filter(|&&(index, _)| !free(index));
+        repeated.try_for_each(|&(index, _)| sum_over(index, term, names))
     })?;
     Ok(sides)
 }
@@ -48,8 +48,8 @@ fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
     let count =
         |node: &Node| indices_in(node, names).iter().find(|(c, _)| *c == index).map_or(0, |(_, n)| *n);
     if let Kind::Sum(terms) = &mut node.kind {
-        let with = terms.iter_mut().filter(|(_, term)| count(term) > 0);
-        return with.map(|(_, term)| sum_over(index, term, names)).collect();
+        let mut with = terms.iter_mut().filter(|(_, term)| count(term) > 0);
+        return with.try_for_each(|(_, term)| sum_over(index, term, names));
     }
     let counts: Vec<usize> = node.children().into_iter().map(count).collect();
     let with: Vec<usize> = (0..counts.len()).filter(|&i| counts[i] > 0).collect();

@@ -75,10 +75,15 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// A bound name with an argument as its label, `R(0)`, and where it ends.
+    /// A name with an argument as its label, `R(0)`, and where it ends.
     fn labelled(&self, atoms: &[Atom], rest: &[Token]) -> Option<(String, Span)> {
         let [open, argument, close, ..] = rest else { return None };
-        if !self.labels
+        // Where nothing is known yet, `R(0)`, `V(x)` and `I(B)` may be all kinds of things, and stay as they are.
+        let unknown = match atoms {
+            [atom] => self.names.is_open() && !matches!(&atom.name[..], "e" | "π" | "Σ"),
+            _ => false,
+        };
+        if !(self.labels || unknown)
             || open.space
             || open.lexeme != Lexeme::Sign(Sign::Open('('))
             || close.lexeme != Lexeme::Sign(Sign::Close('('))
@@ -91,7 +96,7 @@ impl Reader<'_> {
             _ => return None,
         };
         let name = format!("{}({label})", joined(atoms)?);
-        self.names.get(&name).is_some().then_some((name, close.span))
+        (unknown || self.names.get(&name).is_some()).then_some((name, close.span))
     }
 
     fn word(

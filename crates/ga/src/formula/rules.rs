@@ -21,7 +21,7 @@ impl Builder<'_> {
                 let ty = self.ty(id);
                 self.step(Op::Product(Product::Geometric, s, x), ty, span)
             }
-            _ => self.step(Op::Negate(id), Type::of(self.ty(id).grades), span),
+            _ => self.step(Op::Negate(id), self.ty(id), span),
         }
     }
 

@@ -123,12 +123,12 @@ impl Formulas {
     }
 
     fn define(&mut self, head: &str, body: &str) -> Result<(), Wrong> {
-        let source = self.source(body)?;
+        let source = self.source(body, &heading(head)?.1)?;
         define(head, &source.text, Space::g3(), &mut self.names).map_err(|error| source.place(error.into()))
     }
 
     fn value(&self, text: &str) -> Result<Graded, Wrong> {
-        let source = self.source(text)?;
+        let source = self.source(text, &[])?;
         self.evaluated(&source.text).map_err(|wrong| source.place(wrong))
     }
 
@@ -160,9 +160,10 @@ impl Formulas {
         Ok(value)
     }
 
-    /// The formula with numbers in SI units for its quantities.
-    fn source(&self, text: &str) -> Result<Source, Wrong> {
-        let is_name = |word: &str| canonical(word).is_some_and(|name| self.names.get(&name).is_some());
+    /// The formula with numbers in SI units for its quantities; it has parameters, if it is a function's.
+    fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Wrong> {
+        let known = |name: String| self.names.get(&name).is_some() || parameters.contains(&name);
+        let is_name = |word: &str| canonical(word).is_some_and(known);
         let found = units::quantities(text, is_name);
         let found = found.map_err(|error| Wrong { message: error.message, span: error.span })?;
         let mut source = Source { text: String::new(), pieces: Vec::new() };

@@ -149,10 +149,11 @@ fn grades_are_inferred() {
 
 #[test]
 fn rotors_stay_rotors() {
-    for text in ["R S", "~R", "R^3", "R⁻¹", "exp(B)", "e^(-e1e2 θ/2)", "sqrt(R)", "R S ~R", "R(0)"] {
+    for text in ["R S", "~R", "R^3", "R⁻¹", "exp(B)", "e^(-e1e2 θ/2)", "sqrt(R)", "R S ~R", "R(0)", "-R"]
+    {
         assert!(ty(text).unit, "{text}");
     }
-    for text in ["2R", "R + S", "-R", "exp(a)", "exp(M)", "R B"] {
+    for text in ["2R", "R + S", "exp(a)", "exp(M)", "R B"] {
         assert!(!ty(text).unit, "{text}");
     }
 }
@@ -218,6 +219,9 @@ fn names_may_be_open() {
     assert_eq!(inputs("R v ~R + (a∧b)·c"), ["R", "v", "a", "b", "c"]);
     assert_eq!(inputs("inertia(Ω) e1e2 + aB"), ["Ω", "inertia", "aB"]);
     assert_eq!(inputs("Σ_k ω_k e_k"), ["ω1", "ω2", "ω3"]);
+    for text in ["R(0) a", "V(x) + I(B)", "R'(t) = 2"] {
+        assert_eq!(parse(text, Space::g3(), &names).unwrap().text(Style::Unicode), text);
+    }
     assert!(compiled("cross(e1, a)").is_ok());
     assert!(compiled("cross(e1, e1e2)").is_err());
 }

@@ -272,6 +272,7 @@ fn definitions_are_wrong_at_their_place() {
         ("'f(x)' = 1", "2:10: expected a string, found an integer"),
         ("'f(x)' = 'x + y'", "2:15: `y` has no value"),
         ("'f(x)' = 'f(x)'", "2:11: `f` has no value"),
+        ("'f(t)' = '2 t e1'", "2:13: `t` is a unit and a name here"),
         ("a = true", "2:5: expected a string, found a boolean"),
     ];
     for (text, message) in table {

@@ -272,6 +272,12 @@ def test_batches_of_times():
         assert batch.rotor[index] == motion.at(times[index]).rotor
         assert batch.omega_body[index] == motion.at(times[index]).omega_body
     assert motion.at(np.zeros(0)).rotor.shape == (0,)
+    # More than go between two looks for Ctrl-C, shared by threads.
+    many = np.linspace(-1e6, 1e6, 600_000)
+    batch = motion.at(many)
+    for index in (0, 1, 299_999, 524_287, 524_288, 599_999):
+        assert batch.rotor[index] == motion.at(many[index]).rotor
+        assert batch.omega_body[index] == motion.at(many[index]).omega_body
 
 
 def test_bad_input_is_refused():

@@ -46,6 +46,12 @@ class Given:
         self._require_one_shape(program)
         return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
 
+    def narrowed(self) -> Given:
+        """Return the same with single values of those grades alone in which they are not zero."""
+        values = [_narrowed(value) for value in self.values]
+        kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
+        return Given(self.algebra, kinds, values)
+
     def _require_one_shape(self, program: _native.Program) -> None:
         """Raise for batches that do not broadcast."""
         used = dict.fromkeys(place for place, _, _ in program.inputs)
@@ -55,12 +61,6 @@ class Given:
         except ValueError:
             told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
             raise ValueError(f"the batches of values do not broadcast: {told}") from None
-
-    def narrowed(self) -> Given:
-        """Return the same with single values of those grades alone in which they are not zero."""
-        values = [_narrowed(value) for value in self.values]
-        kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
-        return Given(self.algebra, kinds, values)
 
     def _input(self, value: Any, kind: str, grade: int) -> Any:
         if kind == "value":
@@ -76,12 +76,12 @@ def _batch(value: Any) -> tuple[int, ...]:
 
 
 def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
-    """Return the values by name, numbers and arrays as scalars; those that the text may use."""
+    """Return the values by name, numbers and arrays as scalars; of those that are not used, what fits."""
     letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
-    everything = {
-        name: value for name, value in _together(values, named).items() if _may_use(letters, name)
-    }
-    algebra = _common_algebra(core.algebra, everything)
+    everything = _together(values, named)
+    used = {name: value for name, value in everything.items() if _may_use(letters, name)}
+    algebra = _common_algebra(core.algebra, used)
+    everything = {name: value for name, value in everything.items() if name in used or _fits(value, algebra)}
     if all(isinstance(value, Multivector | LinearMap) for value in everything.values()):
         known = everything
     else:
@@ -99,6 +99,12 @@ def _may_use(letters: set[str], name: str) -> bool:
     if name.isidentifier() and _native.canonical(name) is None:
         return False
     return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
+
+
+def _fits(value: Any, algebra: Any) -> bool:
+    if isinstance(value, Multivector):
+        return value.algebra is algebra
+    return isinstance(value, LinearMap) or type(value) in (int, float)
 
 
 def _narrowed(value: Any) -> Any:

@@ -60,9 +60,10 @@ class State:
 class FreeMotion:
     """The torque-free motion of any body, exact at any time.
 
-    Jacobi's solution: elliptic functions for the angular velocity, an integral of the third kind for the
-    rotor, both reduced in twice the precision, so that the error is rounding at t = 1e12 as at t = 1, near
-    the separatrix as far from it. The rotor is continuous in time on the double cover.
+    Jacobi's solution: the rotor is four theta series and one uniform turn about L, the angular velocity
+    three elliptic functions. Their phases are reduced in twice the precision, so that the error is rounding
+    at t = 1e12 as at t = 1, near the separatrix as far from it. The rotor is continuous in time on the
+    double cover.
     """
 
     _solution = staticmethod(_native.free_motion)

@@ -8,7 +8,7 @@
 
 /// `a + b` and its rounding error (Knuth).
 #[inline(always)]
-pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let hi = a + b;
     let part = hi - a;
     (hi, (a - (hi - part)) + (b - part))
@@ -23,7 +23,7 @@ pub(crate) fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// `a b` and its rounding error, exact where neither overflows nor underflows.
 #[inline(always)]
-pub(crate) fn two_product<const FMA: bool>(a: f64, b: f64) -> (f64, f64) {
+pub fn two_product<const FMA: bool>(a: f64, b: f64) -> (f64, f64) {
     let hi = a * b;
     if FMA {
         return (hi, a.mul_add(b, -hi));
@@ -130,7 +130,7 @@ pub(crate) fn quarter_turns<const FMA: bool>(angle: f64, rest: f64) -> (u64, f64
 /// Sine and cosine of `k π/2 + r + rest`, `|r| <= π/4`, the sine as `hi + lo` with an error below half an
 /// ulp. The polynomials are those of fdlibm, good to 2⁻⁵⁸.
 #[inline(always)]
-pub(crate) fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64), f64) {
+pub fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64), f64) {
     const S: [f64; 6] = [
         -1.666_666_666_666_663_2e-1,
         8.333_333_333_322_49e-3,

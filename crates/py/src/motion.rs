@@ -1,7 +1,9 @@
 //! Motion: the closed form of the symmetric top, and simulation.
 
-use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
+use crate::arrays::{Array, Rows, bad, line, numbers, one, table, threads};
 use crate::bodies::{Inertia, rotor};
+use crate::pool;
+use numpy::PyArrayMethods;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::free::FreeMotion;
@@ -15,6 +17,9 @@ use std::time::{Duration, Instant};
 
 /// How often a run looks for Ctrl-C and reports where it stands.
 const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
+
+/// Free states between looks for Ctrl-C.
+const PIECE: usize = 1 << 19;
 
 /// Names of the methods, by rising order.
 #[pyfunction]
@@ -33,13 +38,18 @@ fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
     }
 }
 
+fn check_times(times: &[f64]) -> PyResult<()> {
+    match times.iter().position(|t| !t.is_finite()) {
+        Some(index) => Err(bad(format!("time {} at index {index} is not finite", times[index]))),
+        None => Ok(()),
+    }
+}
+
 /// Rotors (n, 4) and angular velocities (n, 3) at times (n,).
 type States<'py> = PyResult<(Array<'py>, Array<'py>)>;
 
 fn states<'py>(py: Python<'py>, times: &[f64], at: impl Fn(f64) -> (Rotor, Bivector) + Sync) -> States<'py> {
-    if let Some(index) = times.iter().position(|t| !t.is_finite()) {
-        return Err(bad(format!("time {} at index {index} is not finite", times[index])));
-    }
+    check_times(times)?;
     let states: Vec<_> = py.detach(|| times.iter().map(|&t| at(t)).collect());
     let rotors = table(py, states.iter().map(|s| s.0.components()))?;
     Ok((rotors, table(py, states.iter().map(|s| s.1.0))?))
@@ -72,7 +82,7 @@ pub(crate) fn symmetric_top<'py>(
     states(py, numbers(&times)?, |t| top.at(t))
 }
 
-/// The free top.
+/// The free top. Threads share large batches; Python may interrupt between pieces of some milliseconds.
 #[pyfunction]
 pub(crate) fn free_motion<'py>(
     py: Python<'py>,
@@ -82,8 +92,20 @@ pub(crate) fn free_motion<'py>(
     times: Rows<'py>,
 ) -> States<'py> {
     let motion = FreeMotion::new(&inertia.0, rotor(&rotor_row)?, angular_velocity(&omega)?).map_err(bad)?;
-    check_horizon(numbers(&times)?, motion.horizon()).map_err(bad)?;
-    states(py, numbers(&times)?, |t| motion.at(t))
+    let times = numbers(&times)?;
+    check_times(times)?;
+    check_horizon(times, motion.horizon()).map_err(bad)?;
+    let (rotors, omegas) = (pool::array(py, &[times.len(), 4])?, pool::array(py, &[times.len(), 3])?);
+    let (mut rotor_rows, mut omega_rows) = (rotors.readwrite(), omegas.readwrite());
+    let rows = rotor_rows.as_slice_mut()?.chunks_mut(4 * PIECE);
+    let pieces = times.chunks(PIECE).zip(rows.zip(omega_rows.as_slice_mut()?.chunks_mut(3 * PIECE)));
+    let threads = threads(7 * times.len())?;
+    for (times, (rotors, omegas)) in pieces {
+        py.detach(|| motion.at_many(threads, times, rotors, omegas));
+        py.check_signals()?;
+    }
+    drop((rotor_rows, omega_rows));
+    Ok((rotors, omegas))
 }
 
 /// What the invariants of a free motion tell, as a dict.

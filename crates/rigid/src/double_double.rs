@@ -14,14 +14,14 @@ pub(crate) struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// Relative rounding of an operation, 2⁻¹⁰⁴.
-    pub const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
     pub const ZERO: DoubleDouble = DoubleDouble { hi: 0.0, lo: 0.0 };
     pub const ONE: DoubleDouble = DoubleDouble { hi: 1.0, lo: 0.0 };
-    pub const PI: DoubleDouble = DoubleDouble { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
+    /// 1/2π.
+    pub const OVER_TWO_PI: DoubleDouble =
+        DoubleDouble { hi: 0.159_154_943_091_895_35, lo: -9.839_338_337_591_243e-18 };
 
     /// `a + b` without error (Knuth).
-    fn two_sum(a: f64, b: f64) -> DoubleDouble {
+    pub fn two_sum(a: f64, b: f64) -> DoubleDouble {
         let hi = a + b;
         let part = hi - a;
         DoubleDouble { hi, lo: (a - (hi - part)) + (b - part) }
@@ -34,7 +34,7 @@ impl DoubleDouble {
     }
 
     /// `a b` without error, by splitting both into halves of 26 bits (Veltkamp, Dekker).
-    fn two_product(a: f64, b: f64) -> DoubleDouble {
+    pub fn two_product(a: f64, b: f64) -> DoubleDouble {
         let split = |x: f64| {
             let c = 134_217_729.0 * x;
             let high = c - (c - x);
@@ -53,15 +53,6 @@ impl DoubleDouble {
         let root = self.hi.sqrt();
         let rest = self - DoubleDouble::two_product(root, root);
         DoubleDouble::quick_two_sum(root, rest.hi / (2.0 * root))
-    }
-
-    /// The nearest integer and what is left.
-    pub fn split_integer(self) -> (f64, f64) {
-        let integer = self.hi.round();
-        let rest = (self.hi - integer) + self.lo;
-        // hi may itself be an integer with lo reaching past a half.
-        let more = rest.round();
-        (integer + more, rest - more)
     }
 
     pub fn value(self) -> f64 {
@@ -146,10 +137,9 @@ mod tests {
     }
 
     #[test]
-    fn integers_split_off() {
-        let third = DoubleDouble::ONE / 3.0.into();
-        let (integer, rest) = (DoubleDouble::from(1e12) * third).split_integer();
-        assert_eq!(integer, 333_333_333_333.0);
-        assert!((rest - 1.0 / 3.0).abs() < 1e-18 * 1e3);
+    fn over_two_pi() {
+        let pi = DoubleDouble { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
+        let one = DoubleDouble::OVER_TWO_PI * pi * 2.0.into();
+        assert!((one - DoubleDouble::ONE).value().abs() <= 4.0 * 2f64.powi(-104));
     }
 }

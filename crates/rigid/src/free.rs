@@ -21,33 +21,81 @@
 //! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the axes' order (a, b, c). (On the
 //! separatrix cn is positive for ever; there A_a and τ take the sign of ω_a.)
 //!
-//! **The rotor.** Let `d = σ e_c` and `P(t)` the rotor that turns the direction of the body's angular momentum
-//! `m` into d the short way; `m·d > 0`, so it is smooth. `R(t) = R(0) ~P(0) exp(−½ I d α) P(t)` carries m to the
-//! fixed L for any α. In Euler's angles about L, `α = φ − β`: φ the precession and β the azimuth of m about d.
-//! With `φ' = G(2E − m_c²/c)/(G² − m_c²)`, which integrates to a Π, and `β = s χ`, χ the continuous angle of
-//! `(a A_a cn u, b A_b sn u)`,
+//! **The rotor.** In the frame of `e1 = e_a`, `d = σ e_c` and `e2 = d x e1`, the momentum is
+//! `m = (a A_a cn, s b A_b sn, c A_c dn)`. Let the rotor `W(t)` carry m to `G d`, which stands for the fixed L:
+//! `R(t) = R(0) ~W(0) W(t)`. As a quaternion `W = (w0, w1, w2, w3)` it has the Cayley–Klein parameters
+//! `α = w0 + i w3` and `β = w1 + i w2`, and `m = ~W G d W` reads
 //!
 //! ```text
-//! α = G t/c + s [κ (Π(n; am u) − Π(n; am u0)) − (χ − χ0)],   κ = G|c−a|/(acλ),  n = −c(b−a)/(a(c−b)) <= 0.
+//! |α|² − |β|² = m3/G,   2 α β* = (m2 + i m1)/G,   |α|² + |β|² = 1.
 //! ```
 //!
-//! For |n| < 1, as for a needle, Π is nearly u; then `Π − u` takes its place and `G/a = G/c + sκλ` that of G/c,
-//! or two large angles would cancel. Over each period Π gains `4Π(n)` and χ gains 2π. Whole periods and whole
-//! turns are split off in twice the precision; what is left is computed from the reduced u, so the error does
-//! not grow with time. (On the double cover α counts modulo 4π.)
+//! So `|α|² = (G + m3)/2G` is an elliptic function of u with the periods 2K and 4iK', its poles at ±iK' and its
+//! zeros where `dn = −G/cA_c`: at ±i(2K' − η) for `dn iη = G/cA_c`, that is `η = F(φ, k')` with
+//! `tan²φ = a(c−b)/(c(b−a))`; and `|β|²` has its zeros at ±iη. A function is known by these up to a factor:
+//! with the theta functions of nome q², `q = exp(−πK'/K)`, `v = πu/2K` and `y = πη/2K`
+//!
+//! ```text
+//! α = C(t) θ4(v − i s y | q²),   β = s C(t) θ1(v − i s y | q²),
+//! ```
+//!
+//! the signs being those of m. `C C*` is 1/θ4(v | q) but for a constant; normalising does the rest. The phase of C
+//! is linear in time, ½νt, since α has no other zeros and poles: ν is the mean rate of precession of a
+//! rotor without the turns of m about d. **The rotor is four theta series, and one uniform turn about L**:
+//!
+//! ```text
+//! W = exp(½ν t d) (Re θ4 + d Im θ4 + e1 s Re θ1 + e2 s Im θ1)/|…|   in quaternion units.
+//! ```
+//!
+//! Jacobi found this in 1849; what it saves is an integral of the third kind for each state. One is left in ν:
+//! with Euler's `φ' = G(2E − m3²/c)/(G² − m3²)` and the 2π by which m turns about d in each period,
+//!
+//! ```text
+//! ν = G/c + s (κ Π(n) − π/2) λ/K,   κ = G|c−a|/(acλ),   n = −c(b−a)/(a(c−b)) <= 0
+//!   = G/a − s G|b−a| S(n)/2ab − s π λ/2K   = G/c + s P S(k²/n)/2cG,
+//! ```
+//!
+//! where S is the sum that `Π − K` is proportional to ([`crate::elliptic`]), and the second form comes of
+//! `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term times κ is π/2. The one with the smaller parameter is taken.
+//!
+//! **Near the separatrix** K grows and q tends to 1. Jacobi's imaginary transformation leads to the nome
+//! `q' = exp(−πK/K')` and, with `x = πu/4K'` and `γ = πη/4K'` for u within a half period,
+//!
+//! ```text
+//! θ4(v − i s y | q²) ~ exp(2i s v γ/π) θ2(s γ + i x | √q'),   θ1 ~ −i exp(…) θ1(s γ + i x | √q'):
+//! ```
+//!
+//! circular functions of γ times hyperbolic ones of x; the exponential joins the precession. On the separatrix
+//! itself one term is left, and ν is G/b.
+//!
+//! **Digits.** v and νt/2 are reduced in twice the precision, so that the error does not grow with time. All
+//! series are factors (sin v, sinh x, …) times sums of terms that fall fast, so that each component of ω keeps its
+//! own digits, as a needle needs; no angle turns fast as the wobble P vanishes, for none is computed. Limits need no
+//! care: equal moments give q = 0, and steady rotation is β = 0.
 //!
 //! Jacobi 1849; Whittaker, *Analytical Dynamics* §69; Celledoni, Fassò, Säfström, Zanna, SIAM J. Sci. Comput.
-//! 30 (2008); the forms without cancellation as in Fukushima 2008.
+//! 30 (2008); DLMF 20.7 (theta functions), 19.7 and 19.8 (integrals).
+
+mod flow;
+mod lanes;
+mod orbit;
+mod series;
 
 use crate::double_double::DoubleDouble;
-use crate::elliptic::{complete, incomplete_pi, incomplete_pi_excess, jacobi, r_f};
+use crate::elliptic::mean;
 use crate::inertia::Inertia;
 use crate::regime::{FreeDescription, Regime};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
 use crate::symmetric_top::equal;
 use crate::torque::{angular_momentum, kinetic};
-use polhode_ga::{Bivector, Rotor, Vector};
+use flow::{AnyFlow, Flow};
+use lanes::Phase;
+use orbit::Orbit;
+use polhode_ga::curve::{sample, value};
+use polhode_ga::threads::Threads;
+use polhode_ga::{Bivector, Rotor};
+use series::{Circular, Hyperbolic, LARGEST_NOME, Series};
 use std::f64::consts::PI;
 
 /// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
@@ -56,17 +104,15 @@ const MOST_TURNS: f64 = 1e17;
 /// A free motion: rotor and angular velocity at any time up to its [`FreeMotion::horizon`].
 #[derive(Clone, Copy, Debug)]
 pub struct FreeMotion {
-    frame: Rotor,
     moments: [f64; 3],
-    /// From principal axes to space at time 0.
-    rotor: Rotor,
     /// In principal axes at time 0.
     omega: Bivector,
-    /// A power of two near the largest component of omega; the tumbling is that of omega/scale in time
+    /// A power of two near the largest component of omega; the orbit is that of omega/scale in time
     /// t·scale, with moments near 1, so that no square leaves the range of floating point.
     scale: f64,
     /// None for steady rotation.
-    tumbling: Option<Tumbling>,
+    orbit: Option<Orbit>,
+    flow: AnyFlow,
 }
 
 impl FreeMotion {
@@ -75,37 +121,52 @@ impl FreeMotion {
     pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> Result<FreeMotion, SimulateError> {
         let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
         check_moments(moments)?;
-        let (rotor, omega) = (rotor * frame, frame.reverse().apply_bivector(omega));
-        Ok(FreeMotion { frame, ..FreeMotion::in_principal_axes(moments, rotor, omega) })
+        Ok(FreeMotion::in_frame(frame, moments, rotor * frame, frame.reverse().apply_bivector(omega)))
     }
 
     /// The motion of a body whose axes are its principal axes, with positive moments.
     pub fn in_principal_axes(moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
+        FreeMotion::in_frame(Rotor::IDENTITY, moments, rotor, omega)
+    }
+
+    /// From principal axes to space, and with the frame from principal axes to those of the body.
+    fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
         let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
-        let tumbling = Tumbling::new(moments.map(|i| i / size), omega.0.map(|w| w / scale));
-        FreeMotion { frame: Rotor::IDENTITY, moments, rotor, omega, scale, tumbling }
+        let orbit = Orbit::new(moments.map(|i| i / size), omega.0.map(|w| w / scale));
+        let flow = match &orbit {
+            Some(orbit) => tumbling(orbit, scale, rotor, frame),
+            None => steady(omega, scale, rotor, frame),
+        };
+        FreeMotion { moments, omega, scale, orbit, flow }
     }
 
     /// How far in time, in s, the phase is known: to 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        let fastest = match &self.tumbling {
-            Some(top) => top.turns_per_second.hi.max(top.lambda / (4.0 * PI)) * self.scale,
-            None => self.omega.norm() / (4.0 * PI),
+        let fastest = match &self.orbit {
+            Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * self.scale,
+            None => self.omega.norm(),
         };
-        MOST_TURNS / fastest
+        MOST_TURNS * 4.0 * PI / fastest
     }
 
-    /// Rotor and body angular velocity at time `t` in s.
+    /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
-        let (turn, omega) = match &self.tumbling {
-            Some(tumbling) => {
-                let (turn, omega) = tumbling.at(t * self.scale);
-                (turn, omega * self.scale)
-            }
-            None => (steady(self.omega, t), self.omega),
+        let (rotor, omega) = match &self.flow {
+            AnyFlow::Circular(flow) => value(flow, t),
+            AnyFlow::Hyperbolic(flow) => value(flow, t),
         };
-        let rotor = self.rotor * turn * self.frame.reverse();
-        (rotor.renormalized(), self.frame.apply_bivector(omega))
+        (Rotor::from_unit_components(rotor), Bivector(omega))
+    }
+
+    /// The same at many times: rows of four rotor components and of three components of the angular velocity.
+    ///
+    /// # Panics
+    /// If the numbers of rows are not that of the times.
+    pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
+        match &self.flow {
+            AnyFlow::Circular(flow) => sample(flow, threads, times, rotors, omegas),
+            AnyFlow::Hyperbolic(flow) => sample(flow, threads, times, rotors, omegas),
+        }
     }
 
     /// What the invariants tell.
@@ -122,20 +183,23 @@ impl FreeMotion {
             period: None,
             precession_rate: None,
         };
-        let Some(top) = &self.tumbling else { return still };
-        let [a, b, c] = top.axes;
-        let regime = match top.periods {
+        let Some(orbit) = &self.orbit else { return still };
+        let [a, b, c] = orbit.axes;
+        let regime = match orbit.mean {
             None => Regime::Separatrix,
             Some(_) if equal(i[a], i[b]) => Regime::Symmetric,
-            Some(_) if top.s > 0.0 => Regime::ShortAxis,
+            Some(_) if orbit.s > 0.0 => Regime::ShortAxis,
             Some(_) => Regime::LongAxis,
         };
-        let moving = FreeDescription { regime, modulus: top.k2.sqrt(), axis: c, ..still };
-        let Some(periods) = &top.periods else { return moving };
-        let rate = top.linear_rate + top.s * top.kappa * top.lambda * periods.complete_pi / periods.quarter;
+        let moving = FreeDescription { regime, modulus: orbit.k2.sqrt(), axis: c, ..still };
+        let Some(mean) = orbit.mean else { return moving };
+        // ν leaves out one turn in each period.
+        let turn = orbit.lambda * mean;
+        let period = 2.0 * PI / turn.value() / self.scale;
+        let rate = orbit.precession + turn * orbit.s.into();
         FreeDescription {
-            period: Some(4.0 * periods.quarter / top.lambda / self.scale).filter(|x| x.is_finite()),
-            precession_rate: Some(rate * self.scale).filter(|x| x.is_finite()),
+            period: Some(period).filter(|x| x.is_finite()),
+            precession_rate: Some(rate.value() * self.scale).filter(|x| x.is_finite()),
             ..moving
         }
     }
@@ -147,232 +211,71 @@ fn power_of_two(components: [f64; 3]) -> f64 {
     if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
 }
 
-/// `exp(−½ Ω t)`, with the angle reduced in twice the precision.
-fn steady(omega: Bivector, t: f64) -> Rotor {
+/// `exp(−½ Ω t)`, a uniform turn about d along Ω.
+fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     let square = |x: f64| DoubleDouble::from(x) * x.into();
-    let scale = power_of_two(omega.0);
     let unit = omega / scale;
     let [x, y, z] = unit.0;
     let size = (square(x) + square(y) + square(z)).sqrt();
-    if size.hi == 0.0 {
-        return Rotor::IDENTITY;
-    }
-    let (_, turn) = (size * (t * scale).into() / four_pi()).split_integer();
-    Rotor::exp(unit / size.value() * (-2.0 * PI * turn))
+    let plane = if size.hi > 0.0 { unit / size.value() } else { Bivector::default() };
+    let d = Rotor::from_unit_components([0.0, -plane.0[0], -plane.0[1], -plane.0[2]]);
+    let still = Phase { rate: DoubleDouble::ZERO, start: [0.0; 2] };
+    let flow = Flow {
+        scale,
+        orbit: still,
+        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), ..still },
+        series: Circular::steady(),
+        rotor: [[0.0; 4]; 4],
+        omega: frame.apply_bivector(omega).0.map(|w| [0.0, 0.0, w]),
+    };
+    AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
 }
 
-fn four_pi() -> DoubleDouble {
-    DoubleDouble::PI * 4.0.into()
+/// Any other motion.
+fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
+    let (whole, rest) = orbit.start;
+    // AGM(1, k) = π/2K'.
+    let other = mean(orbit.k2.sqrt());
+    let Some(mean) = orbit.mean else {
+        let rate = orbit.lambda / Hyperbolic::NEVER.into();
+        let phase = Phase { rate, start: [rest / Hyperbolic::NEVER, 0.0] };
+        let series = Hyperbolic::separatrix(0.5 * orbit.eta() * other, orbit.s);
+        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame));
+    };
+    // 1/4K.
+    let per_u = mean * DoubleDouble::OVER_TWO_PI;
+    let phase = Phase { rate: orbit.lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
+    let nome = if other > 0.0 { (-PI * mean.hi / other).exp() } else { 0.0 };
+    if nome <= LARGEST_NOME {
+        let rho = (-orbit.rest_of_eta() * mean.hi).exp();
+        let series = Circular::new(nome, rho, orbit.s);
+        AnyFlow::Circular(flow(orbit, scale, phase, series, rotor, frame))
+    } else {
+        // πK/4K' and πη/4K'.
+        let series = Hyperbolic::new(0.25 * PI * other / mean.hi, 0.5 * orbit.eta() * other, orbit.s);
+        AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame))
+    }
 }
 
-/// The phases of a motion that is not steady, in principal axes.
-#[derive(Clone, Copy, Debug)]
-struct Tumbling {
-    /// a, b and c.
-    axes: [usize; 3],
-    /// sign(c − a).
-    s: f64,
-    /// Amplitudes with their signs: A_a, τ A_b, σ A_c; A_a is negative on half of the separatrix.
-    amplitudes: [f64; 3],
-    /// Moments of a, b and c.
-    moments: [f64; 3],
-    /// σ e_c.
-    d: Vector,
-    lambda: f64,
-    k2: f64,
-    kc2: f64,
-    n: f64,
-    kappa: f64,
-    /// Whether Π − u stands for Π.
-    excess: bool,
-    /// G/c, or G/a with the excess, in rad/s.
-    linear_rate: f64,
-    /// The part of α that is linear in time, in turns of 4π per second.
-    turns_per_second: DoubleDouble,
-    /// None on the separatrix.
-    periods: Option<Periods>,
-    u0: f64,
-    /// The local part of α, and P, at time 0.
-    local0: f64,
-    aligned0: Rotor,
-}
-
-/// What repeats, off the separatrix.
-#[derive(Clone, Copy, Debug)]
-struct Periods {
-    /// K.
-    quarter: f64,
-    /// Π(n), or Π(n) − K.
-    complete_pi: f64,
-    /// λ/4K, in 1/s.
-    per_second: DoubleDouble,
-    /// α of a period beyond that linear in time, in turns of 4π.
-    turns_each: DoubleDouble,
-}
-
-impl Tumbling {
-    /// None if the rotation is steady: `I(Ω)` parallel to Ω.
-    fn new(i: [f64; 3], w: [f64; 3]) -> Option<Tumbling> {
-        if (0..3).all(|k| (i[(k + 1) % 3] - i[(k + 2) % 3]) * w[(k + 1) % 3] * w[(k + 2) % 3] == 0.0) {
-            return None;
-        }
-        let dd = DoubleDouble::from;
-        let mut order = [0, 1, 2];
-        order.sort_by(|&x, &y| i[x].total_cmp(&i[y]));
-        let [small, b, large] = order;
-        // i_x (i_x − i_b) ω_x²
-        let term = |x: usize| dd(i[x]) * (dd(i[x]) - dd(i[b])) * dd(w[x]) * dd(w[x]);
-        let (high, low) = (term(large), term(small));
-        let d = high + low;
-        let (a, c) = if d.hi >= 0.0 { (small, large) } else { (large, small) };
-        let s = if c == large { 1.0 } else { -1.0 };
-        let (ia, ib, ic) = (dd(i[a]), dd(i[b]), dd(i[c]));
-        // Differences of moments, positive.
-        let (ab, ac, bc) = ((ib - ia).abs(), (ic - ia).abs(), (ic - ib).abs());
-        let square = |k: usize| dd(w[k]) * dd(w[k]);
-        let p = ia * ac * square(a) + ib * bc * square(b);
-        let q = ib * ab * square(b) + ic * ac * square(c);
-        let lambda = (bc * q / (ia * ib * ic)).sqrt();
-        let (k2, kc2) = (ab * p / (bc * q), ac * d.abs() / (bc * q));
-        let g = (ia * ia * square(a) + ib * ib * square(b) + ic * ic * square(c)).sqrt();
-        let kappa = g * ac / (ia * ic * lambda);
-
-        // The order (a, b, c) is even if it is a cyclic one.
-        let parity = if (b + 3 - a) % 3 == 1 { 1.0 } else { -1.0 };
-        let sigma = 1f64.copysign(w[c]);
-        // D is known to a few roundings of its two terms.
-        let on_separatrix = d.hi.abs() <= 16.0 * DoubleDouble::EPSILON * (high.hi - low.hi);
-        // cn keeps its sign on the separatrix: ω_a < 0 is the half turn about c of a motion with ω_a > 0.
-        let half_turn = if on_separatrix { 1f64.copysign(w[a]) } else { 1.0 };
-        let tau = sigma * s * parity * half_turn;
-        let sizes = [p / (ia * ac), p / (ib * bc), q / (ic * ac)].map(|x| x.sqrt().value());
-        let amplitudes = [half_turn * sizes[0], tau * sizes[1], sigma * sizes[2]];
-        let mut axis = Vector::default();
-        axis.0[c] = sigma;
-
-        let (n, one_minus_n) = (-(ic * ab / (ia * bc)), ib * ac / (ia * bc));
-        let excess = n.hi > -1.0;
-        let periods = (!on_separatrix).then(|| {
-            let kc = kc2.sqrt();
-            let (quarter, pi) = (complete(kc, DoubleDouble::ONE), complete(kc, one_minus_n));
-            let pi = if excess { pi - quarter } else { pi };
-            let gain = kappa * pi * dd(4.0) - DoubleDouble::PI * dd(2.0);
-            Periods {
-                quarter: quarter.value(),
-                complete_pi: pi.value(),
-                per_second: lambda / (quarter * dd(4.0)),
-                turns_each: gain * dd(s) / four_pi(),
-            }
-        });
-        let linear = match (on_separatrix, excess) {
-            // The linear part of Π has joined the other.
-            (true, _) => g / ib,
-            (false, true) => g / ia,
-            (false, false) => g / ic,
-        };
-        let mut top = Tumbling {
-            axes: [a, b, c],
-            s,
-            amplitudes,
-            moments: [i[a], i[b], i[c]],
-            d: axis,
-            lambda: lambda.value(),
-            k2: k2.value().min(1.0),
-            kc2: if on_separatrix { 0.0 } else { kc2.value().min(1.0) },
-            n: n.value(),
-            kappa: kappa.value(),
-            excess,
-            linear_rate: linear.value(),
-            turns_per_second: linear / four_pi(),
-            periods,
-            u0: 0.0,
-            local0: 0.0,
-            aligned0: Rotor::IDENTITY,
-        };
-        top.u0 = top.argument(w[a] / amplitudes[0], w[b] / amplitudes[1]);
-        let start = top.reduced(0.0).0;
-        top.local0 = top.local_angle(start);
-        top.aligned0 = top.aligned(jacobi(start, top.kc2));
-        Some(top)
-    }
-
-    /// The turn `~P(0) exp(−½ I d α) P(t)` since time 0, and the angular velocity.
-    fn at(&self, t: f64) -> (Rotor, Bivector) {
-        let (u, whole) = self.reduced(t);
-        let functions = jacobi(u, self.kc2);
-        let mut turns = self.turns_per_second * t.into();
-        if let Some(periods) = &self.periods {
-            turns = turns + periods.turns_each * whole.into();
-        }
-        let (_, turn) = turns.split_integer();
-        let angle = 4.0 * PI * turn + (self.local_angle(u) - self.local0);
-        let precession = Rotor::exp(self.d.undual() * (-0.5 * angle));
-        let rotor = self.aligned0.reverse() * precession * self.aligned(functions);
-        (rotor, self.omega(functions))
-    }
-
-    /// u at time t less whole periods, and how many these are.
-    fn reduced(&self, t: f64) -> (f64, f64) {
-        let Some(periods) = &self.periods else { return (self.u0 + self.lambda * t, 0.0) };
-        let period = 4.0 * periods.quarter;
-        let (whole, rest) = (periods.per_second * t.into() + (self.u0 / period).into()).split_integer();
-        (period * rest, whole)
-    }
-
-    /// The angular velocity for given sn, cn, dn.
-    fn omega(&self, [sn, cn, dn]: [f64; 3]) -> Bivector {
-        let mut omega = Bivector::default();
-        for (axis, (amplitude, f)) in self.axes.into_iter().zip(self.amplitudes.into_iter().zip([cn, sn, dn]))
-        {
-            omega.0[axis] = amplitude * f;
-        }
-        omega
-    }
-
-    /// The rotor that turns the direction of the angular momentum into d.
-    fn aligned(&self, functions: [f64; 3]) -> Rotor {
-        let mut momentum = self.omega(functions).dual();
-        for (axis, moment) in self.axes.into_iter().zip(self.moments) {
-            momentum.0[axis] *= moment;
-        }
-        Rotor::from_vectors(momentum, self.d).unwrap_or(Rotor::IDENTITY)
-    }
-
-    /// `s [κ Π(n; am u) − χ]`, with Π or its excess, for a reduced u; on the separatrix without the linear
-    /// part of Π.
-    fn local_angle(&self, u: f64) -> f64 {
-        let [sn, cn, dn] = jacobi(u, self.kc2);
-        let [a, b, _] = self.moments;
-        let chi = f64::atan2(b * self.amplitudes[1].abs() * sn, a * self.amplitudes[0].abs() * cn);
-        let pi = match &self.periods {
-            // ∫du/(1 + ν² tanh² u) = [u + ν arctan(ν tanh u)]/(1 + ν²), ν² = −n.
-            None => {
-                let nu = (-self.n).sqrt();
-                nu * (nu * sn).atan() / (1.0 - self.n)
-            }
-            Some(periods) => {
-                let (sin, cos) = (sn.abs(), cn.abs());
-                let part = if self.excess {
-                    incomplete_pi_excess(self.n, sin, cos, dn)
-                } else {
-                    incomplete_pi(self.n, sin, cos, dn, self.k2, self.kc2)
-                };
-                let part = if cn < 0.0 { 2.0 * periods.complete_pi - part } else { part };
-                // Odd in u; the excess is negative for positive u.
-                if sn < 0.0 { -part } else { part }
-            }
-        };
-        self.s * (self.kappa * pi - chi)
-    }
-
-    /// The u in [−2K, 2K] with given cn u and sn u.
-    fn argument(&self, cn: f64, sn: f64) -> f64 {
-        let size = cn.hypot(sn);
-        let (cos, sin) = (cn / size, sn / size);
-        let Some(periods) = &self.periods else { return (sin / cos).asinh() };
-        // Δ² = 1 − k² sin² = cos² + k'² sin².
-        let first = sin.abs() * r_f(cos * cos, cos * cos + self.kc2 * sin * sin, 1.0);
-        let first = if cos < 0.0 { 2.0 * periods.quarter - first } else { first };
-        first.copysign(sin)
-    }
+/// Phases, series and frames together.
+fn flow<S: Series>(top: &Orbit, scale: f64, phase: Phase, series: S, rotor: Rotor, frame: Rotor) -> Flow<S> {
+    let rate = top.precession * DoubleDouble::OVER_TWO_PI * 0.5.into();
+    let precession = Phase { rate, start: [0.0; 2] };
+    let axis = |k: usize| {
+        let mut axis = [0.0; 3];
+        axis[top.axes[k]] = 1.0;
+        axis
+    };
+    // Quaternion units are the negatives of the planes.
+    let unit = |k: usize| {
+        let [x, y, z] = axis(k).map(|x| -top.signs[k] * x);
+        Rotor::from_unit_components([0.0, x, y, z])
+    };
+    let factors = series.normalizers();
+    let columns: [[f64; 3]; 3] = std::array::from_fn(|k| {
+        frame.apply_bivector(Bivector(axis(k)) * (top.amplitudes[k] * factors[k] * scale)).0
+    });
+    let omega = std::array::from_fn(|i| columns.map(|c| c[i]));
+    let flow = Flow { scale, orbit: phase, precession, series, rotor: [[0.0; 4]; 4], omega };
+    flow.with_frames(rotor, [Rotor::IDENTITY, unit(0), unit(1), unit(2)], frame.reverse())
 }

@@ -17,6 +17,7 @@ pub mod certificate;
 mod double_double;
 mod eigen;
 pub mod elliptic;
+mod exact;
 pub mod free;
 pub mod inertia;
 pub mod mesh;

@@ -156,3 +156,10 @@ def test_functions_of_many_sizes(text):
     left, right = text.split(" = ")
     # Close to its poles the tangent is not known to a ten-thousandth of what may be rounding.
     assert ph.evaluate(f"{left} = 1.0001 ({right})", used).holds.mean() < 0.1
+
+
+def test_large_arguments_hide_no_difference():
+    assert not ph.evaluate("cos(x) = -1", x=1e10)
+    assert not ph.evaluate("cos(x)² = 2 sin(x)²", x=1e10)
+    assert ph.evaluate("cos(x)² + sin(x)² = 1", x=1e10)
+    assert not ph.evaluate("cos(x) = -1", x=np.array([1e6], dtype=np.float32))

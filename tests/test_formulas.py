@@ -233,6 +233,8 @@ def test_names_that_are_not_used_may_be_anything():
     other = ph.algebra(3, 0, 1).basis_vectors[0]
     environment = {"a": e1, "b": e2, "count": 3.0, "__name__": "x", "path": "here", "motor": other}
     assert f(environment) == f(**environment) == ph.evaluate("a b", **environment) == e1 * e2
+    assert f(a=e1, b=e2, ab="text", m=None) == e1 * e2
+    assert ph.evaluate("norm(a)", a=e1, m=other, n=len) == 1
 
 
 def test_single_values_count_by_the_grades_in_which_they_are_not_zero():

@@ -15,7 +15,7 @@ from polhode._algebra import algebra as algebra_of
 from polhode._arrays import is_float, new, rows
 from polhode._coefficients import kind_of
 from polhode._formula_error import FormulaError
-from polhode._formula_values import Given, given, kinds_of
+from polhode._formula_values import Given, compiled, given, kinds_of
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._walk import Step, Walk
@@ -187,13 +187,7 @@ def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, A
     """Return the value of a formula, where it is not native: the general way of every call."""
     if len(arguments) > 1:
         raise TypeError(f"a formula takes one mapping of values and keywords, got {len(arguments)} values")
-    known = given(core, arguments[0] if arguments else None, named or {})
-    try:
-        program = core.program(known.algebra, known.kinds)
-    except FormulaError:
-        # As for methods, a single value without a scalar part, such as e1*e2, counts as a bivector.
-        known = known.narrowed()
-        program = core.program(known.algebra, known.kinds)
+    program, known = compiled(core, given(core, arguments[0] if arguments else None, named or {}))
     return evaluated(core.text, program, known)
 
 

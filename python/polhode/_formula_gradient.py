@@ -11,7 +11,7 @@ from polhode import _native
 from polhode._arrays import is_float
 from polhode._coefficients import tell_jax
 from polhode._extras import optional
-from polhode._formula_values import Given, given
+from polhode._formula_values import Given, compiled, given
 from polhode._linear import LinearMap
 from polhode._multivector import Multivector
 from polhode._walk import Step, Walk
@@ -27,8 +27,7 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     tell_jax()
 
     def gradients(values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
-        known = given(core, values, named)
-        program = core.program(known.algebra, known.kinds)
+        program, known = compiled(core, given(core, values, named))
         _require_scalar(program)
         places = [_place(program, known, name) for name in names]
         data = [x._data if isinstance(x, Multivector) else x.matrix for x in known.values]
@@ -37,7 +36,7 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
         if not all(map(is_float, data)):
             return _shaped(names, _by_jax(jax, core.text, program, known, places))
         with _doubles(jax):
-            double = Given(known.algebra, known.kinds, [_of_jax(jax, x) for x in known.values])
+            double = Given(known.algebra, known.kinds, [_of_jax(jax, x) for x in known.values], {})
             found = _by_jax(jax, core.text, program, double, places)
             return _shaped(names, [x._like(np.asarray(x._data, dtype=np.float64)) for x in found])
 
@@ -55,7 +54,7 @@ def _by_jax(
         values = list(known.values)
         for i, value, x in zip(places, chosen, data, strict=True):
             values[i] = value._like(x)
-        inputs = Given(known.algebra, known.kinds, values).inputs(program)
+        inputs = Given(known.algebra, known.kinds, values, {}).inputs(program)
         result = Walk(text, steps, inputs, known.algebra).last()
         for i, value in zip(places, chosen, strict=True):
             if value.shape != result.shape:

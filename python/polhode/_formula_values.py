@@ -14,6 +14,7 @@ from polhode import _native
 from polhode._algebra import algebra as algebra_of
 from polhode._arrays import is_float
 from polhode._coefficients import scalars
+from polhode._formula_error import FormulaError
 from polhode._linear import LinearMap
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
@@ -35,11 +36,15 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class Given:
-    """The algebra of all values, their kinds, and the values: multivectors and linear maps."""
+    """The algebra of all values, their kinds, and the values: multivectors, linear maps, Python's numbers.
+
+    What no formula takes is refused, each with its reason.
+    """
 
     algebra: Any
     kinds: list[Kind]
-    values: list[Multivector | LinearMap]
+    values: list[Any]
+    refused: dict[str, TypeError]
 
     def inputs(self, program: _native.Program) -> list[Any]:
         """Return what a program takes: multivectors, and of maps matrices (..., 9), determinants (..., 1)."""
@@ -50,7 +55,25 @@ class Given:
         """Return the same with single values of those grades alone in which they are not zero."""
         values = [_narrowed(value) for value in self.values]
         kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
-        return Given(self.algebra, kinds, values)
+        return Given(self.algebra, kinds, values, self.refused)
+
+    def with_scalars(self, program: _native.Program) -> Given:
+        """Return the same with scalars for Python's numbers, in the precision of the values that are used."""
+        used = [self.values[place] for place, _, _ in program.inputs]
+        data = [value._data for value in used if isinstance(value, Multivector)]
+        data += [value.matrix for value in used if isinstance(value, LinearMap)]
+        if data and all(map(is_float, data)):
+            like: Any = np.empty(0, np.result_type(*data))
+        else:
+            like = next((x for x in data if not is_float(x)), None)
+        values = [
+            value if isinstance(value, Multivector | LinearMap) else self._scalar(value, like)
+            for value in self.values
+        ]
+        return Given(self.algebra, self.kinds, values, self.refused)
+
+    def _scalar(self, number: float, like: Any) -> Multivector:
+        return Multivector._of(scalars(number, like), 1, self.algebra)
 
     def _require_one_shape(self, program: _native.Program) -> None:
         """Raise for batches that do not broadcast."""
@@ -76,17 +99,46 @@ def _batch(value: Any) -> tuple[int, ...]:
 
 
 def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
-    """Return the values by name, numbers and arrays as scalars; of those that are not used, what fits."""
-    letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
+    """Return the values by name. Those that no formula takes are told of only if this one needs them."""
     everything = _together(values, named)
-    used = {name: value for name, value in everything.items() if _may_use(letters, name)}
-    algebra = _common_algebra(core.algebra, used)
-    everything = {name: value for name, value in everything.items() if name in used or _fits(value, algebra)}
-    if all(isinstance(value, Multivector | LinearMap) for value in everything.values()):
-        known = everything
-    else:
-        known = _with_scalars(everything, algebra)
-    return Given(algebra, [(name, *_kind(value)) for name, value in known.items()], list(known.values()))
+    algebra, owner = _main_algebra(core, everything)
+    known: dict[str, Any] = {}
+    refused: dict[str, TypeError] = {}
+    for name, value in everything.items():
+        if name.isidentifier() and _native.canonical(name) is None:
+            continue  # such as __name__, which no text can have
+        try:
+            known[name] = _value(name, value, algebra, owner)
+        except TypeError as error:
+            refused[name] = error
+    kinds = [(name, *_kind(value)) for name, value in known.items()]
+    return Given(algebra, kinds, list(known.values()), refused)
+
+
+def compiled(core: _native.Formula, known: Given) -> tuple[_native.Program, Given]:
+    """Return the program for the values, and the values as it takes them."""
+    try:
+        program = core.program(known.algebra, known.kinds)
+    except FormulaError as error:
+        wanted = _native.canonical(error.text[slice(*error.span)])
+        for name, reason in known.refused.items():
+            if wanted is not None and _native.canonical(name) == wanted:
+                raise reason from None
+        # As for methods, a single value without a scalar part, such as e1*e2, counts as a bivector.
+        known = known.narrowed()
+        program = core.program(known.algebra, known.kinds)
+    return program, known.with_scalars(program)
+
+
+def _main_algebra(core: _native.Formula, values: dict[str, Any]) -> tuple[Any, str]:
+    """Return the algebra of the first value whose name the text may have, or 3-d space; and what has it."""
+    if core.algebra is not None:
+        return core.algebra, "the formula"
+    letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
+    for name, value in values.items():
+        if isinstance(value, Multivector | LinearMap) and _may_have(letters, name):
+            return (value.algebra if isinstance(value, Multivector) else algebra_of(3)), name
+    return algebra_of(3), "the formula"
 
 
 def _folded(text: str) -> set[str]:
@@ -94,17 +146,9 @@ def _folded(text: str) -> set[str]:
     return set(unicodedata.normalize("NFKD", text))
 
 
-def _may_use(letters: set[str], name: str) -> bool:
-    """Whether a text of these letters may use a name; subscripts and primes may be written in other ways."""
-    if name.isidentifier() and _native.canonical(name) is None:
-        return False
+def _may_have(letters: set[str], name: str) -> bool:
+    """Whether a text of these letters may have a name in it, whose subscripts may be written otherwise."""
     return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
-
-
-def _fits(value: Any, algebra: Any) -> bool:
-    if isinstance(value, Multivector):
-        return value.algebra is algebra
-    return isinstance(value, LinearMap) or type(value) in (int, float)
 
 
 def _narrowed(value: Any) -> Any:
@@ -144,9 +188,11 @@ def _said(name: str, kind: Any, algebra: Any) -> tuple[int, int]:
     return mask, _VALUE
 
 
-def _kind(value: Multivector | LinearMap) -> tuple[int, int]:
+def _kind(value: Any) -> tuple[int, int]:
     if isinstance(value, LinearMap):
         return value.grade, _MAP
+    if not isinstance(value, Multivector):
+        return 0b0001, _VALUE
     return value._mask, _ROTOR if isinstance(value, Rotor) else _VALUE
 
 
@@ -177,22 +223,13 @@ def _common_algebra(algebra: Any, values: dict[str, Any]) -> Any:
     return algebra_of(3) if algebra is None else algebra
 
 
-def _with_scalars(values: dict[str, Any], algebra: Any) -> dict[str, Any]:
-    """Return the values, numbers and arrays as scalars; Python's numbers take the precision of the others."""
-    plain = {name: value for name, value in values.items() if type(value) in (int, float)}
-    known = {name: _value(name, value, algebra) for name, value in values.items() if name not in plain}
-    data = [value._data for value in known.values() if isinstance(value, Multivector)]
-    data += [value.matrix for value in known.values() if isinstance(value, LinearMap)]
-    if data and all(map(is_float, data)):
-        like: Any = np.empty(0, np.result_type(*data))
-    else:
-        like = next((x for x in data if not is_float(x)), None)
-    known |= {name: Multivector._of(scalars(x, like), 1, algebra) for name, x in plain.items()}
-    return {name: known[name] for name in values}
-
-
-def _value(name: str, value: Any, algebra: Any) -> Any:
+def _value(name: str, value: Any, algebra: Any, owner: str) -> Any:
     if isinstance(value, Multivector | LinearMap):
+        own = value.algebra if isinstance(value, Multivector) else algebra_of(3)
+        if own is not algebra:
+            raise TypeError(f"the values are of different algebras: {owner} of {algebra}, {name} of {own}")
+        return value
+    if type(value) in (int, float):
         return value
     data = scalars(value, None)
     if data is not None:

@@ -15,7 +15,7 @@ pub(super) struct Builder<'a> {
     /// Where the call stands of the definition that is being written out: the place of all its steps.
     pub call: Option<Span>,
     /// The steps there are, by what they do.
-    known: HashMap<[u64; 4], Id>,
+    known: HashMap<[u64; 5], Id>,
 }
 
 pub(super) type Built = Result<Id, Error>;
@@ -130,15 +130,15 @@ impl Builder<'_> {
 }
 
 /// What a step does, as numbers: equal for equal steps only.
-fn key(op: &Op, ty: Type) -> [u64; 4] {
+fn key(op: &Op, ty: Type) -> [u64; 5] {
     let pair = |a: usize, b: usize| (a as u64) << 32 | b as u64;
-    let [mut kind, mut first, mut second] = [0; 3];
+    let [mut kind, mut first, mut second, mut third] = [0; 4];
     match *op {
         Op::Input(i) => first = i as u64,
         Op::Constant(number, index) => {
             kind = 1 | (index as u64) << 8 | u64::from(number.ratio.is_some()) << 32;
             first = number.value.to_bits();
-            second = number.ratio.map_or(0, |(n, d)| (n as u64).rotate_left(32) ^ d as u64);
+            (second, third) = number.ratio.map_or((0, 0), |(n, d)| (n as u64, d as u64));
         }
         Op::Pi => kind = 2,
         Op::Add(a, b) => (kind, first) = (3, pair(a, b)),
@@ -160,5 +160,5 @@ fn key(op: &Op, ty: Type) -> [u64; 4] {
         Op::Tan(a) => (kind, first) = (19, a as u64),
         Op::Map { input, argument } => (kind, first) = (20, pair(input, argument)),
     }
-    [kind, first, second, u64::from(ty.grades.0) << 1 | u64::from(ty.unit)]
+    [kind, first, second, third, u64::from(ty.grades.0) << 1 | u64::from(ty.unit)]
 }

@@ -376,7 +376,11 @@ impl Compiler<'_> {
         self.steps.call = Some(call);
         let value = self.node(&definition.body);
         (self.frame, self.steps.call) = (outside, before);
-        value.map_err(|error| Error::new(call, format!("in `{name}`: {}", error.message)))
+        // Of definitions within each other the innermost is named.
+        value.map_err(|Error { message, .. }| {
+            let named = message.starts_with("in `");
+            Error::new(call, if named { message } else { format!("in `{name}`: {message}") })
+        })
     }
 
     /// `Σ_k`: the sum over all values of the index.

@@ -105,8 +105,6 @@ def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[s
     known: dict[str, Any] = {}
     refused: dict[str, TypeError] = {}
     for name, value in everything.items():
-        if name.isidentifier() and _native.canonical(name) is None:
-            continue  # such as __name__, which no text can have
         try:
             known[name] = _value(name, value, algebra, owner)
         except TypeError as error:

@@ -1,6 +1,7 @@
 //! Formulas in Python: texts, what they mean for values of given kinds, and calls on single values.
 
 use crate::arrays::bad;
+use crate::batches;
 use crate::calls::{Argument, Calls};
 use crate::program::{Program, characters, error};
 use crate::signature::{Algebra, g3, largest};
@@ -19,7 +20,7 @@ use std::sync::Mutex;
 
 /// A name as it was given, the grades as bits, and 0 for a value, 1 for a rotor; 2 for a linear map, of the
 /// vectors or bivectors that the bits stand for.
-type Said = (String, u16, u8);
+pub(crate) type Said = (String, u16, u8);
 
 /// So many programs of a formula are kept, each for other kinds of values.
 const KEPT: usize = 64;
@@ -151,12 +152,17 @@ impl Formula {
                 Some(Argument::Map(_, grade)) => (name.extract()?, grade, 2),
             });
         }
+        Ok(self.for_floats(py, said))
+    }
+
+    /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and where
+    /// something is wrong, which is told by the general way.
+    pub(crate) fn for_floats(&self, py: Python<'_>, said: Vec<Said>) -> Option<Py<Program>> {
         if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
-            return Ok(None);
+            return None;
         }
-        // What is wrong with them is told by the general way.
-        let Ok(program) = self.program(py, g3(py)?.clone_ref(py), said) else { return Ok(None) };
-        Ok((!program.get().program.is_equation()).then_some(program))
+        let program = self.program(py, g3(py).ok()?.clone_ref(py), said).ok()?;
+        (!program.get().program.is_equation()).then_some(program)
     }
 
     fn algebra_or_g3<'a>(&'a self, py: Python<'a>) -> PyResult<&'a Py<Algebra>> {
@@ -205,6 +211,11 @@ impl Formula {
                 _ => Meaning::Map { grade: grades.0 as u8 },
             };
             let Some(spelling) = canonical(name) else {
+                // Such as __name__, which no text can have.
+                if name.chars().all(|c| c.is_alphanumeric() || c == '_') {
+                    spelled.push(String::new());
+                    continue;
+                }
                 return Err(PyTypeError::new_err(format!(
                     "{name:?} is no name in formulas; names are letters with subscripts and primes, or words"
                 )));
@@ -276,6 +287,9 @@ fn called<'py>(
             if let Some(value) = formula.calls.value(named)? {
                 return Ok(value);
             }
+        }
+        if let Some(value) = batches::value(formula, named)? {
+            return Ok(value);
         }
     }
     static GENERAL: PyOnceLock<Py<PyAny>> = PyOnceLock::new();

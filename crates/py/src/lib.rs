@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 
 mod algebra;
 mod arrays;
+mod batches;
 mod bodies;
 mod calls;
 mod formula;

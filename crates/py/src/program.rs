@@ -4,7 +4,7 @@ use crate::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, thre
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
 use polhode_ga::batch::Element;
-use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span};
+use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type};
 use polhode_ga::table::G3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -63,8 +63,7 @@ impl Program {
     #[getter]
     fn value_type(&self) -> Option<(u16, usize, bool)> {
         self.runner.as_ref()?;
-        let &[result] = &self.program.results.first()?[..] else { return None };
-        let ty = self.program.steps[result].ty;
+        let ty = self.ty()?;
         Some((ty.grades.0, ty.grades.indices(&G3).len(), ty.unit))
     }
 
@@ -103,18 +102,28 @@ impl Program {
         inputs: &[Bound<'_, PyAny>],
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let (Some(runner), [results]) = (&self.runner, &self.program.results[..]) else {
-            return Err(bad("an equation in free indices, or of another algebra, is not run here"));
-        };
-        let &[result] = &results[..] else { return Err(bad("an equation is not run here")) };
-        let size = self.program.steps[result].ty.grades.indices(&G3).len();
         let mut out: RowsToFill<'_, T> = out.extract()?;
         let batch = out.shape().split_last().map_or(Vec::new(), |(_, batch)| batch.to_vec());
-        let rows: usize = batch.iter().product();
         let out = numbers_to_fill(&mut out)?;
         let inputs: Vec<Rows<'_, T>> =
             inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
         let data: Vec<&[T]> = inputs.iter().map(numbers).collect::<PyResult<_>>()?;
+        self.fill_rows(py, &data, &batch, out)
+    }
+
+    /// Fills the rows of a batch from inputs of one row or of all.
+    pub(crate) fn fill_rows<T: Element>(
+        &self,
+        py: Python<'_>,
+        data: &[&[T]],
+        batch: &[usize],
+        out: &mut [T],
+    ) -> PyResult<()> {
+        let (Some(runner), Some(ty)) = (&self.runner, self.ty()) else {
+            return Err(bad("an equation, or a formula of another algebra, is not run here"));
+        };
+        let size = ty.grades.indices(&G3).len();
+        let rows: usize = batch.iter().product();
         let kinds: Vec<usize> = self.program.inputs.iter().map(|input| size_of(input.kind)).collect();
         let fits = |(x, size): (&&[T], &usize)| x.len() == *size || x.len() == rows * size;
         if data.len() != kinds.len() || !data.iter().zip(&kinds).all(fits) || out.len() != rows * size {
@@ -123,11 +132,18 @@ impl Program {
         let threads = threads(rows.saturating_mul(self.program.steps.len()))?;
         for first in (0..rows).step_by(PIECE) {
             let piece = first..rows.min(first + PIECE);
-            let done = py.detach(|| runner.run(threads, &data, &mut [&mut *out], piece));
-            done.map_err(|error| self.row_error(py, &error, &batch))?;
+            let done = py.detach(|| runner.run(threads, data, &mut [&mut *out], piece));
+            done.map_err(|error| self.row_error(py, &error, batch))?;
             py.check_signals()?;
         }
         Ok(())
+    }
+
+    /// The type of the value; `None` of an equation.
+    pub(crate) fn ty(&self) -> Option<Type> {
+        let [results] = &self.program.results[..] else { return None };
+        let &[result] = &results[..] else { return None };
+        Some(self.program.steps[result].ty)
     }
 
     /// The value for single values, and whether it is a rotor; `None` if it is not run here. The values of the

@@ -129,7 +129,7 @@ impl Program {
         if data.len() != kinds.len() || !data.iter().zip(&kinds).all(fits) || out.len() != rows * size {
             return Err(bad("the arrays do not fit the program"));
         }
-        let threads = threads(rows.saturating_mul(self.program.steps.len()))?;
+        let threads = threads(rows.saturating_mul(runner.weight()) / 16)?;
         for first in (0..rows).step_by(PIECE) {
             let piece = first..rows.min(first + PIECE);
             let done = py.detach(|| runner.run(threads, data, &mut [&mut *out], piece));

@@ -150,8 +150,9 @@ impl Runner {
         values.map_err(|(step, error)| RowError { row, step, error })
     }
 
-    /// How much there is to do for a row, in units of reading or writing a number.
-    fn weight(&self) -> usize {
+    /// How much there is to do for a row, in units of reading or writing a number; several threads pay from
+    /// a million units on.
+    pub fn weight(&self) -> usize {
         let of_step = |work: &Work| if matches!(work, Work::Function(_)) { 300 } else { 2 };
         self.inputs.iter().map(|&kind| size_of_input(kind)).sum::<usize>()
             + self.steps.iter().map(|step| of_step(&step.work)).sum::<usize>()

@@ -1,5 +1,6 @@
 //! Names in LaTeX: letters, accents, indices, primes and labels.
 
+use super::indices::INDICES;
 use super::letters::decomposed;
 
 /// The letters of a name before its indices, primes and label.
@@ -23,13 +24,19 @@ pub(super) fn word(name: &str, accent: &str) -> String {
     if !indices.is_empty() {
         text += &format!("_{{{}}}", subscript(indices.trim_start_matches('_')));
     }
-    let label: Vec<String> = label.chars().map(letter).collect();
-    text + primes + &label.join(" ")
+    // A label is a number, or a name without one of its own.
+    let label = label.trim_start_matches('(').trim_end_matches(')');
+    let label = match label.chars().next() {
+        None => String::new(),
+        Some(c) if c.is_alphabetic() => format!("({})", word(label, "")),
+        Some(_) => format!("({label})"),
+    };
+    text + primes + &label
 }
 
-/// Several Latin letters are a word, set upright.
+/// More than three Latin letters are a word, set upright; fewer may be factors, and are set as such.
 fn upright(letters: &str) -> String {
-    if letters.len() > 1 && letters.bytes().all(|c| c.is_ascii_alphabetic()) {
+    if letters.len() > 3 && letters.bytes().all(|c| c.is_ascii_alphabetic()) {
         return format!("\\mathrm{{{letters}}}");
     }
     let mut marked: Vec<(char, Vec<&str>)> = Vec::new();
@@ -55,8 +62,16 @@ pub(super) fn subscript(indices: &str) -> String {
     parts.join(",")
 }
 
+/// An index: digits, letters that count, or a word, which is set upright.
 fn upright_or_digits(index: &str) -> String {
-    if index.bytes().all(|c| c.is_ascii_digit()) { index.to_owned() } else { upright(index) }
+    if index.bytes().all(|c| c.is_ascii_digit()) {
+        return index.to_owned();
+    }
+    let word = index.len() > 1 && index.bytes().all(|c| c.is_ascii_alphabetic());
+    match word && !index.chars().all(|c| INDICES.contains(c)) {
+        true => format!("\\mathrm{{{index}}}"),
+        false => upright(index),
+    }
 }
 
 /// Combining marks.

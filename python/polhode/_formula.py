@@ -18,7 +18,7 @@ from polhode._formula_error import FormulaError
 from polhode._formula_values import Given, compiled, given, kinds_of
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
-from polhode._walk import Step, Walk
+from polhode._walk import Step, Walk, steps_of
 
 __all__ = ["Agreement", "Formula", "FormulaError", "evaluate", "formula"]
 
@@ -105,7 +105,7 @@ class Formula:
     def steps(self, /, **kinds: Any) -> list[str]:
         """Return what is computed, step by step, for names that stand for what `tree` explains."""
         program = self._program(kinds)
-        return described(self.text, [Step(*step) for step in program.steps], program.names)
+        return described(self.text, steps_of(program), program.names)
 
     def _program(self, kinds: dict[str, Any]) -> _native.Program:
         algebra, items = kinds_of(self._core.algebra, kinds)
@@ -199,7 +199,7 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
         data = [x._data if isinstance(x, Multivector) else x for x in inputs]
         if all(map(is_float, data)):
             return _run(program, kind, data)
-    walk = Walk(text, [Step(*step) for step in program.steps], inputs, known.algebra)
+    walk = Walk(text, steps_of(program), inputs, known.algebra)
     results = program.results
     if len(results[0]) == 1:
         return walk.last()

@@ -14,7 +14,7 @@ from polhode._extras import optional
 from polhode._formula_values import Given, compiled, given
 from polhode._linear import LinearMap
 from polhode._multivector import Multivector
-from polhode._walk import Step, Walk
+from polhode._walk import Walk, steps_of
 
 
 def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any]:
@@ -47,7 +47,7 @@ def _by_jax(
     jax: Any, text: str, program: _native.Program, known: Given, places: list[int]
 ) -> list[Multivector]:
     """Return the gradients; rows of a batch do not depend on each other, so their sum has them all."""
-    steps = [Step(*step) for step in program.steps]
+    steps = steps_of(program)
     chosen: list[Any] = [known.values[i] for i in places]
 
     def total(data: list[Any]) -> Any:

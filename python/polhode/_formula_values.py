@@ -135,7 +135,7 @@ def _main_algebra(core: _native.Formula, values: dict[str, Any]) -> tuple[Any, s
     letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
     for name, value in values.items():
         if isinstance(value, Multivector | LinearMap) and _may_have(letters, name):
-            return (value.algebra if isinstance(value, Multivector) else algebra_of(3)), name
+            return _algebra_of(value), name
     return algebra_of(3), "the formula"
 
 
@@ -208,24 +208,30 @@ def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[s
     return {**values, **named}
 
 
-def _common_algebra(algebra: Any, values: dict[str, Any]) -> Any:
-    """Return the one algebra of all values; linear maps are of 3-d space."""
-    said = "the formula"
+def _algebra_of(value: Multivector | LinearMap) -> Any:
+    """Return the algebra of a value; linear maps are of 3-d space."""
+    return value.algebra if isinstance(value, Multivector) else algebra_of(3)
+
+
+def _require_algebra(name: str, value: Multivector | LinearMap, algebra: Any, owner: str) -> None:
+    own = _algebra_of(value)
+    if own is not algebra:
+        raise TypeError(f"the values are of different algebras: {owner} of {algebra}, {name} of {own}")
+
+
+def _common_algebra(algebra: Any, values: dict[str, Multivector]) -> Any:
+    """Return the one algebra of all values; of 3-d space if there are none."""
+    owner = "the formula"
     for name, value in values.items():
-        if isinstance(value, Multivector | LinearMap):
-            own = value.algebra if isinstance(value, Multivector) else algebra_of(3)
-            if algebra is None:
-                algebra, said = own, name
-            elif own is not algebra:
-                raise TypeError(f"the values are of different algebras: {said} of {algebra}, {name} of {own}")
+        if algebra is None:
+            algebra, owner = _algebra_of(value), name
+        _require_algebra(name, value, algebra, owner)
     return algebra_of(3) if algebra is None else algebra
 
 
 def _value(name: str, value: Any, algebra: Any, owner: str) -> Any:
     if isinstance(value, Multivector | LinearMap):
-        own = value.algebra if isinstance(value, Multivector) else algebra_of(3)
-        if own is not algebra:
-            raise TypeError(f"the values are of different algebras: {owner} of {algebra}, {name} of {own}")
+        _require_algebra(name, value, algebra, owner)
         return value
     if type(value) in (int, float):
         return value

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from polhode import _native
 from polhode._arrays import is_float
 from polhode._coefficients import common, kind_of
 from polhode._formula_error import FormulaError
@@ -41,6 +42,11 @@ class Step(NamedTuple):
     mask: int
     unit: bool
     span: tuple[int, int]
+
+
+def steps_of(program: _native.Program) -> list[Step]:
+    """Return the steps of a program."""
+    return [Step(*step) for step in program.steps]
 
 
 class Walk:

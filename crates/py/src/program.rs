@@ -1,6 +1,7 @@
 //! Programs of formulas in Python: what they are given, and their steps for those who walk them.
 
 use crate::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
+use crate::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
 use polhode_ga::batch::Element;
@@ -124,7 +125,7 @@ impl Program {
         };
         let size = ty.grades.indices(&G3).len();
         let rows: usize = batch.iter().product();
-        let kinds: Vec<usize> = self.program.inputs.iter().map(|input| size_of(input.kind)).collect();
+        let kinds: Vec<usize> = self.program.inputs.iter().map(|input| input.kind.size()).collect();
         let fits = |(x, size): (&&[T], &usize)| x.len() == *size || x.len() == rows * size;
         if data.len() != kinds.len() || !data.iter().zip(&kinds).all(fits) || out.len() != rows * size {
             return Err(bad("the arrays do not fit the program"));
@@ -164,15 +165,6 @@ impl Program {
     pub(crate) fn row_error(&self, py: Python<'_>, found: &RowError, batch: &[usize]) -> PyErr {
         let message = format!("{}{}", place(found.row, batch), found.error);
         error(py, &self.text, &formula::Error { message, span: self.program.steps[found.step].span })
-    }
-}
-
-/// How many numbers there are in a row of an input.
-fn size_of(kind: InputKind) -> usize {
-    match kind {
-        InputKind::Value(ty) => ty.grades.indices(&G3).len(),
-        InputKind::Matrix { .. } => 9,
-        InputKind::Determinant => 1,
     }
 }
 
@@ -227,8 +219,7 @@ pub(crate) fn error(py: Python<'_>, text: &str, error: &formula::Error) -> PyErr
 /// The place in a text, in characters, with a caret, on lines of its own.
 #[pyfunction]
 pub(crate) fn marked(text: &str, place: Place) -> String {
-    let byte = |count: usize| text.char_indices().nth(count).map_or(text.len(), |(i, _)| i);
-    let span = Span { start: byte(place.0), end: byte(place.1) };
+    let span = Span { start: byte(text, place.0), end: byte(text, place.1) };
     formula::Error { message: String::new(), span }.shown(text)
 }
 

@@ -48,6 +48,6 @@ pub(crate) fn quantities(text: &str, names: HashSet<String>) -> PyResult<Vec<(us
 }
 
 /// The place in bytes of the character of this number.
-fn byte(text: &str, character: usize) -> usize {
+pub(crate) fn byte(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(at, _)| at)
 }

@@ -7,6 +7,7 @@ use super::names::Type;
 use super::number::Number;
 use super::tree::Span;
 use crate::functions::Function;
+use crate::graded::size;
 use crate::product::{Grades, Product};
 use crate::table::Signature;
 
@@ -58,6 +59,17 @@ pub enum InputKind {
     Determinant,
 }
 
+impl InputKind {
+    /// How many numbers a row of it has, in 3-d space.
+    pub fn size(self) -> usize {
+        match self {
+            InputKind::Value(ty) => size(ty.grades),
+            InputKind::Matrix { .. } => 9,
+            InputKind::Determinant => 1,
+        }
+    }
+}
+
 /// A step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
@@ -70,7 +82,7 @@ pub struct Step {
 }
 
 /// The operations.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Op {
     /// An input that is a value, by its number.
     Input(usize),
@@ -124,14 +136,20 @@ pub enum Op {
 impl Op {
     /// The steps it needs.
     pub fn operands(&self) -> impl Iterator<Item = Id> {
-        let (first, second) = match *self {
-            Op::Input(_) | Op::Constant(..) | Op::Pi => (None, None),
+        let mut op = *self;
+        op.slots().map(|slot| slot.copied()).into_iter().flatten()
+    }
+
+    /// Where it keeps the steps it needs.
+    fn slots(&mut self) -> [Option<&mut Id>; 2] {
+        match self {
+            Op::Input(_) | Op::Constant(..) | Op::Pi => [None, None],
             Op::Add(a, b)
             | Op::Subtract(a, b)
             | Op::Product(_, a, b)
             | Op::Compose(a, b)
             | Op::Turn(a, b)
-            | Op::Divide(a, b) => (Some(a), Some(b)),
+            | Op::Divide(a, b) => [Some(a), Some(b)],
             Op::Negate(a)
             | Op::Reverse(a)
             | Op::Part(a)
@@ -143,37 +161,17 @@ impl Op {
             | Op::Sin(a)
             | Op::Cos(a)
             | Op::Tan(a)
-            | Op::Map { argument: a, .. } => (Some(a), None),
-        };
-        first.into_iter().chain(second)
+            | Op::Map { argument: a, .. } => [Some(a), None],
+        }
     }
 
     /// Gives the steps and inputs it needs other numbers.
     pub(crate) fn renumber(&mut self, step: impl Fn(Id) -> Id, mut other_input: impl FnMut(usize) -> usize) {
-        match self {
-            Op::Constant(..) | Op::Pi => {}
-            Op::Input(input) => *input = other_input(*input),
-            Op::Map { input, argument } => {
-                *input = other_input(*input);
-                *argument = step(*argument);
-            }
-            Op::Add(a, b)
-            | Op::Subtract(a, b)
-            | Op::Product(_, a, b)
-            | Op::Compose(a, b)
-            | Op::Turn(a, b)
-            | Op::Divide(a, b) => (*a, *b) = (step(*a), step(*b)),
-            Op::Negate(a)
-            | Op::Reverse(a)
-            | Op::Part(a)
-            | Op::Dual(a)
-            | Op::Undual(a)
-            | Op::Function(_, a)
-            | Op::RotorPower(a, _)
-            | Op::Norm(a)
-            | Op::Sin(a)
-            | Op::Cos(a)
-            | Op::Tan(a) => *a = step(*a),
+        for id in self.slots().into_iter().flatten() {
+            *id = step(*id);
+        }
+        if let Op::Input(input) | Op::Map { input, .. } = self {
+            *input = other_input(*input);
         }
     }
 }

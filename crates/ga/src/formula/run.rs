@@ -4,7 +4,7 @@ use super::InputKind;
 use super::program::Id;
 use super::schedule::{Schedule, Task};
 use super::single::{Given, Runner};
-use super::steps::{Work, size_of_input};
+use super::steps::Work;
 use crate::MathError;
 use crate::graded::{Graded, size};
 use crate::simd::{Element, Lane, Path};
@@ -79,7 +79,7 @@ impl Runner {
         assert_eq!((inputs.len(), outputs.len()), (self.inputs.len(), self.results.len()), "all that are");
         let total = outputs[0].len() / self.size_of_result(0);
         let factors = self.inputs.iter().zip(inputs);
-        let factors = factors.map(|(&kind, data)| Factor::new(data, size_of_input(kind), total));
+        let factors = factors.map(|(&kind, data)| Factor::new(data, kind.size(), total));
         let bytes: usize = inputs.iter().map(|x| size_of_val(*x)).sum::<usize>()
             + outputs.iter().map(|x| size_of_val(*x)).sum::<usize>();
         let mut targets: Vec<Target<T>> = Vec::with_capacity(outputs.len());
@@ -154,7 +154,7 @@ impl Runner {
     /// a million units on.
     pub fn weight(&self) -> usize {
         let of_step = |work: &Work| if matches!(work, Work::Function(_)) { 300 } else { 2 };
-        self.inputs.iter().map(|&kind| size_of_input(kind)).sum::<usize>()
+        self.inputs.iter().map(|&kind| kind.size()).sum::<usize>()
             + self.steps.iter().map(|step| of_step(&step.work)).sum::<usize>()
     }
 }

@@ -91,10 +91,7 @@ fn random_program(random: &mut Random) -> Program {
             15 => step(Op::Function(Function::Log, rotor), Type::of(Grades::BIVECTOR)),
             16 => step(Op::RotorPower(rotor, random.below(9) as i32 - 4), Type::ROTOR),
             17 => step(Op::Norm(a), Type::SCALAR),
-            18 => step(
-                [Op::Sin(scalar), Op::Cos(scalar), Op::Tan(scalar)][random.below(3)].clone(),
-                Type::SCALAR,
-            ),
+            18 => step([Op::Sin(scalar), Op::Cos(scalar), Op::Tan(scalar)][random.below(3)], Type::SCALAR),
             19 => step(Op::Map { input: 5, argument: vector }, Type::of(VECTOR)),
             _ => {
                 let f = Function::ALL[random.below(4)];
@@ -125,10 +122,6 @@ fn assert_same(got: &[f64], expected: &[f64], what: &str) {
     }
 }
 
-fn size(kind: InputKind) -> usize {
-    super::steps::size_of_input(kind)
-}
-
 /// What single values give: the results row by row up to the first row that has none.
 fn one_by_one(
     program: &Program,
@@ -143,7 +136,7 @@ fn one_by_one(
             .iter()
             .zip(data)
             .map(|(input, data)| {
-                let size = size(input.kind);
+                let size = input.kind.size();
                 let row = if data.len() == size { 0 } else { row };
                 given(input.kind, &data[row * size..(row + 1) * size])
             })

@@ -2,7 +2,7 @@
 
 use super::program::Id;
 use super::single::Runner;
-use super::steps::{Work, size_of_input};
+use super::steps::Work;
 use crate::graded::{Graded, size};
 use std::ops::Range;
 
@@ -90,7 +90,7 @@ impl Runner {
             }
             if let Work::Map(input) = step.work {
                 if of_maps[input].is_empty() {
-                    of_maps[input] = lanes.take(size_of_input(self.inputs[input]));
+                    of_maps[input] = lanes.take(self.inputs[input].size());
                     schedule.tasks.push(Task::Read { input, to: of_maps[input].clone() });
                 }
                 operands[1] = of_maps[input].clone();

@@ -1,9 +1,9 @@
 //! The steps of a program made ready to run in 3-d space, on single values and on blocks of rows.
 
-use super::program::{Id, InputKind, Op, Program, Step};
+use super::program::{Id, Op, Program, Step};
 use crate::MathError;
 use crate::functions::Function;
-use crate::graded::{Graded, size};
+use crate::graded::Graded;
 use crate::product::{Grades, Plan, Product};
 use crate::table::G3;
 use crate::values::Multivector;
@@ -88,15 +88,6 @@ impl Selection {
             Some((sign, held.binary_search(&index).ok()?))
         };
         Selection { places: grades.indices(&G3).iter().map(place).collect(), start }
-    }
-}
-
-/// How many numbers a row of an input has.
-pub(super) fn size_of_input(kind: InputKind) -> usize {
-    match kind {
-        InputKind::Value(ty) => size(ty.grades),
-        InputKind::Matrix { .. } => 9,
-        InputKind::Determinant => 1,
     }
 }
 

@@ -208,7 +208,7 @@ def polhode_figure(trajectory: Trajectory) -> Figure:
     hidden = (omega[0] * moments) @ view.toward < 0
     axes.plot(*start, "o", color=_ORANGE, ms=6, mec="white", mew=0.8, zorder=5, alpha=0.4 if hidden else 1.0)
     _finish(axes, view, semi_axes, ("axis 1", "axis 2", "axis 3"))
-    axes.set_title(trajectory.attributes.get("title", "Polhode"))
+    figure.suptitle(trajectory.attributes.get("title", "Polhode"))
     figure.supxlabel(
         f"Angular velocity in principal axes (moments {', '.join(f'{i:.4g}' for i in moments)} kg m²),\n"
         "on the ellipsoid of its energy: orange, from the dot. Grey: other motions of the same energy.\n"
@@ -278,6 +278,6 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     view.curve(axes, path, path, color=_ORANGE, lw=1.6)
     axes.plot(*view.project(path[:1])[0], "o", color=_ORANGE, ms=6, mec="white", mew=0.8, zorder=5)
     _finish(axes, view, sphere, ("e1", "e2", "e3"))
-    axes.set_title(trajectory.attributes.get("title", "Path of the axis"))
+    figure.suptitle(trajectory.attributes.get("title", "Path of the axis"))
     figure.supxlabel(f"Path of {name} on the unit sphere of space axes (dot: start).", fontsize=9)
     return figure

@@ -1,6 +1,8 @@
 //! What a run should have conserved, and how far it went astray.
 
-use crate::torque::{Conserved, Phase, Torque};
+use crate::conserved::Conserved;
+use crate::phase::{Gyrostat, Phase};
+use crate::torque::Torque;
 
 /// How far a run went astray in what it should have conserved.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +24,7 @@ pub struct Certificate {
 
 /// Follows the conserved quantities along a run.
 pub(crate) struct Watch<'a> {
-    moments: [f64; 3],
+    body: Gyrostat,
     torques: &'a [Torque],
     quantities: Vec<Followed>,
 }
@@ -36,21 +38,25 @@ struct Followed {
 }
 
 impl<'a> Watch<'a> {
-    pub fn new(moments: [f64; 3], torques: &'a [Torque], start: Phase) -> Watch<'a> {
+    pub fn new(body: Gyrostat, torques: &'a [Torque], start: Phase) -> Watch<'a> {
         let follow = |quantity: Conserved| {
             // A quantity that starts at zero with nothing to compare to counts absolutely.
-            let scale = match quantity.scale(moments, torques, &start) {
+            let scale = match quantity.scale(&body, torques, &start) {
                 0.0 => 1.0,
                 scale => scale,
             };
-            Followed { quantity, start: quantity.value(moments, torques, &start), scale, drift: 0.0 }
+            Followed { quantity, start: quantity.value(&body, torques, &start), scale, drift: 0.0 }
         };
-        Watch { moments, torques, quantities: Conserved::under(torques).into_iter().map(follow).collect() }
+        Watch {
+            body,
+            torques,
+            quantities: Conserved::under(&body, torques).into_iter().map(follow).collect(),
+        }
     }
 
     pub fn look(&mut self, state: &Phase) {
         for followed in &mut self.quantities {
-            let value = followed.quantity.value(self.moments, self.torques, state);
+            let value = followed.quantity.value(&self.body, self.torques, state);
             let drift = (value - followed.start).abs() / followed.scale;
             // f64::max would forget a NaN.
             if !(drift <= followed.drift || followed.drift.is_nan()) {

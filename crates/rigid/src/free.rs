@@ -84,11 +84,11 @@ mod series;
 use crate::double_double::DoubleDouble;
 use crate::elliptic::mean;
 use crate::inertia::Inertia;
+use crate::phase::Gyrostat;
 use crate::regime::{FreeDescription, Regime};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
 use crate::symmetric_top::equal;
-use crate::torque::{angular_momentum, kinetic};
 use flow::{AnyFlow, Flow};
 use lanes::Phase;
 use orbit::Orbit;
@@ -172,11 +172,12 @@ impl FreeMotion {
     /// What the invariants tell.
     pub fn describe(&self) -> FreeDescription {
         let (i, w) = (self.moments, self.omega.0);
-        let momentum = angular_momentum(i, self.omega);
+        let body = Gyrostat::rigid(i);
+        let momentum = body.momentum(self.omega);
         let largest = |x: &usize, y: &usize| w[*x].abs().total_cmp(&w[*y].abs());
         let still = FreeDescription {
             regime: if w == [0.0; 3] { Regime::Rest } else { Regime::Steady },
-            energy: kinetic(i, momentum),
+            energy: body.kinetic(momentum),
             angular_momentum: momentum.norm(),
             modulus: 0.0,
             axis: (0..3).max_by(largest).unwrap_or(0),

@@ -14,6 +14,7 @@
 
 pub mod body;
 pub mod certificate;
+pub mod conserved;
 mod double_double;
 mod eigen;
 pub mod elliptic;
@@ -21,6 +22,7 @@ mod exact;
 pub mod free;
 pub mod inertia;
 pub mod mesh;
+pub mod phase;
 pub mod regime;
 pub mod scene;
 pub mod simulate;

@@ -1,11 +1,13 @@
 //! Motion at given times, to a tolerance, with a certificate of what was conserved.
 
 use crate::certificate::{Certificate, Watch};
+use crate::conserved::{Conserved, energy};
 use crate::free::FreeMotion;
 use crate::inertia::Inertia;
+use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::{MAX_STEPS, SimulateError};
 use crate::splitting::{Method, Stepper};
-use crate::torque::{Conserved, Phase, Torque, angular_momentum, angular_velocity, energy, kinetic};
+use crate::torque::{Torque, wheel};
 use polhode_ga::{Bivector, Rotor};
 
 /// How often, in steps, a run asks whether to go on.
@@ -26,7 +28,7 @@ const WORST_UNASKED: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Problem {
     frame: Rotor,
-    moments: [f64; 3],
+    body: Gyrostat,
     rotor: Rotor,
     omega: Bivector,
     torques: Vec<Torque>,
@@ -101,7 +103,9 @@ impl Walker<'_> {
         let h = span / count;
         self.longest = self.longest.max(h.abs());
         for i in 0..count as u64 {
-            self.stepper.step(state, h);
+            self.stepper
+                .step(state, h)
+                .map_err(|error| SimulateError::Torque { time: state.time, message: error.0 })?;
             state.time = if i + 1 == count as u64 { time } else { from + span * ((i + 1) as f64 / count) };
             self.time_done += h.abs();
             self.after_step(state)?;
@@ -150,12 +154,13 @@ impl Problem {
     /// inertia is about the centre of mass, or about the fixed point if there is one.
     pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Problem {
         let frame = inertia.principal_frame();
+        let torques: Vec<Torque> = torques.iter().map(|t| t.clone().in_axes(frame)).collect();
         Problem {
             frame,
-            moments: inertia.principal_moments(),
+            body: Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) },
             rotor: rotor * frame,
             omega: frame.reverse().apply_bivector(omega),
-            torques: torques.iter().map(|t| t.in_axes(frame)).collect(),
+            torques,
         }
     }
 
@@ -175,7 +180,7 @@ impl Problem {
             return Ok(self.motion(self.exact(times)?, "exact", None, 0));
         }
         let method = options.method.unwrap_or(Method::best());
-        let stepper = Stepper::new(self.moments, self.torques.clone(), method, &self.start());
+        let stepper = Stepper::new(self.body, self.torques.clone(), method, &self.start());
         let (pass, estimate, steps) = match options.step {
             Some(step) => {
                 let pass = self.pass(&stepper, times, step, 1, progress)?;
@@ -189,11 +194,11 @@ impl Problem {
 
     /// The exact states of a free body, as a pass without steps.
     fn exact(&self, times: &[f64]) -> Result<Pass, SimulateError> {
-        let motion = FreeMotion::in_principal_axes(self.moments, self.rotor, self.omega);
+        let motion = FreeMotion::in_principal_axes(self.body.moments, self.rotor, self.omega);
         check_horizon(times, motion.horizon())?;
         let phase = |&time: &f64| {
             let (rotor, omega) = motion.at(time);
-            Phase { rotor, momentum: angular_momentum(self.moments, omega), time }
+            Phase { rotor, momentum: self.body.momentum(omega), time }
         };
         let states: Vec<Phase> = times.iter().map(phase).collect();
         let mut watch = self.watch();
@@ -205,19 +210,19 @@ impl Problem {
     }
 
     fn watch(&self) -> Watch<'_> {
-        Watch::new(self.moments, &self.torques, self.start())
+        Watch::new(self.body, &self.torques, self.start())
     }
 
     /// A pass in body axes, with its certificate.
     fn motion(&self, pass: Pass, method: &'static str, error_estimate: Option<f64>, steps: u64) -> Motion {
         let (states, frame) = (pass.states, self.frame);
-        let omega = |s: &Phase| angular_velocity(self.moments, s.momentum);
+        let omega = |s: &Phase| self.body.omega(s.momentum);
         let off_unit = |s: &Phase| s.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
         Motion {
             rotors: states.iter().map(|s| s.rotor * frame.reverse()).collect(),
             omegas: states.iter().map(|s| frame.apply_bivector(omega(s))).collect(),
             momenta_space: states.iter().map(|s| s.rotor.apply_bivector(s.momentum)).collect(),
-            energies: states.iter().map(|s| energy(self.moments, &self.torques, s)).collect(),
+            energies: states.iter().map(|s| energy(&self.body, &self.torques, s)).collect(),
             certificate: Certificate {
                 method,
                 step: pass.longest,
@@ -230,7 +235,7 @@ impl Problem {
     }
 
     fn check(&self, times: &[f64], options: Options) -> Result<(), SimulateError> {
-        check_moments(self.moments)?;
+        check_moments(self.body.moments)?;
         for (index, &time) in times.iter().enumerate() {
             if !time.is_finite() || index > 0 && time < times[index - 1] {
                 return Err(SimulateError::BadTime { index, time });
@@ -240,12 +245,12 @@ impl Problem {
             return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
         }
         let start = self.start();
-        let value = kinetic(self.moments, start.momentum) + start.momentum.norm_squared();
+        let value = self.body.kinetic(start.momentum) + start.momentum.norm_squared();
         if !value.is_finite() {
             return Err(SimulateError::BadValue { what: "the energy of the rotation", value });
         }
         for torque in &self.torques {
-            let value = torque.size(self.moments) + torque.damping_rate();
+            let value = torque.size(&self.body) + torque.damping_rate();
             if !value.is_finite() {
                 return Err(SimulateError::BadValue { what: "the size of a torque", value });
             }
@@ -259,7 +264,7 @@ impl Problem {
     }
 
     fn start(&self) -> Phase {
-        Phase { rotor: self.rotor, momentum: angular_momentum(self.moments, self.omega), time: 0.0 }
+        Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: 0.0 }
     }
 
     fn pass(
@@ -344,7 +349,7 @@ impl Problem {
 
     /// Largest difference of two runs in rotor and relative angular velocity.
     fn difference(&self, coarse: &Pass, fine: &Pass) -> f64 {
-        let omega = |s: &Phase| angular_velocity(self.moments, s.momentum);
+        let omega = |s: &Phase| self.body.omega(s.momentum);
         let fastest = fine.states.iter().map(|s| omega(s).norm()).fold(f64::MIN_POSITIVE, f64::max);
         let apart = |(a, b): (&Phase, &Phase)| {
             let (r, s) = (a.rotor.components(), b.rotor.components());

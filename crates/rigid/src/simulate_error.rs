@@ -21,6 +21,8 @@ pub enum SimulateError {
     TooManySteps { steps: f64, step: f64 },
     /// Two runs with halved step still differ, and halving no longer helps.
     NotConverged { rtol: f64, reached: f64, step: f64 },
+    /// A law has no torque there.
+    Torque { time: f64, message: String },
     /// A component became NaN or infinite.
     Diverged { time: f64 },
     /// The caller asked to stop.
@@ -68,6 +70,7 @@ impl fmt::Display for SimulateError {
             SimulateError::Diverged { time } => {
                 write!(f, "the motion became NaN or infinite at t = {time} s; use a shorter step")
             }
+            SimulateError::Torque { time, message } => write!(f, "at t = {time} s: {message}"),
             SimulateError::Interrupted => write!(f, "interrupted"),
         }
     }

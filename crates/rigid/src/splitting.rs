@@ -21,7 +21,8 @@
 //! step |m| is scaled back and R is turned by the tiny angle that carries `R m ~R` to L. The direction
 //! of m is left alone: on an unstable axis a component that is zero stays zero.
 
-use crate::torque::{Phase, Torque, kinetic};
+use crate::phase::{Gyrostat, Phase};
+use crate::torque::{Torque, TorqueError};
 use polhode_ga::{Bivector, Rotor};
 
 /// A symmetric composition of the second-order step.
@@ -91,7 +92,7 @@ impl Method {
 /// A body in its principal axes, with what turns it and how it is stepped.
 #[derive(Clone, Debug)]
 pub struct Stepper {
-    moments: [f64; 3],
+    body: Gyrostat,
     torques: Vec<Torque>,
     damping: f64,
     method: Method,
@@ -105,7 +106,8 @@ pub struct Stepper {
 
 impl Stepper {
     /// Moments must be positive; torques in principal axes.
-    pub fn new(moments: [f64; 3], torques: Vec<Torque>, method: Method, start: &Phase) -> Stepper {
+    pub fn new(body: Gyrostat, torques: Vec<Torque>, method: Method, start: &Phase) -> Stepper {
+        let moments = body.moments;
         let mut order = [0, 1, 2];
         order.sort_by(|&x, &y| moments[x].total_cmp(&moments[y]));
         let [a, p, b] = order;
@@ -113,7 +115,7 @@ impl Stepper {
         let kappa = |k: usize| (moments[p] - moments[k]) / (moments[p] * moments[k]);
         let damping = torques.iter().map(|t| t.damping_rate()).sum();
         Stepper {
-            moments,
+            body,
             torques,
             damping,
             method,
@@ -125,7 +127,7 @@ impl Stepper {
     }
 
     /// One step of length `h`, which may be negative.
-    pub fn step(&self, state: &mut Phase, h: f64) {
+    pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), TorqueError> {
         let start = state.time;
         if self.torques.is_empty() {
             for gamma in self.method.stages() {
@@ -136,16 +138,17 @@ impl Stepper {
         } else {
             let mut kick = 0.0;
             for gamma in self.method.stages() {
-                self.kick(state, (kick + 0.5 * gamma) * h);
+                self.kick(state, (kick + 0.5 * gamma) * h)?;
                 self.turn_about_axes(state, gamma * h);
                 self.turn_about_momentum(state, gamma * h);
                 state.time += gamma * h;
                 kick = 0.5 * gamma;
             }
-            self.kick(state, kick * h);
+            self.kick(state, kick * h)?;
         }
         state.rotor = state.rotor.renormalized();
         state.time = start + h;
+        Ok(())
     }
 
     /// Takes the rounding of one free step out of |m| and the direction of `R m ~R`, to first order.
@@ -170,11 +173,11 @@ impl Stepper {
     /// The rate of the fastest turn, in rad/s, a scale for steps: each turn's for the largest momentum
     /// that the energy allows, `m_k² <= 2E i_k`, and the swing in the torque.
     pub fn fastest_rate(&self, start: &Phase) -> f64 {
-        let torque: f64 = self.torques.iter().map(|t| t.size(self.moments)).sum();
-        let energy = kinetic(self.moments, start.momentum) + 2.0 * torque;
+        let torque: f64 = self.torques.iter().map(|t| t.size(&self.body)).sum();
+        let energy = self.body.kinetic(start.momentum) + 2.0 * torque;
         let largest = |i: f64| (2.0 * energy * i).sqrt();
-        let axes = (0..2).map(|w| self.kappa[w].abs() * largest(self.moments[self.axes[w]]));
-        let smallest = self.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
+        let axes = (0..2).map(|w| self.kappa[w].abs() * largest(self.body.moments[self.axes[w]]));
+        let smallest = self.body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
         let about_momentum = start.momentum.norm().max(largest(self.middle)) / self.middle;
         axes.sum::<f64>() + about_momentum + (torque / smallest).sqrt() + self.damping.abs()
     }
@@ -206,13 +209,15 @@ impl Stepper {
     }
 
     /// `m' = N − g m` for a time h: `m e^(−gh) + N (1 − e^(−gh))/g`.
-    fn kick(&self, state: &mut Phase, h: f64) {
-        let torque = self.torques.iter().fold(Bivector::default(), |sum, torque| {
-            sum + torque.in_body(self.moments, state.rotor, state.time)
-        });
+    fn kick(&self, state: &mut Phase, h: f64) -> Result<(), TorqueError> {
+        let mut torque = Bivector::default();
+        for law in &self.torques {
+            torque += law.value(&self.body, state)?;
+        }
         let decay = -self.damping * h;
         let impulse = if decay == 0.0 { h } else { h * decay.exp_m1() / decay };
         state.momentum = state.momentum * decay.exp() + torque * impulse;
+        Ok(())
     }
 }
 

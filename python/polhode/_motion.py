@@ -171,11 +171,11 @@ class Certificate:
 
     Attributes
     ----------
-    method, step, steps
-        The method's name (``exact`` for the exact solution), its longest step in s, and the steps of all
-        passes.
+    method, step, steps, evaluations
+        The method's name (``exact`` for the exact solution), its longest step in s, and the steps and the
+        evaluations of the torque of all passes.
     error_estimate
-        Estimate of the relative error in rotor and angular velocity, from two passes; None for a step
+        Cautious estimate of the relative error in rotor and angular velocity, from the last two passes; None for a step
         that was given.
     conserved
         Each conserved quantity's initial value in SI.
@@ -188,6 +188,7 @@ class Certificate:
     method: str
     step: float
     steps: int
+    evaluations: int
     error_estimate: float | None
     conserved: dict[str, float]
     drift: dict[str, float]

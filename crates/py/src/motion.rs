@@ -7,8 +7,8 @@ use numpy::PyArrayMethods;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::free::FreeMotion;
+use polhode_rigid::method::Method;
 use polhode_rigid::simulate::{Options, Problem, Progress, check_horizon};
-use polhode_rigid::splitting::{METHODS, Method};
 use polhode_rigid::symmetric_top::SymmetricTop;
 use polhode_rigid::torque::Torque;
 use pyo3::prelude::*;
@@ -24,7 +24,7 @@ const PIECE: usize = 1 << 19;
 /// Names of the methods, by rising order.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {
-    METHODS.iter().map(|m| m.name).collect()
+    polhode_rigid::method::methods().map(Method::name).collect()
 }
 
 fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
@@ -190,6 +190,7 @@ pub(crate) fn simulate<'py>(
     certificate.set_item("method", proof.method)?;
     certificate.set_item("step", proof.step)?;
     certificate.set_item("steps", proof.steps)?;
+    certificate.set_item("evaluations", proof.evaluations)?;
     certificate.set_item("error_estimate", proof.error_estimate)?;
     let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
     for (quantity, value, change) in &proof.drifts {

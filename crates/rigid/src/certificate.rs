@@ -13,7 +13,9 @@ pub struct Certificate {
     pub step: f64,
     /// Steps taken, in all passes.
     pub steps: u64,
-    /// Largest difference from the run with twice the step, over 2^(order/2): a cautious error estimate.
+    /// Evaluations of the torque, in all passes.
+    pub evaluations: u64,
+    /// A cautious estimate of the error, from the difference of the last two passes.
     pub error_estimate: Option<f64>,
     /// Each conserved quantity: its initial value, and its largest change over the run relative to the
     /// terms that make it up.

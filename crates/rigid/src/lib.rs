@@ -15,6 +15,7 @@
 pub mod body;
 pub mod certificate;
 pub mod conserved;
+mod converge;
 mod double_double;
 mod eigen;
 pub mod elliptic;
@@ -22,8 +23,10 @@ mod exact;
 pub mod free;
 pub mod inertia;
 pub mod mesh;
+pub mod method;
 pub mod phase;
 pub mod regime;
+pub mod runge_kutta;
 pub mod scene;
 pub mod simulate;
 mod simulate_error;
@@ -33,6 +36,7 @@ mod sum;
 pub mod symmetric_top;
 pub mod torque;
 pub mod units;
+mod walk;
 
 pub use body::{Body, BodyError};
 pub use inertia::Inertia;

@@ -21,6 +21,10 @@ pub enum SimulateError {
     TooManySteps { steps: f64, step: f64 },
     /// Two runs with halved step still differ, and halving no longer helps.
     NotConverged { rtol: f64, reached: f64, step: f64 },
+    /// The method cannot serve these laws.
+    Unfit { method: &'static str, reason: &'static str },
+    /// No step is short enough.
+    StepTooSmall { time: f64, step: f64 },
     /// A law has no torque there.
     Torque { time: f64, message: String },
     /// A component became NaN or infinite.
@@ -70,6 +74,12 @@ impl fmt::Display for SimulateError {
             SimulateError::Diverged { time } => {
                 write!(f, "the motion became NaN or infinite at t = {time} s; use a shorter step")
             }
+            SimulateError::Unfit { method, reason } => write!(f, "{method} {reason}"),
+            SimulateError::StepTooSmall { time, step } => write!(
+                f,
+                "at t = {time} s no step down to {step:.1e} s meets the tolerance: the motion or a torque is not smooth \
+                 or not finite there"
+            ),
             SimulateError::Torque { time, message } => write!(f, "at t = {time} s: {message}"),
             SimulateError::Interrupted => write!(f, "interrupted"),
         }

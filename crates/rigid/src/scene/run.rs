@@ -1,7 +1,7 @@
 //! The table `[run]`: for how long, and how.
 
 use super::reader::{Reader, Table, Value};
-use crate::splitting::METHODS;
+use crate::method::methods;
 use crate::units::Quantity;
 
 const DEFAULT_SAMPLES: usize = 1001;
@@ -16,7 +16,7 @@ pub struct Run {
     pub duration: f64,
     /// How many states are kept, the first and the last included.
     pub samples: usize,
-    /// The name of one of [`METHODS`], or `auto`, which leaves the choice to the program.
+    /// The name of one of [`methods`], or `auto`, which leaves the choice to the program.
     pub method: String,
     /// The integrator's step in seconds, if it is fixed.
     pub step: Option<f64>,
@@ -36,7 +36,7 @@ impl Run {
 }
 
 fn method_names() -> Vec<&'static str> {
-    std::iter::once("auto").chain(METHODS.iter().map(|method| method.name)).collect()
+    std::iter::once("auto").chain(methods().map(|method| method.name())).collect()
 }
 
 pub fn read(reader: &mut Reader, table: &Table) -> Option<Run> {

@@ -1,0 +1,112 @@
+//! Passes with ever shorter steps, until two of them agree.
+
+use crate::phase::{Gyrostat, Phase};
+use crate::simulate_error::SimulateError;
+use crate::walk::{Pace, Pass};
+
+/// Below this two passes may differ by rounding, which the motion magnifies and a shorter step does not reduce.
+const ROUNDING_OF_RUNS: f64 = 1e-10;
+
+/// The relative error aimed at when no tolerance is asked for.
+pub(crate) const DEFAULT_RTOL: f64 = 1e-10;
+
+/// The relative error that still counts when none is asked for and rounding lets no smaller one through:
+/// a motion along a separatrix magnifies it a thousandfold and more. The certificate tells the estimate.
+pub(crate) const WORST_UNASKED: f64 = 1e-6;
+
+/// How many times shorter the steps of the second pass are.
+const SECOND: f64 = 1.6;
+
+/// The error falls as the step to the order times this at least, where passes have shown that it falls so: a margin.
+const TRUSTED: f64 = 0.75;
+
+/// An estimate of the error of a step is rounding below this.
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
+
+/// So many passes are enough.
+const MOST_PASSES: u32 = 30;
+
+impl Pace {
+    /// Steps that are so many times shorter. A local error goes as the eighth power of the step.
+    fn refined(self, by: f64) -> Pace {
+        match self {
+            Pace::Step(step) => Pace::Step(step / by),
+            Pace::Tolerance(tolerance) => Pace::Tolerance((tolerance / by.powi(8)).max(LEAST_TOLERANCE)),
+        }
+    }
+}
+
+/// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
+///
+/// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
+///
+/// With steps h and h/s the passes differ by nearly the error of the first, `e`, and the error of the second is
+/// `e s^(−q)`. Of the order q half is taken for granted; once two differences have shown an order, three quarters of
+/// that. So is the next step foretold, and few passes are needed.
+pub(crate) fn converge(
+    run: &mut dyn FnMut(Pace) -> Result<Pass, SimulateError>,
+    first: Pace,
+    (order, goal, acceptable): (i32, f64, f64),
+    body: &Gyrostat,
+) -> Result<(Pass, f64), SimulateError> {
+    let order = f64::from(order);
+    let (mut pace, mut by) = (first, SECOND);
+    let mut coarse = run(pace)?;
+    let (mut steps, mut evaluations) = (coarse.steps, coarse.evaluations);
+    // The last difference, and how many times shorter its steps were.
+    let mut last: Option<(f64, f64)> = None;
+    let mut previous = f64::INFINITY;
+    for number in 2.. {
+        if let Pace::Step(step) = &mut pace
+            && coarse.longest > 0.0
+        {
+            // Where output times are closer than the step, they set it.
+            *step = step.min(coarse.longest);
+        }
+        let finer = pace.refined(by);
+        if finer == pace {
+            return Err(SimulateError::NotConverged { rtol: goal, reached: previous, step: coarse.longest });
+        }
+        pace = finer;
+        let fine = run(pace)?;
+        steps += fine.steps;
+        evaluations += fine.evaluations;
+        let difference = difference(body, &coarse.states, &fine.states);
+        let shown = last.map(|(before, by): (f64, f64)| (before / difference).ln() / by.ln());
+        let (exponent, converging) = match shown {
+            Some(shown) => (TRUSTED * shown.clamp(0.0, order), shown > 0.6 * order),
+            None => (0.5 * order, false),
+        };
+        let truncation = difference * by.powf(-exponent);
+        // Where rounding may rule, the difference itself tells the error.
+        let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
+        let stuck = error > 0.5 * previous && previous < 1e-2 || number > MOST_PASSES;
+        if error <= goal || stuck && error <= acceptable {
+            return Ok((Pass { steps, evaluations, ..fine }, error));
+        }
+        if stuck {
+            return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
+        }
+        (last, previous) = (Some((difference, by)), error);
+        by = if difference < 0.1 {
+            let likely = difference * by.powf(-0.9 * order);
+            (1.1 * (likely / goal).powf(1.0 / (TRUSTED * order))).clamp(1.3, 6.0)
+        } else {
+            2.0
+        };
+        coarse = fine;
+    }
+    unreachable!("the loop returns")
+}
+
+/// Largest difference of two runs in rotor and relative angular velocity.
+fn difference(body: &Gyrostat, coarse: &[Phase], fine: &[Phase]) -> f64 {
+    let omega = |s: &Phase| body.omega(s.momentum);
+    let fastest = fine.iter().map(|s| omega(s).norm()).fold(f64::MIN_POSITIVE, f64::max);
+    let apart = |(a, b): (&Phase, &Phase)| {
+        let (r, s) = (a.rotor.components(), b.rotor.components());
+        let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
+        turn.max((omega(a) - omega(b)).norm() / fastest)
+    };
+    coarse.iter().zip(fine).map(apart).fold(0.0, f64::max)
+}

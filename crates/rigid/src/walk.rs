@@ -75,7 +75,6 @@ impl Walker<'_> {
         }
         let mut pass = Pass::default();
         let fastest = self.body.omega(start.momentum).norm();
-        let fastest = self.body.omega(start.momentum).norm();
         let fresh = || Walk { at: Carried::new(start), next: first, fastest };
         let split = times.partition_point(|&t| t < 0.0);
         let mut walk = fresh();

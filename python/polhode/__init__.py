@@ -25,6 +25,8 @@ from polhode._values import trivector as trivector
 from polhode._values import vector as vector
 
 if TYPE_CHECKING:
+    from polhode import event as event
+    from polhode import force as force
     from polhode import torque as torque
     from polhode._agreement import Agreement as Agreement
     from polhode._bodies import Body as Body
@@ -42,14 +44,15 @@ if TYPE_CHECKING:
     from polhode._interpolation import mean as mean
     from polhode._interpolation import slerp as slerp
     from polhode._linear import LinearMap as LinearMap
-    from polhode._motion import Certificate as Certificate
     from polhode._motion import FreeMotion as FreeMotion
     from polhode._motion import State as State
     from polhode._motion import SymmetricTop as SymmetricTop
-    from polhode._motion import Trajectory as Trajectory
     from polhode._motion import describe_free as describe_free
-    from polhode._motion import simulate as simulate
     from polhode._scene import Scene as Scene
+    from polhode._simulate import simulate as simulate
+    from polhode._trajectory import Certificate as Certificate
+    from polhode._trajectory import Crossings as Crossings
+    from polhode._trajectory import Trajectory as Trajectory
 
 # Imported when they are first asked for: those who only multiply need not wait for mechanics.
 _LATER = {
@@ -69,20 +72,22 @@ _LATER = {
     "mean": "_interpolation",
     "slerp": "_interpolation",
     "LinearMap": "_linear",
-    "Certificate": "_motion",
+    "Certificate": "_trajectory",
+    "Crossings": "_trajectory",
     "FreeMotion": "_motion",
     "State": "_motion",
     "SymmetricTop": "_motion",
-    "Trajectory": "_motion",
+    "Trajectory": "_trajectory",
     "describe_free": "_motion",
-    "simulate": "_motion",
+    "simulate": "_simulate",
     "Scene": "_scene",
 }
+_MODULES = ("event", "force", "torque")
 
 
 def __getattr__(name: str) -> Any:
-    if name == "torque":
-        return importlib.import_module("polhode.torque")
+    if name in _MODULES:
+        return importlib.import_module(f"polhode.{name}")
     if name not in _LATER:
         raise AttributeError(f"module 'polhode' has no attribute {name!r}")
     value = getattr(importlib.import_module(f"polhode.{_LATER[name]}"), name)
@@ -91,7 +96,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER, "torque"} - {"Any", "TYPE_CHECKING", "importlib"})
+    return sorted({*globals(), *_LATER, *_MODULES} - {"Any", "TYPE_CHECKING", "importlib"})
 
 
 def load_ipython_extension(shell: Any) -> None:

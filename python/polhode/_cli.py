@@ -19,8 +19,8 @@ from polhode._native import SceneError, __version__
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from polhode._motion import Trajectory
     from polhode._scene import Scene
+    from polhode._trajectory import Trajectory
 
 OK, FAILED, USAGE, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 

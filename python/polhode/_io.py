@@ -14,7 +14,7 @@ from polhode._extras import optional
 if TYPE_CHECKING:
     import xarray
 
-    from polhode._motion import Trajectory
+    from polhode._trajectory import Trajectory
 
 CONVENTIONS = (
     "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, "

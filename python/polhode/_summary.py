@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from polhode._arrays import Array
-from polhode._motion import SymmetricTop, Trajectory, describe_free
+from polhode._motion import SymmetricTop, describe_free
 from polhode._scene import Scene
+from polhode._trajectory import Trajectory
 from polhode._values import vector
 
 # Within this of each other two moments are equal for the purpose of words: that of a real body's data.

@@ -8,6 +8,7 @@ mod batches;
 mod bodies;
 mod calls;
 mod formula;
+mod laws;
 mod motion;
 mod multivector;
 mod operators;
@@ -15,6 +16,7 @@ mod pool;
 mod program;
 mod scene;
 mod signature;
+mod simulation;
 mod text;
 mod value;
 
@@ -32,7 +34,11 @@ mod _native {
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
-    use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
+    use crate::laws::{Event, Force};
+    #[pymodule_export]
+    use crate::motion::{describe_free, free_motion, symmetric_top};
+    #[pymodule_export]
+    use crate::simulation::{Motion, methods, simulate};
 
     #[pymodule_export]
     use crate::formula::Formula;

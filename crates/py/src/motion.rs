@@ -1,44 +1,20 @@
-//! Motion: the closed form of the symmetric top, and simulation.
+//! Free motion in closed form.
 
-use crate::arrays::{Array, Rows, bad, line, numbers, one, table, threads};
+use crate::arrays::{Array, Rows, bad, numbers, one, table, threads};
 use crate::bodies::{Inertia, rotor};
 use crate::pool;
 use numpy::PyArrayMethods;
-use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::SimulateError;
+use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::free::FreeMotion;
-use polhode_rigid::method::Method;
-use polhode_rigid::simulate::{Options, Problem, Progress, check_horizon};
+use polhode_rigid::simulate::check_horizon;
 use polhode_rigid::symmetric_top::SymmetricTop;
-use polhode_rigid::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::time::{Duration, Instant};
-
-/// How often a run looks for Ctrl-C and reports where it stands.
-const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 
 /// Free states between looks for Ctrl-C.
 const PIECE: usize = 1 << 19;
 
-/// Names of the methods, by rising order.
-#[pyfunction]
-pub(crate) fn methods() -> Vec<&'static str> {
-    polhode_rigid::method::methods().map(Method::name).collect()
-}
-
-fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
-    match (name, values) {
-        ("heavy", &[x, y, z]) => Ok(Torque::Heavy(Vector([x, y, z]))),
-        ("gravity_gradient", &[n]) => Ok(Torque::GravityGradient(n)),
-        ("constant_body", &[x, y, z]) => Ok(Torque::ConstantBody(Bivector([x, y, z]))),
-        ("constant_space", &[x, y, z]) => Ok(Torque::ConstantSpace(Bivector([x, y, z]))),
-        ("damping", &[g]) => Ok(Torque::Damping(g)),
-        _ => Err(bad(format!("no torque law {name} with {} numbers", values.len()))),
-    }
-}
-
-fn check_times(times: &[f64]) -> PyResult<()> {
+pub(crate) fn check_times(times: &[f64]) -> PyResult<()> {
     match times.iter().position(|t| !t.is_finite()) {
         Some(index) => Err(bad(format!("time {} at index {index} is not finite", times[index]))),
         None => Ok(()),
@@ -127,84 +103,4 @@ pub(crate) fn describe_free<'py>(
     result.set_item("precession_period", d.precession_period())?;
     result.set_item("flip_time", d.flip_time())?;
     Ok(result)
-}
-
-/// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.
-struct Watcher<'a> {
-    progress: Option<&'a Py<PyAny>>,
-    last: Instant,
-    error: Option<PyErr>,
-}
-
-impl Watcher<'_> {
-    fn go_on(&mut self, at: Progress) -> bool {
-        if self.last.elapsed() < BETWEEN_SIGNALS {
-            return true;
-        }
-        self.last = Instant::now();
-        let outcome = Python::attach(|py| {
-            py.check_signals()?;
-            self.progress.map_or(Ok(()), |call| call.call1(py, (at.pass, at.fraction)).map(drop))
-        });
-        self.error = outcome.err();
-        self.error.is_none()
-    }
-}
-
-/// Simulates: rotors (n, 4), angular velocities (n, 3) in the body, momenta (n, 3) in space, energies
-/// (n,), and the certificate as a dict.
-#[pyfunction]
-#[pyo3(signature = (inertia, rotor_row, omega, laws, times, method, step, rtol, progress))]
-#[allow(clippy::too_many_arguments, clippy::type_complexity)]
-pub(crate) fn simulate<'py>(
-    py: Python<'py>,
-    inertia: &Inertia,
-    rotor_row: Rows<'py>,
-    omega: Rows<'py>,
-    laws: Vec<(String, Vec<f64>)>,
-    times: Rows<'py>,
-    method: &str,
-    step: Option<f64>,
-    rtol: Option<f64>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Bound<'py, PyDict>)> {
-    let method = match method {
-        "auto" => None,
-        name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
-    };
-    let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
-    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
-    let times = numbers(&times)?;
-    let mut watcher = Watcher { progress: progress.as_ref(), last: Instant::now(), error: None };
-    let outcome = py.detach(|| {
-        let result = problem.simulate(times, Options { method, step, rtol }, &mut |at| watcher.go_on(at));
-        (result, watcher.error)
-    });
-    let motion = match outcome {
-        (Ok(motion), _) => motion,
-        (Err(SimulateError::Interrupted), Some(error)) => return Err(error),
-        (Err(error), _) => return Err(bad(error)),
-    };
-    let proof = &motion.certificate;
-    let certificate = PyDict::new(py);
-    certificate.set_item("method", proof.method)?;
-    certificate.set_item("step", proof.step)?;
-    certificate.set_item("steps", proof.steps)?;
-    certificate.set_item("evaluations", proof.evaluations)?;
-    certificate.set_item("error_estimate", proof.error_estimate)?;
-    let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
-    for (quantity, value, change) in &proof.drifts {
-        conserved.set_item(quantity.name(), value)?;
-        drift.set_item(quantity.name(), change)?;
-    }
-    certificate.set_item("conserved", conserved)?;
-    certificate.set_item("drift", drift)?;
-    certificate.set_item("norm_drift", proof.norm_drift)?;
-    Ok((
-        table(py, motion.rotors.iter().map(|r| r.components()))?,
-        table(py, motion.omegas.iter().map(|w| w.0))?,
-        table(py, motion.momenta_space.iter().map(|l| l.0))?,
-        line(py, motion.energies),
-        certificate,
-    ))
 }

@@ -1,6 +1,7 @@
 //! Passes with ever shorter steps, until two of them agree.
 
-use crate::phase::{Gyrostat, Phase};
+use crate::phase::Gyrostat;
+use crate::runge_kutta::Carried;
 use crate::simulate_error::SimulateError;
 use crate::walk::{Pace, Pass};
 
@@ -36,6 +37,15 @@ impl Pace {
     }
 }
 
+/// A pass that is good enough.
+pub(crate) struct Converged {
+    pub pace: Pace,
+    /// With the steps and evaluations of all passes.
+    pub pass: Pass,
+    /// A cautious estimate of its error.
+    pub error: f64,
+}
+
 /// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
 ///
 /// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
@@ -48,7 +58,7 @@ pub(crate) fn converge(
     first: Pace,
     (order, goal, acceptable): (i32, f64, f64),
     body: &Gyrostat,
-) -> Result<(Pass, f64), SimulateError> {
+) -> Result<Converged, SimulateError> {
     let order = f64::from(order);
     let (mut pace, mut by) = (first, SECOND);
     let mut coarse = run(pace)?;
@@ -82,7 +92,7 @@ pub(crate) fn converge(
         let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
         let stuck = error > 0.5 * previous && previous < 1e-2 || number > MOST_PASSES;
         if error <= goal || stuck && error <= acceptable {
-            return Ok((Pass { steps, evaluations, ..fine }, error));
+            return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });
         }
         if stuck {
             return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
@@ -99,14 +109,20 @@ pub(crate) fn converge(
     unreachable!("the loop returns")
 }
 
-/// Largest difference of two runs in rotor and relative angular velocity.
-fn difference(body: &Gyrostat, coarse: &[Phase], fine: &[Phase]) -> f64 {
-    let omega = |s: &Phase| body.omega(s.momentum);
-    let fastest = fine.iter().map(|s| omega(s).norm()).fold(f64::MIN_POSITIVE, f64::max);
-    let apart = |(a, b): (&Phase, &Phase)| {
-        let (r, s) = (a.rotor.components(), b.rotor.components());
+/// Largest difference of two runs: in the rotor, and in angular velocity, place and velocity relative to the largest.
+fn difference(body: &Gyrostat, coarse: &[Carried], fine: &[Carried]) -> f64 {
+    let omega = |s: &Carried| body.omega(s.phase.momentum).norm();
+    let largest = |size: &dyn Fn(&Carried) -> f64| fine.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+    let fastest = largest(&omega);
+    let (farthest, swiftest) =
+        (largest(&|s| s.center.position.norm()), largest(&|s| s.center.velocity.norm()));
+    let apart = |(a, b): (&Carried, &Carried)| {
+        let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
         let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
-        turn.max((omega(a) - omega(b)).norm() / fastest)
+        let spin = (body.omega(a.phase.momentum) - body.omega(b.phase.momentum)).norm() / fastest;
+        let place = (a.center.position - b.center.position).norm() / farthest;
+        let velocity = (a.center.velocity - b.center.velocity).norm() / swiftest;
+        turn.max(spin).max(place).max(velocity)
     };
     coarse.iter().zip(fine).map(apart).fold(0.0, f64::max)
 }

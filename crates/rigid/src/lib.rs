@@ -14,12 +14,15 @@
 
 pub mod body;
 pub mod certificate;
+mod closed_form;
 pub mod conserved;
 mod converge;
 mod double_double;
 mod eigen;
 pub mod elliptic;
+pub mod event;
 mod exact;
+pub mod force;
 pub mod free;
 pub mod inertia;
 pub mod mesh;

@@ -1,5 +1,7 @@
 //! Methods by name, and what each is fit for.
 
+use crate::closed_form::ClosedForm;
+use crate::force::Translation;
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::{Carried, DOP853, RK4, RungeKutta, Tableau};
 use crate::simulate_error::SimulateError;
@@ -55,8 +57,9 @@ impl Method {
 
     /// The method for these laws: a splitting where they depend on attitude and time alone and are smooth, for it
     /// keeps the energy of long runs; Runge–Kutta for others.
-    pub fn best(body: &Gyrostat, torques: &[Torque]) -> Method {
-        let kicks = torques.iter().all(|t| t.dependence() == Dependence::Attitude && t.breaks().is_empty());
+    pub fn best(body: &Gyrostat, torques: &[Torque], translated: bool) -> Method {
+        let kicks = !translated
+            && torques.iter().all(|t| t.dependence() == Dependence::Attitude && t.breaks().is_empty());
         if !kicks {
             Method::RungeKutta(&DOP853)
         } else if Method::unfit(Method::Splitting(Sequence::Nystrom(&RKN6)), body, torques).is_none()
@@ -97,6 +100,8 @@ fn symmetric(body: &Gyrostat) -> bool {
 pub(crate) enum Engine {
     Splitting(Splitting),
     RungeKutta(RungeKutta),
+    /// The closed form, looked at in steps.
+    ClosedForm(Box<ClosedForm>),
 }
 
 impl Engine {
@@ -105,9 +110,13 @@ impl Engine {
         method: Method,
         body: Gyrostat,
         torques: &[Torque],
+        translation: Option<Translation>,
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
-        if let Some(reason) = method.unfit(&body, torques) {
+        let moving =
+            "leaves the centre of mass to its closed form, which these forces have not; use auto or dop853";
+        let moving = (translation.is_some() && matches!(method, Method::Splitting(_))).then_some(moving);
+        if let Some(reason) = method.unfit(&body, torques).or(moving) {
             return Err(SimulateError::Unfit { method: method.name(), reason });
         }
         Ok(match method {
@@ -115,7 +124,7 @@ impl Engine {
                 Engine::Splitting(Splitting::new(body, torques.to_vec(), sequence, start))
             }
             Method::RungeKutta(tableau) => {
-                Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), tableau))
+                Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation, tableau))
             }
         })
     }
@@ -130,6 +139,7 @@ impl Engine {
                 Ok((to, 0.0))
             }
             Engine::RungeKutta(runge_kutta) => runge_kutta.step(from, h, fastest),
+            Engine::ClosedForm(motion) => Ok((motion.at(from.phase.time + h), 0.0)),
         }
     }
 
@@ -138,6 +148,7 @@ impl Engine {
         match self {
             Engine::Splitting(splitting) => splitting.evaluations(),
             Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
+            Engine::ClosedForm(_) => 0,
         }
     }
 }

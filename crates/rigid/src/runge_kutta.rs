@@ -13,12 +13,15 @@
 //! (Munthe-Kaas 1999). Whatever the step, |R| = 1, a steady rotation is exact, and what is linear in L is conserved as
 //! by the law: L itself without a torque, L about e3 under gravity. A fast top spins in R but its Ω_S and L change
 //! slowly, which lets the steps be long.
+//!
+//! The centre of mass is stepped along where forces move it: `x' = v`, `v' = F/m`.
 
 mod tableau;
 
+use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
 use crate::torque::{Torque, TorqueError};
-use polhode_ga::{Bivector, Rotor};
+use polhode_ga::{Bivector, Rotor, Vector};
 pub use tableau::{DOP853, RK4, Tableau};
 
 type Axial = [f64; 3];
@@ -33,20 +36,24 @@ pub struct Carried {
     pub phase: Phase,
     /// L in space, kg m²/s.
     pub momentum_space: Bivector,
+    /// The centre of mass, where forces move it.
+    pub center: Center,
 }
 
 impl Carried {
     /// From a point of the motion.
-    pub fn new(phase: Phase) -> Carried {
-        Carried { phase, momentum_space: phase.rotor.apply_bivector(phase.momentum) }
+    pub fn new(phase: Phase, center: Center) -> Carried {
+        Carried { phase, momentum_space: phase.rotor.apply_bivector(phase.momentum), center }
     }
 }
 
-/// σ and the change of L.
+/// σ, the change of L, and those of place and velocity.
 #[derive(Clone, Copy, Debug, Default)]
 struct Change {
     turn: Axial,
     momentum: Axial,
+    position: Axial,
+    velocity: Axial,
 }
 
 /// A body, what turns it, and how it is stepped.
@@ -55,14 +62,20 @@ pub struct RungeKutta {
     body: Gyrostat,
     torques: Vec<Torque>,
     damping: f64,
+    translation: Option<Translation>,
     tableau: &'static Tableau,
 }
 
 impl RungeKutta {
-    /// Moments must be positive; torques in principal axes.
-    pub fn new(body: Gyrostat, torques: Vec<Torque>, tableau: &'static Tableau) -> RungeKutta {
+    /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
+    pub fn new(
+        body: Gyrostat,
+        torques: Vec<Torque>,
+        translation: Option<Translation>,
+        tableau: &'static Tableau,
+    ) -> RungeKutta {
         let damping = torques.iter().map(Torque::damping_rate).sum();
-        RungeKutta { body, torques, damping, tableau }
+        RungeKutta { body, torques, damping, translation, tableau }
     }
 
     /// The method.
@@ -76,13 +89,13 @@ impl RungeKutta {
         let tableau = self.tableau;
         let mut slopes = [Change::default(); 12];
         for (stage, (row, node)) in tableau.rows.iter().zip(tableau.nodes).enumerate() {
-            let change = combined(row, &slopes, h);
+            let change = self.combined(row, &slopes, h);
             if norm(&change.turn) > LARGEST_TURN {
                 return Ok((*from, f64::NAN));
             }
             slopes[stage] = self.slope(from, &change, node * h)?;
         }
-        let change = combined(tableau.weights, &slopes, h);
+        let change = self.combined(tableau.weights, &slopes, h);
         let rotor = (exponential(&change.turn).0 * from.phase.rotor).renormalized();
         let momentum_space = from.momentum_space + Bivector(change.momentum);
         let momentum = rotor.reverse().apply_bivector(momentum_space);
@@ -90,12 +103,12 @@ impl RungeKutta {
         let error = if tableau.fifth.is_empty() {
             0.0
         } else {
-            let size = |row| self.size(from, &combined(row, &slopes, h), fastest);
+            let size = |row| self.size(from, &self.combined(row, &slopes, h), h, fastest);
             let (fifth, third) = (size(tableau.fifth), size(tableau.third));
             // As Hairer's code weighs the two: of order 8 where both are small.
             if fifth == 0.0 { 0.0 } else { fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt() }
         };
-        Ok((Carried { phase, momentum_space }, error))
+        Ok((Carried { phase, momentum_space, center: self.moved(&from.center, &change, h) }, error))
     }
 
     /// σ' and L' at `from` changed by σ and ΔL.
@@ -121,30 +134,56 @@ impl RungeKutta {
         let first = cross(&change.turn, &omega);
         let second = cross(&change.turn, &first);
         let turn = [0, 1, 2].map(|k| omega[k] - 0.5 * first[k] + cotangent * second[k]);
-        Ok(Change { turn, momentum: if self.torques.is_empty() { [0.0; 3] } else { into_space(&torque.0) } })
+        let momentum = if self.torques.is_empty() { [0.0; 3] } else { into_space(&torque.0) };
+        let Some(translation) = &self.translation else {
+            return Ok(Change { turn, momentum, ..Change::default() });
+        };
+        let center = self.moved(&from.center, change, dt);
+        let acceleration = translation.acceleration(&state, &center)?;
+        // The place beside that of the uniform motion from the start of the step.
+        Ok(Change { turn, momentum, position: change.velocity, velocity: acceleration.0 })
     }
 
-    /// How large a change is: in attitude, or in angular velocity relative to `fastest`.
-    fn size(&self, at: &Carried, change: &Change, fastest: f64) -> f64 {
+    /// The centre of mass a time dt after `from`.
+    fn moved(&self, from: &Center, change: &Change, dt: f64) -> Center {
+        if self.translation.is_none() {
+            return *from;
+        }
+        let position = from.position + (from.velocity * dt + Vector(change.position));
+        Center { position, velocity: from.velocity + Vector(change.velocity) }
+    }
+
+    /// How large a change is: in attitude, in angular velocity relative to `fastest`, in velocity relative to the
+    /// velocity, in place relative to the distance or the way of the step.
+    fn size(&self, at: &Carried, change: &Change, h: f64, fastest: f64) -> f64 {
         let momentum = at.phase.rotor.reverse().apply_bivector(Bivector(change.momentum)).0;
         let omega = [0, 1, 2].map(|k| momentum[k] / self.body.moments[k]);
         let relative = if fastest > 0.0 { norm(&omega) / fastest } else { 0.0 };
-        // f64::max would lose a NaN.
         let turn = 0.5 * norm(&change.turn);
-        if turn >= relative { turn } else { relative }
+        let (speed, distance) = (at.center.velocity.norm(), at.center.position.norm());
+        let way = distance.max(speed * h.abs());
+        let of = |change: &Axial, whole: f64| if whole > 0.0 { norm(change) / whole } else { 0.0 };
+        let moved = of(&change.position, way).max(of(&change.velocity, speed.max(way / h.abs())));
+        // f64::max would lose a NaN.
+        [relative, moved].into_iter().fold(turn, |a, b| if a >= b { a } else { b })
     }
-}
 
-/// `h Σ a_j k_j`.
-fn combined(row: &[(usize, f64)], slopes: &[Change; 12], h: f64) -> Change {
-    let mut sum = Change::default();
-    for &(stage, a) in row {
-        for k in 0..3 {
-            sum.turn[k] += a * slopes[stage].turn[k];
-            sum.momentum[k] += a * slopes[stage].momentum[k];
+    /// `h Σ a_j k_j`.
+    fn combined(&self, row: &[(usize, f64)], slopes: &[Change; 12], h: f64) -> Change {
+        let sum = |part: fn(&Change) -> &Axial| {
+            let mut sum = [0.0; 3];
+            for &(stage, a) in row {
+                let slope = part(&slopes[stage]);
+                (0..3).for_each(|k| sum[k] += a * slope[k]);
+            }
+            sum.map(|x| h * x)
+        };
+        let rotation = Change { turn: sum(|c| &c.turn), momentum: sum(|c| &c.momentum), ..Change::default() };
+        match self.translation {
+            None => rotation,
+            Some(_) => Change { position: sum(|c| &c.position), velocity: sum(|c| &c.velocity), ..rotation },
         }
     }
-    Change { turn: sum.turn.map(|x| h * x), momentum: sum.momentum.map(|x| h * x) }
 }
 
 /// `exp(−½σ)` and `c(θ)`.

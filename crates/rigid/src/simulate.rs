@@ -2,17 +2,20 @@
 //! what was conserved.
 
 use crate::certificate::{Certificate, Watch};
+use crate::closed_form::{ClosedForm, uniformly_accelerated};
 use crate::conserved::energy;
 use crate::converge::{DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
-use crate::free::FreeMotion;
+use crate::event::{Event, Happened};
+use crate::force::{Center, Force, Translation};
 use crate::inertia::Inertia;
 use crate::method::{Engine, Method, fastest_rate};
 use crate::phase::{Gyrostat, Phase};
+use crate::runge_kutta::Carried;
 use crate::simulate_error::SimulateError;
 use crate::torque::{Torque, wheel};
 pub use crate::walk::Progress;
-use crate::walk::{Pace, Pass, Walker};
-use polhode_ga::{Bivector, Rotor};
+use crate::walk::{Pace, Pass, Walker, is_finite};
+use polhode_ga::{Bivector, Rotor, Vector};
 
 /// What to solve: a body and its state at time 0. Kept in principal axes.
 #[derive(Clone, Debug)]
@@ -22,23 +25,43 @@ pub struct Problem {
     rotor: Rotor,
     omega: Bivector,
     torques: Vec<Torque>,
+    center: Center,
+    translation: Option<Translation>,
 }
 
 /// How to solve it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// `None` is the exact solution where there is one and no step is given, and else the best method for the laws.
+    /// `None` is the closed form where there is one and no step is given, and else the best method for the laws.
     pub method: Option<Method>,
     /// A fixed step in s; `None` lets the tolerance choose it.
     pub step: Option<f64>,
     /// The relative error to reach where it chooses the step; `None` aims at 1e-10 and takes what rounding
     /// leaves of it.
     pub rtol: Option<f64>,
+    /// What to look for on the way.
+    pub events: Vec<Event>,
 }
 
-/// A motion at its output times.
+/// A motion at its output times, which may be asked for any other between them.
 #[derive(Clone, Debug)]
 pub struct Motion {
+    problem: Problem,
+    engine: Engine,
+    pace: Pace,
+    /// In principal axes, at the output times, fewer if an event ended the motion.
+    states: Vec<Carried>,
+    /// The events, in the order in which they were met.
+    pub events: Vec<Happened>,
+    /// What was conserved.
+    pub certificate: Certificate,
+}
+
+/// Points of a motion, in body axes.
+#[derive(Clone, Debug, Default)]
+pub struct States {
+    /// In s.
+    pub times: Vec<f64>,
     /// From body axes to space.
     pub rotors: Vec<Rotor>,
     /// Angular velocities in body axes, rad/s.
@@ -47,8 +70,8 @@ pub struct Motion {
     pub momenta_space: Vec<Bivector>,
     /// Kinetic energy and the potential energy of the laws that have one, J.
     pub energies: Vec<f64>,
-    /// What was conserved.
-    pub certificate: Certificate,
+    /// The centre of mass: m and m/s.
+    pub centers: Vec<Center>,
 }
 
 /// Times must not lie beyond the horizon of an exact motion.
@@ -79,7 +102,18 @@ impl Problem {
             rotor: rotor * frame,
             omega: frame.reverse().apply_bivector(omega),
             torques,
+            center: Center::default(),
+            translation: None,
         }
+    }
+
+    /// The same with the centre of mass at a place in space, and forces, with body components in body axes, on a mass
+    /// in kg.
+    pub fn with_center(mut self, center: Center, mass: f64, forces: &[Force]) -> Problem {
+        let forces: Vec<Force> = forces.iter().map(|f| f.clone().in_axes(self.frame)).collect();
+        self.center = center;
+        self.translation = (!forces.is_empty()).then_some(Translation { mass, forces });
+        self
     }
 
     /// The motion at `times` (s, not decreasing, of either sign); the state given is that at time 0.
@@ -93,80 +127,142 @@ impl Problem {
         options: Options,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
-        self.check(times, options)?;
-        if options.method.is_none() && options.step.is_none() && self.torques.is_empty() {
-            return Ok(self.motion(self.exact(times)?, "exact", None));
-        }
-        let method = options.method.unwrap_or_else(|| Method::best(&self.body, &self.torques));
-        let engine = Engine::new(method, self.body, &self.torques, &self.start())?;
-        let mut breaks: Vec<f64> = self.torques.iter().flat_map(|t| t.breaks()).copied().collect();
-        breaks.sort_by(f64::total_cmp);
-        let rate = fastest_rate(&self.body, &self.torques, &self.start());
-        let mut number = 0;
-        let mut run = |pace: Pace| {
-            number += 1;
-            let watch = Watch::new(self.body, &self.torques, self.start());
-            let walker =
-                Walker { body: self.body, engine: &engine, watch, pace, breaks: &breaks, number, progress };
-            walker.pass(self.start(), times, 0.1 / rate.max(f64::MIN_POSITIVE))
+        self.check(times, &options)?;
+        let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
+        let acceleration = self.constant_acceleration();
+        let method =
+            options.method.unwrap_or_else(|| Method::best(&self.body, &self.torques, acceleration.is_none()));
+        let translation = self.translation.clone().filter(|_| acceleration.is_none());
+        let (engine, name) = match closed {
+            Some(closed) => {
+                check_horizon(times, closed.horizon())?;
+                (Engine::ClosedForm(Box::new(closed)), "exact")
+            }
+            None => (
+                Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?,
+                method.name(),
+            ),
         };
-        match options.step {
-            Some(step) => Ok(self.motion(run(Pace::Step(step))?, method.name(), None)),
-            None => {
+        let rate = fastest_rate(&self.body, &self.torques, &self.start().phase);
+        let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+        let long = |turn: f64| Pace::Step(if rate > 0.0 { turn / rate } else { longest.max(1.0) });
+        let events = options.events;
+        let (pace, pass, error) = match (&engine, options.step) {
+            (Engine::ClosedForm(closed), _) if events.is_empty() => {
+                (long(1.0), self.sampled(closed, times), None)
+            }
+            (Engine::ClosedForm(_), _) => {
+                let pace = long(1.0);
+                (pace, self.pass(&engine, times, (pace, 1), &events, progress)?, None)
+            }
+            (_, Some(step)) => {
+                let pace = Pace::Step(step);
+                (pace, self.pass(&engine, times, (pace, 1), &events, progress)?, None)
+            }
+            (_, None) => {
                 let goal = options.rtol.unwrap_or(DEFAULT_RTOL);
                 let acceptable = options.rtol.unwrap_or(WORST_UNASKED);
-                let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
-                let first = if method.adapts() {
-                    Pace::Tolerance(goal.max(1e3 * LEAST_TOLERANCE))
-                } else {
-                    Pace::Step(if rate > 0.0 { 1.5 / rate } else { longest.max(1.0) })
+                let adapted = Pace::Tolerance(goal.max(1e3 * LEAST_TOLERANCE));
+                let first = if method.adapts() { adapted } else { long(1.5) };
+                let mut number = 0;
+                let mut run = |pace: Pace| {
+                    number += 1;
+                    self.pass(&engine, times, (pace, number), &events, progress)
                 };
-                let (pass, error) =
-                    converge(&mut run, first, (method.order(), goal, acceptable), &self.body)?;
-                Ok(self.motion(pass, method.name(), Some(error)))
+                let found = converge(&mut run, first, (method.order(), goal, acceptable), &self.body)?;
+                (found.pace, found.pass, Some(found.error))
             }
-        }
-    }
-
-    /// The exact states of a free body, as a pass without steps.
-    fn exact(&self, times: &[f64]) -> Result<Pass, SimulateError> {
-        let motion = FreeMotion::in_principal_axes(self.body.moments, self.rotor, self.omega);
-        check_horizon(times, motion.horizon())?;
-        let phase = |&time: &f64| {
-            let (rotor, omega) = motion.at(time);
-            Phase { rotor, momentum: self.body.momentum(omega), time }
         };
-        let states: Vec<Phase> = times.iter().map(phase).collect();
-        let mut watch = Watch::new(self.body, &self.torques, self.start());
-        states.iter().for_each(|state| watch.look(state));
-        if let Some(state) = states.iter().find(|s| !is_finite(s)) {
-            return Err(SimulateError::Diverged { time: state.time });
+        if let Some(state) = pass.states.iter().find(|s| !is_finite(s)) {
+            return Err(SimulateError::Diverged { time: state.phase.time });
         }
-        Ok(Pass { states, drifts: watch.finish(), ..Pass::default() })
+        let exact = name == "exact";
+        let off_unit =
+            |s: &Carried| s.phase.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
+        let certificate = Certificate {
+            method: name,
+            step: if exact { 0.0 } else { pass.longest },
+            steps: if exact { 0 } else { pass.steps },
+            evaluations: pass.evaluations,
+            error_estimate: error,
+            drifts: pass.drifts,
+            norm_drift: pass.states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
+        };
+        Ok(Motion {
+            problem: self.clone(),
+            engine,
+            pace,
+            states: pass.states,
+            events: pass.events,
+            certificate,
+        })
     }
 
-    fn motion(&self, pass: Pass, method: &'static str, error_estimate: Option<f64>) -> Motion {
-        let (states, frame) = (pass.states, self.frame);
-        let omega = |s: &Phase| self.body.omega(s.momentum);
-        let off_unit = |s: &Phase| s.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
-        Motion {
-            rotors: states.iter().map(|s| s.rotor * frame.reverse()).collect(),
-            omegas: states.iter().map(|s| frame.apply_bivector(omega(s))).collect(),
-            momenta_space: states.iter().map(|s| s.rotor.apply_bivector(s.momentum)).collect(),
-            energies: states.iter().map(|s| energy(&self.body, &self.torques, s)).collect(),
-            certificate: Certificate {
-                method,
-                step: pass.longest,
-                steps: pass.steps,
-                evaluations: pass.evaluations,
-                error_estimate,
-                drifts: pass.drifts,
-                norm_drift: states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
-            },
+    /// One pass over the times.
+    fn pass(
+        &self,
+        engine: &Engine,
+        times: &[f64],
+        (pace, number): (Pace, u32),
+        events: &[Event],
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Pass, SimulateError> {
+        let mut breaks: Vec<f64> = self.torques.iter().flat_map(|t| t.breaks()).copied().collect();
+        breaks.sort_by(f64::total_cmp);
+        self.walker(engine, pace, &breaks, events, number, progress).pass(self.start(), times)
+    }
+
+    fn walker<'a>(
+        &'a self,
+        engine: &'a Engine,
+        pace: Pace,
+        breaks: &'a [f64],
+        events: &'a [Event],
+        number: u32,
+        progress: &'a mut dyn FnMut(Progress) -> bool,
+    ) -> Walker<'a> {
+        let watch = Watch::new(self.body, &self.torques, self.start().phase);
+        let rate = fastest_rate(&self.body, &self.torques, &self.start().phase);
+        let first = 0.1 / rate.max(f64::MIN_POSITIVE);
+        Walker {
+            body: self.body,
+            engine,
+            watch,
+            pace,
+            first,
+            breaks,
+            events,
+            frame: self.frame,
+            number,
+            progress,
         }
     }
 
-    fn check(&self, times: &[f64], options: Options) -> Result<(), SimulateError> {
+    /// The closed form at all times, as a pass without steps.
+    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Pass {
+        let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
+        let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
+        states.iter().for_each(|state| watch.look(&state.phase));
+        Pass { states, drifts: watch.finish(), ..Pass::default() }
+    }
+
+    fn closed_form(&self) -> Option<ClosedForm> {
+        let acceleration = self.constant_acceleration()?;
+        ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.center, acceleration)
+    }
+
+    /// What the forces give, if they are constant.
+    fn constant_acceleration(&self) -> Option<Vector> {
+        let Some(translation) = &self.translation else { return Some(Vector::default()) };
+        let constant = translation.forces.iter().map(|force| match force {
+            Force::Constant(force) => Some(*force),
+            _ => None,
+        });
+        let sum: Option<Vec<Vector>> = constant.collect();
+        Some(sum?.into_iter().fold(Vector::default(), |sum, force| sum + force) / translation.mass)
+    }
+
+    fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
         check_moments(self.body.moments)?;
         for (index, &time) in times.iter().enumerate() {
             if !time.is_finite() || index > 0 && time < times[index - 1] {
@@ -176,7 +272,7 @@ impl Problem {
         if let Some(&value) = self.omega.0.iter().find(|x| !x.is_finite()) {
             return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
         }
-        let start = self.start();
+        let start = self.start().phase;
         let value = self.body.kinetic(start.momentum) + start.momentum.norm_squared();
         if !value.is_finite() {
             return Err(SimulateError::BadValue { what: "the energy of the rotation", value });
@@ -195,11 +291,84 @@ impl Problem {
         Ok(())
     }
 
-    fn start(&self) -> Phase {
-        Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: 0.0 }
+    fn start(&self) -> Carried {
+        let phase = Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: 0.0 };
+        Carried::new(phase, self.center)
+    }
+
+    /// In body axes. Under constant forces the centre of mass is in closed form.
+    fn states(&self, states: &[Carried]) -> States {
+        let acceleration = self.constant_acceleration();
+        let mut all = States::default();
+        for Carried { phase, center, .. } in states {
+            all.times.push(phase.time);
+            all.rotors.push(phase.rotor * self.frame.reverse());
+            all.omegas.push(self.frame.apply_bivector(self.body.omega(phase.momentum)));
+            all.momenta_space.push(phase.rotor.apply_bivector(phase.momentum));
+            all.energies.push(energy(&self.body, &self.torques, phase));
+            all.centers.push(match acceleration {
+                Some(acceleration) => uniformly_accelerated(self.center, acceleration, phase.time),
+                None => *center,
+            });
+        }
+        all
     }
 }
 
-fn is_finite(state: &Phase) -> bool {
-    state.momentum.0.iter().chain(&state.rotor.components()).all(|x| x.is_finite())
+impl Motion {
+    /// The motion at its output times.
+    pub fn states(&self) -> States {
+        self.problem.states(&self.states)
+    }
+
+    /// The points at which events happened.
+    pub fn event_states(&self) -> States {
+        let states: Vec<Carried> = self.events.iter().map(|happened| happened.at).collect();
+        self.problem.states(&states)
+    }
+
+    /// The motion at any times between the first and the last, 0 included: by the same method and the same steps from the
+    /// nearest output time before.
+    pub fn at(
+        &self,
+        times: &[f64],
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<States, SimulateError> {
+        let known = |state: &Carried| state.phase.time;
+        let first = self.states.first().map_or(0.0, known).min(0.0);
+        let last = self.states.last().map_or(0.0, known).max(0.0);
+        if let Some(index) = times.iter().position(|t| !(first..=last).contains(t)) {
+            return Err(SimulateError::OutsideMotion { index, time: times[index], first, last });
+        }
+        if let Engine::ClosedForm(closed) = &self.engine {
+            let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
+            return Ok(self.problem.states(&states));
+        }
+        let mut order: Vec<usize> = (0..times.len()).collect();
+        order.sort_by(|&i, &j| times[i].total_cmp(&times[j]));
+        let mut found = vec![self.problem.start(); times.len()];
+        for group in order.chunk_by(|&i, &j| self.nearest(times[i]) == self.nearest(times[j])) {
+            let from = self.nearest(times[group[0]]).map_or(self.problem.start(), |k| self.states[k]);
+            let wanted: Vec<f64> = group.iter().map(|&i| times[i]).collect();
+            let mut breaks: Vec<f64> =
+                self.problem.torques.iter().flat_map(|t| t.breaks()).copied().collect();
+            breaks.sort_by(f64::total_cmp);
+            let walker = self.problem.walker(&self.engine, self.pace, &breaks, &[], 1, progress);
+            let pass = walker.pass(from, &wanted)?;
+            group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
+        }
+        Ok(self.problem.states(&found))
+    }
+
+    /// The output time nearest to a time on the way from 0; none if that is 0 itself.
+    fn nearest(&self, time: f64) -> Option<usize> {
+        let at = |k: usize| self.states[k].phase.time;
+        let k = if time >= 0.0 {
+            self.states.partition_point(|s| s.phase.time <= time).checked_sub(1).filter(|&k| at(k) >= 0.0)
+        } else {
+            Some(self.states.partition_point(|s| s.phase.time < time))
+                .filter(|&k| k < self.states.len() && at(k) <= 0.0)
+        };
+        k.filter(|&k| at(k) != 0.0)
+    }
 }

@@ -17,6 +17,8 @@ pub enum SimulateError {
     BadValue { what: &'static str, value: f64 },
     /// The phase of an exact motion is not known so far from time 0.
     BeyondHorizon { index: usize, time: f64, horizon: f64 },
+    /// A motion is known between its first and last output times.
+    OutsideMotion { index: usize, time: f64, first: f64, last: f64 },
     /// More steps than could be taken.
     TooManySteps { steps: f64, step: f64 },
     /// Two runs with halved step still differ, and halving no longer helps.
@@ -59,6 +61,11 @@ impl fmt::Display for SimulateError {
                 f,
                 "times[{index}] = {time:e} s lies beyond {horizon:.1e} s, where the phase of this rotation is no longer \
                  known to rounding; take times nearer to 0"
+            ),
+            SimulateError::OutsideMotion { index, time, first, last } => write!(
+                f,
+                "times[{index}] = {time} lies outside the motion, which was computed from {first} s to {last} s; simulate it \
+                 up to there"
             ),
             SimulateError::TooManySteps { steps, step } => write!(
                 f,

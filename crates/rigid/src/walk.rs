@@ -2,10 +2,20 @@
 
 use crate::certificate::Watch;
 use crate::conserved::Conserved;
+use crate::event::{Event, Happened, Seen, crossing, root};
+use crate::force::Center;
 use crate::method::Engine;
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::Carried;
 use crate::simulate_error::{MAX_STEPS, SimulateError};
+use crate::torque::TorqueError;
+use polhode_ga::Rotor;
+
+/// The fraction of the work done at some time.
+type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
+
+/// How far the body may turn, in rad, between looks for events: two of them closer than this may be missed.
+const LOOK: f64 = 0.2;
 
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
@@ -31,7 +41,9 @@ pub(crate) enum Pace {
 /// What a pass found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pass {
-    pub states: Vec<Phase>,
+    pub states: Vec<Carried>,
+    /// The events, in the order in which they were met.
+    pub events: Vec<Happened>,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// The longest step.
@@ -46,8 +58,13 @@ pub(crate) struct Walker<'a> {
     pub engine: &'a Engine,
     pub watch: Watch<'a>,
     pub pace: Pace,
+    /// A guess of the first step, in s.
+    pub first: f64,
     /// Times at which the laws are not smooth, rising.
     pub breaks: &'a [f64],
+    pub events: &'a [Event],
+    /// From principal axes to those of the body, for events.
+    pub frame: Rotor,
     pub number: u32,
     pub progress: &'a mut dyn FnMut(Progress) -> bool,
 }
@@ -59,13 +76,19 @@ struct Walk {
     next: f64,
     /// The largest angular velocity so far, in rad/s.
     fastest: f64,
+    /// What passes zero at events, here.
+    values: Vec<f64>,
+    /// Whether an event has ended the motion.
+    ended: bool,
 }
 
 impl Walker<'_> {
-    /// The states at all times, which do not fall; `first` is a guess of the first step.
-    pub fn pass(mut self, start: Phase, times: &[f64], first: f64) -> Result<Pass, SimulateError> {
-        let (begin, end) =
-            (times.first().copied().unwrap_or(0.0).min(0.0), times.last().copied().unwrap_or(0.0).max(0.0));
+    /// The states at all times, which do not fall. Times on either side of the
+    /// start are walked to from there; those beyond an event that ends the motion are left out.
+    pub fn pass(mut self, start: Carried, times: &[f64]) -> Result<Pass, SimulateError> {
+        let origin = start.phase.time;
+        let begin = times.first().map_or(origin, |t| t.min(origin));
+        let end = times.last().map_or(origin, |t| t.max(origin));
         let total = end - begin;
         if let Pace::Step(step) = self.pace {
             let steps = total / step + times.len() as f64;
@@ -74,26 +97,41 @@ impl Walker<'_> {
             }
         }
         let mut pass = Pass::default();
-        let fastest = self.body.omega(start.momentum).norm();
-        let fresh = || Walk { at: Carried::new(start), next: first, fastest };
-        let split = times.partition_point(|&t| t < 0.0);
-        let mut walk = fresh();
-        for &time in times[..split].iter().rev() {
-            self.walk(&mut walk, time, &mut pass, total)?;
-            pass.states.push(walk.at.phase);
-        }
-        pass.states.reverse();
-        walk = fresh();
-        for &time in &times[split..] {
-            self.walk(&mut walk, time, &mut pass, total)?;
-            pass.states.push(walk.at.phase);
-        }
+        let (early, late) = times.split_at(times.partition_point(|&t| t < origin));
+        let part = |time: f64| (time - origin).abs() / total.max(f64::MIN_POSITIVE);
+        let mut states = self.side(start, early.iter().rev(), &mut pass, &mut |time| part(time))?;
+        states.reverse();
+        let before = part(begin);
+        states.extend(self.side(start, late.iter(), &mut pass, &mut |time| before + part(time))?);
+        pass.states = states;
         pass.drifts = self.watch.finish();
         Ok(pass)
     }
 
+    /// The states at times on one side of the start.
+    fn side<'t>(
+        &mut self,
+        start: Carried,
+        times: impl Iterator<Item = &'t f64>,
+        pass: &mut Pass,
+        done: Done,
+    ) -> Result<Vec<Carried>, SimulateError> {
+        let fastest = self.body.omega(start.phase.momentum).norm();
+        let values = self.values(&start)?;
+        let mut walk = Walk { at: start, next: self.first, fastest, values, ended: false };
+        let mut states = Vec::new();
+        for &time in times {
+            self.walk(&mut walk, time, pass, done)?;
+            if walk.ended {
+                break;
+            }
+            states.push(walk.at);
+        }
+        Ok(states)
+    }
+
     /// Walks to a time, stopping wherever a law is not smooth.
-    fn walk(&mut self, walk: &mut Walk, time: f64, pass: &mut Pass, total: f64) -> Result<(), SimulateError> {
+    fn walk(&mut self, walk: &mut Walk, time: f64, pass: &mut Pass, done: Done) -> Result<(), SimulateError> {
         loop {
             let from = walk.at.phase.time;
             let (breaks, forward) = (self.breaks, time > from);
@@ -104,10 +142,10 @@ impl Walker<'_> {
             };
             let to = between.copied().unwrap_or(time);
             match self.pace {
-                Pace::Step(step) => self.equal_steps(walk, to, step, pass, total)?,
-                Pace::Tolerance(tolerance) => self.adapted_steps(walk, to, tolerance, pass, total)?,
+                Pace::Step(step) => self.equal_steps(walk, to, step, pass, done)?,
+                Pace::Tolerance(tolerance) => self.adapted_steps(walk, to, tolerance, pass, done)?,
             }
-            if between.is_none() {
+            if between.is_none() || walk.ended {
                 return Ok(());
             }
         }
@@ -119,7 +157,7 @@ impl Walker<'_> {
         time: f64,
         step: f64,
         pass: &mut Pass,
-        total: f64,
+        done: Done,
     ) -> Result<(), SimulateError> {
         let (from, span) = (walk.at.phase.time, time - walk.at.phase.time);
         let count = (span.abs() / step).ceil().max(1.0);
@@ -131,7 +169,10 @@ impl Walker<'_> {
             let to = if last { time } else { from + span * ((i + 1) as f64 / count) };
             // The difference of the rounded times, so that the steps add up to the time.
             let (next, _) = self.step(&walk.at, to - walk.at.phase.time, walk.fastest, pass)?;
-            self.arrive(walk, next, to, pass, total)?;
+            self.arrive(walk, next, to, pass, done)?;
+            if walk.ended {
+                break;
+            }
         }
         Ok(())
     }
@@ -143,11 +184,11 @@ impl Walker<'_> {
         time: f64,
         tolerance: f64,
         pass: &mut Pass,
-        total: f64,
+        done: Done,
     ) -> Result<(), SimulateError> {
         let direction = (time - walk.at.phase.time).signum();
         let mut refused = false;
-        while walk.at.phase.time != time {
+        while walk.at.phase.time != time && !walk.ended {
             let rest = (time - walk.at.phase.time).abs();
             // A last step that is much shorter than the one before helps nobody.
             let cut = if walk.next >= rest { rest } else { walk.next.min(0.5 * rest.max(walk.next)) };
@@ -169,7 +210,7 @@ impl Walker<'_> {
             // A step cut short by an output time says little of how long it might be.
             walk.next = if cut < walk.next { walk.next.max(h.abs() * growth) } else { h.abs() * growth };
             refused = false;
-            self.arrive(walk, next, to, pass, total)?;
+            self.arrive(walk, next, to, pass, done)?;
             if pass.steps as f64 > MAX_STEPS {
                 return Err(SimulateError::TooManySteps { steps: pass.steps as f64, step: cut });
             }
@@ -185,40 +226,119 @@ impl Walker<'_> {
         pass: &mut Pass,
     ) -> Result<(Carried, f64), SimulateError> {
         pass.evaluations += self.engine.evaluations();
-        let failed = |error: crate::torque::TorqueError| SimulateError::Torque {
-            time: at.phase.time,
-            message: error.0,
-        };
+        let failed = |error: TorqueError| SimulateError::Torque { time: at.phase.time, message: error.0 };
         self.engine.step(at, h, fastest).map_err(failed)
     }
 
-    /// Takes a step.
+    /// Takes a step, up to an event that ends the motion.
     fn arrive(
         &mut self,
         walk: &mut Walk,
         mut next: Carried,
         time: f64,
         pass: &mut Pass,
-        total: f64,
+        done: Done,
     ) -> Result<(), SimulateError> {
         pass.longest = pass.longest.max((time - walk.at.phase.time).abs());
         pass.steps += 1;
         next.phase.time = time;
-        walk.at = next;
-        let state = &walk.at.phase;
-        self.watch.look(state);
-        let omega = self.body.omega(state.momentum).norm();
-        if !(omega.is_finite() && state.rotor.components().iter().all(|x| x.is_finite())) {
+        if !is_finite(&next) {
             return Err(SimulateError::Diverged { time });
         }
-        walk.fastest = walk.fastest.max(omega);
+        if !self.events.is_empty() {
+            next = self.look_for_events(walk, next, pass)?;
+        }
+        walk.at = next;
+        self.watch.look(&walk.at.phase);
+        walk.fastest = walk.fastest.max(self.body.omega(walk.at.phase.momentum).norm());
         if pass.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
-            let behind = if time < 0.0 { -time } else { total - (total - time) };
-            let fraction = (behind / total.max(f64::MIN_POSITIVE)).min(1.0);
+            let fraction = done(time).min(1.0);
             if !(self.progress)(Progress { pass: self.number, fraction }) {
                 return Err(SimulateError::Interrupted);
             }
         }
         Ok(())
     }
+
+    /// The events between the point of the walk and the next, and where it ends: there, or at an event.
+    ///
+    /// A point within a step is a shorter step from its start. A step may be a good part of a turn long: it is looked at
+    /// in pieces of less than [`LOOK`] rad.
+    fn look_for_events(
+        &self,
+        walk: &mut Walk,
+        next: Carried,
+        pass: &mut Pass,
+    ) -> Result<Carried, SimulateError> {
+        let (start, h) = (walk.at, next.phase.time - walk.at.phase.time);
+        let pieces = (self.body.omega(next.phase.momentum).norm().max(walk.fastest) * h.abs() / LOOK)
+            .ceil()
+            .clamp(1.0, 1e4);
+        let mut before = start;
+        for piece in 1..=pieces as u64 {
+            let after = if piece as f64 == pieces {
+                next
+            } else {
+                self.within(&start, h * (piece as f64 / pieces), walk, pass)?
+            };
+            let values = self.values(&after)?;
+            let mut found = Vec::new();
+            for (k, event) in self.events.iter().enumerate() {
+                let Some(direction) = crossing(walk.values[k], values[k]) else { continue };
+                if event.direction.is_some_and(|wanted| wanted != direction) {
+                    continue;
+                }
+                let span = (before.phase.time - start.phase.time, after.phase.time - start.phase.time);
+                let least = 2.0 * f64::EPSILON * after.phase.time.abs().max(h.abs());
+                let mut value = |s: f64| self.value(k, &self.within(&start, s, walk, pass)?);
+                let at = root(span, (walk.values[k], values[k]), least, &mut value)?;
+                found.push(Happened { event: k, direction, at: self.within(&start, at, walk, pass)? });
+            }
+            found.sort_by(|a, b| (a.at.phase.time * h.signum()).total_cmp(&(b.at.phase.time * h.signum())));
+            for happened in found {
+                pass.events.push(happened);
+                if self.events[happened.event].terminal {
+                    walk.ended = true;
+                    return Ok(happened.at);
+                }
+            }
+            walk.values = values;
+            before = after;
+        }
+        Ok(next)
+    }
+
+    /// The point a time s after the start of a step.
+    fn within(
+        &self,
+        start: &Carried,
+        s: f64,
+        walk: &Walk,
+        pass: &mut Pass,
+    ) -> Result<Carried, SimulateError> {
+        if s == 0.0 { Ok(*start) } else { Ok(self.step(start, s, walk.fastest, pass)?.0) }
+    }
+
+    fn values(&self, at: &Carried) -> Result<Vec<f64>, SimulateError> {
+        (0..self.events.len()).map(|k| self.value(k, at)).collect()
+    }
+
+    fn value(&self, event: usize, at: &Carried) -> Result<f64, SimulateError> {
+        let Phase { rotor, momentum, time } = at.phase;
+        let Center { position, velocity } = at.center;
+        let omega = self.frame.apply_bivector(self.body.omega(momentum));
+        let seen = Seen { time, rotor: rotor * self.frame.reverse(), omega, position, velocity };
+        let failed =
+            |error: TorqueError| SimulateError::Torque { time, message: format!("events[{event}]: {error}") };
+        let value = self.events[event].quantity.value(&seen).map_err(failed)?;
+        if value.is_nan() {
+            return Err(failed(TorqueError("its value is NaN".into())));
+        }
+        Ok(value)
+    }
+}
+
+pub(crate) fn is_finite(at: &Carried) -> bool {
+    let numbers = [at.phase.momentum.0, at.center.position.0, at.center.velocity.0];
+    numbers.iter().flatten().chain(&at.phase.rotor.components()).all(|x| x.is_finite())
 }

@@ -1,0 +1,174 @@
+//! Simulation.
+
+use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
+use crate::bodies::{Inertia, rotor};
+use crate::laws::{Event, Force};
+use crate::motion::check_times;
+use polhode_ga::{Bivector, Vector};
+use polhode_rigid::SimulateError;
+use polhode_rigid::event::Direction;
+use polhode_rigid::force::Center;
+use polhode_rigid::method::Method;
+use polhode_rigid::simulate::{self as rigid, Options, Problem, Progress, States};
+use polhode_rigid::torque::Torque;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::time::{Duration, Instant};
+
+/// How often a run looks for Ctrl-C and reports where it stands.
+const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
+
+/// Names of the methods, by rising order.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<&'static str> {
+    polhode_rigid::method::methods().map(Method::name).collect()
+}
+
+fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
+    match (name, values) {
+        ("heavy", &[x, y, z]) => Ok(Torque::Heavy(Vector([x, y, z]))),
+        ("gravity_gradient", &[n]) => Ok(Torque::GravityGradient(n)),
+        ("constant_body", &[x, y, z]) => Ok(Torque::ConstantBody(Bivector([x, y, z]))),
+        ("constant_space", &[x, y, z]) => Ok(Torque::ConstantSpace(Bivector([x, y, z]))),
+        ("damping", &[g]) => Ok(Torque::Damping(g)),
+        _ => Err(bad(format!("no torque law {name} with {} numbers", values.len()))),
+    }
+}
+
+/// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.
+struct Watcher<'a> {
+    progress: Option<&'a Py<PyAny>>,
+    last: Instant,
+    error: Option<PyErr>,
+}
+
+impl Watcher<'_> {
+    fn go_on(&mut self, at: Progress) -> bool {
+        if self.last.elapsed() < BETWEEN_SIGNALS {
+            return true;
+        }
+        self.last = Instant::now();
+        let outcome = Python::attach(|py| {
+            py.check_signals()?;
+            self.progress.map_or(Ok(()), |call| call.call1(py, (at.pass, at.fraction)).map(drop))
+        });
+        self.error = outcome.err();
+        self.error.is_none()
+    }
+}
+
+/// States of a motion: times (n,), rotors (n, 4), angular velocities (n, 3) in the body, momenta (n, 3) in space, energies
+/// (n,), positions (n, 3) and velocities (n, 3).
+type Points<'py> = PyResult<[Array<'py>; 7]>;
+
+fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
+    Ok([
+        line(py, states.times),
+        table(py, states.rotors.iter().map(|r| r.components()))?,
+        table(py, states.omegas.iter().map(|w| w.0))?,
+        table(py, states.momenta_space.iter().map(|l| l.0))?,
+        line(py, states.energies),
+        table(py, states.centers.iter().map(|c| c.position.0))?,
+        table(py, states.centers.iter().map(|c| c.velocity.0))?,
+    ])
+}
+
+/// A simulated motion.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Motion(rigid::Motion);
+
+#[pymethods]
+impl Motion {
+    fn states<'py>(&self, py: Python<'py>) -> Points<'py> {
+        points(py, self.0.states())
+    }
+
+    /// The states at other times.
+    fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> Points<'py> {
+        let times = numbers(&times)?;
+        check_times(times)?;
+        let states = run(py, None, |progress| self.0.at(times, progress))?;
+        points(py, states)
+    }
+
+    /// The events in the order in which they were met: which, whether rising, and the states there.
+    fn events<'py>(&self, py: Python<'py>) -> PyResult<(Vec<usize>, Vec<bool>, [Array<'py>; 7])> {
+        let which = self.0.events.iter().map(|happened| happened.event).collect();
+        let rising = self.0.events.iter().map(|happened| happened.direction == Direction::Rising).collect();
+        Ok((which, rising, points(py, self.0.event_states())?))
+    }
+
+    /// How the motion was made and what it conserved.
+    fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let proof = &self.0.certificate;
+        let certificate = PyDict::new(py);
+        certificate.set_item("method", proof.method)?;
+        certificate.set_item("step", proof.step)?;
+        certificate.set_item("steps", proof.steps)?;
+        certificate.set_item("evaluations", proof.evaluations)?;
+        certificate.set_item("error_estimate", proof.error_estimate)?;
+        let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
+        for (quantity, value, change) in &proof.drifts {
+            conserved.set_item(quantity.name(), value)?;
+            drift.set_item(quantity.name(), change)?;
+        }
+        certificate.set_item("conserved", conserved)?;
+        certificate.set_item("drift", drift)?;
+        certificate.set_item("norm_drift", proof.norm_drift)?;
+        Ok(certificate)
+    }
+}
+
+/// Runs without the GIL, with progress and Ctrl-C.
+fn run<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<T, SimulateError> + Send,
+) -> PyResult<T> {
+    let mut watcher = Watcher { progress, last: Instant::now(), error: None };
+    let (result, error) = py.detach(|| {
+        let result = work(&mut |at| watcher.go_on(at));
+        (result, watcher.error)
+    });
+    match (result, error) {
+        (Ok(found), _) => Ok(found),
+        (Err(SimulateError::Interrupted), Some(error)) => Err(error),
+        (Err(error), _) => Err(bad(error)),
+    }
+}
+
+/// Simulates. `center` is the place and velocity of the centre of mass, the mass is of use with forces alone.
+#[pyfunction]
+#[pyo3(signature = (inertia, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, events, progress))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    rotor_row: Rows<'py>,
+    omega: Rows<'py>,
+    laws: Vec<(String, Vec<f64>)>,
+    center: Rows<'py>,
+    mass: f64,
+    forces: Vec<PyRef<'py, Force>>,
+    times: Rows<'py>,
+    method: &str,
+    step: Option<f64>,
+    rtol: Option<f64>,
+    events: Vec<PyRef<'py, Event>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Motion> {
+    let method = match method {
+        "auto" => None,
+        name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
+    };
+    let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
+    let forces: Vec<_> = forces.iter().map(|force| force.0.clone()).collect();
+    let events = events.iter().map(|event| event.0.clone()).collect();
+    let [x, y, z, u, v, w] = one(&center)?;
+    let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
+    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws)
+        .with_center(center, mass, &forces);
+    let times = numbers(&times)?;
+    let options = Options { method, step, rtol, events };
+    run(py, progress.as_ref(), |progress| problem.simulate(times, options, progress)).map(Motion)
+}

@@ -1,0 +1,161 @@
+"""Simulation: a body, its start, its torques and forces, to a motion at given times."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode import force as forces
+from polhode._arrays import as_float, as_floats
+from polhode._bodies import Body, Inertia
+from polhode._motion import State, _single
+from polhode._trajectory import Certificate, Trajectory
+from polhode._values import as_point, vector
+from polhode.event import Event
+from polhode.force import Force
+from polhode.torque import Torque, constant_body
+
+METHODS: tuple[str, ...] = ("auto", "exact", *_native.methods())
+
+
+def simulate(
+    body: Body | Inertia,
+    state: State,
+    times: Any,
+    torque: Torque | None = None,
+    force: Any = None,
+    method: str = "auto",
+    rtol: float | None = None,
+    atol: float | None = None,
+    step: float | None = None,
+    *,
+    events: Sequence[Event] = (),
+    progress: Callable[[int, float], object] | None = None,
+) -> Trajectory:
+    """Return the motion of a body at given times: exact where it is known, else by steps that keep |R|.
+
+    Parameters
+    ----------
+    body
+        A `Body` or its `Inertia` in kg m². With `ph.torque.heavy` a body is held at the origin of its
+        axes, and an inertia is that about the fixed point.
+    state
+        The state at time 0.
+    times
+        Output times in s, (n,), not decreasing, of either sign.
+    torque
+        A law of `polhode.torque`, or a sum of them; None for free motion.
+    force
+        What moves the centre of mass: a law of `polhode.force`, a sum of them, or a vector or (3,) in N for a
+        constant force in space. It needs a `Body`.
+    method
+        ``"auto"``: ``"exact"`` where the motion has a closed form (free bodies among others) and no `step` is
+        given; for torques that depend on attitude and time, symmetric splittings, which keep the energy of
+        long runs: ``rkn6`` for symmetric bodies and ``kahan_li8`` for others; for torques that depend on the
+        rate of turning, and for forces, ``dop853``, a Runge–Kutta method of order 8 on the group of rotors
+        that adapts its steps. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,
+        ``kahan_li6``, ``rk4``.
+    rtol, atol
+        Without a `step`, runs with ever shorter steps until the estimated error of the last is less than the
+        larger of the two: in the rotor, in the angular velocity relative to its largest size, and so for the
+        centre of mass, where forces move it. With neither given the aim is 1e-10; where rounding, magnified
+        by the motion, allows only up to 1e-6, that is accepted and the certificate tells the estimate.
+    step
+        A fixed step in s; shortened a little so that steps end on the output times.
+    events
+        What to look for on the way, from `polhode.event`; found in ``trajectory.events``.
+    progress
+        Called now and then with the pass (from 1) and the fraction of it done. Ctrl-C stops the run.
+
+    Raises
+    ------
+    ValueError
+        For input that is not usable, or a tolerance that was not reached.
+    """
+    if torque is not None and not isinstance(torque, Torque):
+        raise TypeError(
+            f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}"
+        )
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be callable, got {type(progress).__name__}")
+    if method not in METHODS:
+        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
+    if method == "exact" and (torque is not None or step is not None):
+        raise ValueError('method "exact" is for free motion without a step; leave it out for others')
+    start = _single(state)
+    mass = body.mass if isinstance(body, Body) else None
+    inertia = _ruling_inertia(body, torque)
+    when = np.atleast_1d(as_floats(times, "times"))
+    if when.ndim != 1:
+        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
+    pushes, thrust = _forces(force, body)
+    if _is_held(torque) and pushes:
+        raise ValueError("with ph.torque.heavy the body is held at a fixed point: no force moves it")
+    if thrust is not None:
+        torque = thrust if torque is None else torque + thrust
+    looked_for = _events(events)
+    motion = _native.simulate(
+        inertia._core,
+        start.rotor._data,
+        start.omega_body._data,
+        list(torque.laws) if torque else [],
+        np.concatenate([start.position.components, start.velocity.components]),
+        1.0 if mass is None else mass,
+        pushes,
+        np.ascontiguousarray(when),
+        "auto" if method == "exact" else method,
+        None if step is None else as_float(step, "step"),
+        _tolerance(rtol, atol),
+        [event._core for event in looked_for],
+        progress,
+    )
+    certificate = Certificate(**motion.certificate())
+    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for])
+
+
+def _tolerance(rtol: float | None, atol: float | None) -> float | None:
+    """Both measure the same scaled difference, so the larger one rules."""
+    given = {name: as_float(x, name) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
+    for name, x in given.items():
+        if not (x > 0 and np.isfinite(x)):
+            raise ValueError(f"{name} is {x}; it must be positive and finite")
+    return max(given.values(), default=None)
+
+
+def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
+    if isinstance(body, Inertia):
+        return body
+    if not isinstance(body, Body):
+        raise TypeError(f"body must be a Body or an Inertia, got {type(body).__name__}")
+    return body.inertia_about(0) if _is_held(torque) else body.inertia
+
+
+def _is_held(torque: Torque | None) -> bool:
+    """Whether the body is held at a fixed point, the origin of its axes."""
+    return torque is not None and any(name == "heavy" for name, _ in torque.laws)
+
+
+def _forces(force: Any, body: Body | Inertia) -> tuple[list[_native.Force], Torque | None]:
+    """Return the forces, and the torque of thrusts that act beside the centre of mass."""
+    if force is None:
+        return [], None
+    if not isinstance(body, Body):
+        raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
+    law = force if isinstance(force, Force) else forces.constant(as_point(force, "the force"))
+    torques = [constant_body((vector(at) - body.center_of_mass) ^ vector(F)) for F, at in law._thrusts]
+    return list(law._laws), sum(torques[1:], torques[0]) if torques else None
+
+
+def _events(events: Sequence[Event]) -> list[Event]:
+    if isinstance(events, Event):
+        return [events]
+    found = list(events)
+    for k, event in enumerate(found):
+        if not isinstance(event, Event):
+            raise TypeError(
+                f"events[{k}] must be made by polhode.event, such as plane(e3, e3), got {event!r}"
+            )
+    return found

@@ -16,7 +16,7 @@ import report
 import single
 from contest import OURS, Pace, Row
 
-TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS)
+TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS, limit=0.1)
 
 
 @pytest.mark.parametrize("topic", [single, batches, compiled, algebras], ids=lambda topic: topic.__name__)

@@ -74,7 +74,8 @@ def main() -> None:
         page.append(text)
 
     say(f"# Benchmarks\n\n{report.facts(about)}\n- libraries: {', '.join(map(' '.join, versions.items()))}\n")
-    say(f"{report.LEGEND}\n")
+    if set(SECTIONS) & set(wanted):
+        say(f"{report.LEGEND}\n")
     sections = {}
     for title in (title for title in SECTIONS if title in wanted):
         sections[title] = measured(SECTIONS[title](np.random.default_rng(SEED), pace), pace)

@@ -28,7 +28,7 @@ class Pace:
     limit: float
 
 
-FULL = Pace(span=0.1, rounds=7, batch=1_000_000, limit=10.0)
+FULL = Pace(span=0.1, rounds=7, batch=1_000_000, limit=8.0)
 QUICK = Pace(span=0.01, rounds=2, batch=100_000, limit=0.5)
 
 

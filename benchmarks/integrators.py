@@ -22,7 +22,7 @@ from truth import Top
 TOLERANCES = (1e-6, 1e-9, 1e-12)
 STRICTEST = 3e-14  # SciPy takes no less than 100 units in the last place
 STEPS = (0.4, 0.2, 0.1, 0.05)
-PATIENCE = 4.0  # limits of a run, for what is worth waiting for
+PATIENCE = 5.0  # limits of a run, for what is worth waiting for
 Solution = tuple[Any, int]  # rotor components at the end, and the steps taken
 GRAVITY = 20.0  # of MuJoCo's world: mass 1 at c/20, so that inertia about the centre of mass stays possible
 

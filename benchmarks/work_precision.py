@@ -127,8 +127,9 @@ def _run(setting: Setting, time: float, true: Any, span: float) -> Mark:
 def true_rotors(pace: Pace, tops: tuple[Top, ...], times: tuple[float, ...]) -> dict[tuple[Top, float], Any]:
     """Return rotors by top and time, without those for which the pace leaves no time.
 
-    Near its separatrix the free top magnifies even the rounding of the extended series, to 1e-11 at the long
-    time; there the closed form is better, and 40-digit tables best.
+    Of the heavy tops at the long time, the series with steps of 1/2 and of 1/4 agree to 5e-13. Near its
+    separatrix the free top magnifies even this rounding, to 1e-11; there the closed form is better, and
+    40-digit tables best.
     """
     found = {}
     free, heavy = ([top for top in tops if any(top.c) == held] for held in (False, True))

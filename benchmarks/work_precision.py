@@ -104,7 +104,7 @@ def _measured(
     """Run all in turns, so that a disturbance meets all alike, and keep the best; the longer, the fewer."""
     best: dict[Setting, Mark] = {}
     for turn in range(pace.rounds):
-        again = [setting for setting, mark in best.items() if (turn + 1) * mark.seconds < 5 * pace.span]
+        again = [setting for setting, mark in best.items() if (turn + 1) * mark.seconds < 3 * pace.span]
         for setting in again if turn else settings:
             with noted(notes, f"{setting.tool} {setting.label}"):
                 mark = _run(setting, time, true, pace.span / 20)

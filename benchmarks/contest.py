@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from timeit import Timer
 from typing import Any
@@ -17,15 +17,30 @@ Read = Callable[[Any], Any]
 
 @dataclass(frozen=True)
 class Pace:
-    """How long to measure: the best of `rounds` runs of at least `span` seconds; rows in a batch."""
+    """How long to measure: the best of `rounds` runs of at least `span` seconds; rows in a batch.
+
+    What takes more than `limit` seconds of CPU in one run is left out where a section says so.
+    """
 
     span: float
     rounds: int
     batch: int
+    limit: float
 
 
-FULL = Pace(span=0.1, rounds=7, batch=1_000_000)
-QUICK = Pace(span=0.01, rounds=2, batch=100_000)
+FULL = Pace(span=0.1, rounds=7, batch=1_000_000, limit=8.0)
+QUICK = Pace(span=0.01, rounds=2, batch=100_000, limit=0.5)
+
+
+@contextmanager
+def noted(notes: dict[str, str], name: str) -> Iterator[None]:
+    """Whatever fails inside is a note under that name."""
+    try:
+        yield
+    except ImportError as error:
+        notes[name] = f"not installed ({error})"
+    except Exception as error:
+        notes[name] = f"{type(error).__name__}: {error}".splitlines()[0]
 
 
 @dataclass(frozen=True)
@@ -85,15 +100,9 @@ class Row:
             raise ValueError(f"disagrees by {off:.1e} of the largest")
         self.entries[library] = Entry(code, names, self.count if count is None else count)
 
-    @contextmanager
-    def peer(self, library: str) -> Iterator[None]:
+    def peer(self, library: str) -> AbstractContextManager[None]:
         """Around a peer's set-up and entry: whatever fails is a note, and its place in the table is empty."""
-        try:
-            yield
-        except ImportError as error:
-            self.notes[library] = f"not installed ({error})"
-        except Exception as error:
-            self.notes[library] = f"{type(error).__name__}: {error}".splitlines()[0]
+        return noted(self.notes, library)
 
     @contextmanager
     def planned(self) -> Iterator[None]:

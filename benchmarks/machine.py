@@ -29,6 +29,8 @@ PEERS = [
     "numpy-quaternion",
     "numba",
     "jax",
+    "diffrax",
+    "mujoco",
 ]
 
 ROOT = Path(__file__).parent.parent

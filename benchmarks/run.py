@@ -1,7 +1,8 @@
-"""Ours beside the peers, in one run on this machine: `python benchmarks/run.py [--quick]`.
+"""Ours beside the peers, in one run on this machine: `python benchmarks/run.py [--quick] [--only SECTION]`.
 
-Prints the tables and writes them to build/bench-COMMIT.md, and the figures to build/bench-COMMIT.json. Ratios
-count; absolute times hold for this machine and this hour. A peer that is not installed is an empty column.
+Prints the tables and writes them to build/bench-COMMIT.md, the figures to build/bench-COMMIT.json, and work
+and precision of motion drawn to build/bench-COMMIT-motion.png. Ratios count; absolute times hold for this
+machine and this hour. A peer that is not installed is an empty column.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import machine
 import motion
 import report
 import single
+import work_precision
 from contest import FULL, QUICK, Pace, Row
 from polhode._files import write_atomically
 
@@ -49,7 +51,16 @@ def main() -> None:
     """Measure, print and write."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--quick", action="store_true", help="a first look: smaller batches, shorter runs")
-    pace = QUICK if parser.parse_args().quick else FULL
+    titles = [*SECTIONS, work_precision.TITLE]
+    parser.add_argument(
+        "--only",
+        action="append",
+        choices=titles,
+        metavar="SECTION",
+        help=f"one of {', '.join(titles)}; repeatable",
+    )
+    arguments = parser.parse_args()
+    pace, wanted = QUICK if arguments.quick else FULL, arguments.only or titles
 
     about, versions = machine.describe(), machine.versions()
     one, all_cores = (machine.copy_bandwidth(threads, pace) for threads in (1, machine.cores()))
@@ -63,21 +74,30 @@ def main() -> None:
         page.append(text)
 
     say(f"# Benchmarks\n\n{report.facts(about)}\n- libraries: {', '.join(map(' '.join, versions.items()))}\n")
-    say(f"{report.LEGEND}\n")
+    if set(SECTIONS) & set(wanted):
+        say(f"{report.LEGEND}\n")
     sections = {}
-    for title, rows in SECTIONS.items():
-        sections[title] = measured(rows(np.random.default_rng(SEED), pace), pace)
+    for title in (title for title in SECTIONS if title in wanted):
+        sections[title] = measured(SECTIONS[title](np.random.default_rng(SEED), pace), pace)
         say(report.section(title, sections[title], max(one, all_cores)))
+    panels = list(work_precision.panels(pace)) if work_precision.TITLE in wanted else []
+    if panels:
+        say(work_precision.section(panels))
     everything = [row for rows in sections.values() for row in rows]
-    say(report.matrices(everything))
-    page.append(f"## What was timed\n\n{report.spellings(everything)}\n")
+    if everything:
+        say(report.matrices(everything))
+        page.append(f"## What was timed\n\n{report.spellings(everything)}\n")
 
     target = machine.ROOT / "build" / f"bench-{about['commit']}"
     target.parent.mkdir(exist_ok=True)
     files = {
         target.with_name(f"{target.name}.md"): "\n".join(page).encode(),
-        target.with_name(f"{target.name}.json"): report.data({**about, "versions": versions}, sections),
+        target.with_name(f"{target.name}.json"): report.data(
+            {**about, "versions": versions, "panels": work_precision.data(panels)}, sections
+        ),
     }
+    if panels and (drawing := work_precision.plot(panels)):
+        files[target.with_name(f"{target.name}-motion.png")] = drawing
     write_atomically(files)
     print("Written to", " and ".join(str(path.relative_to(machine.ROOT)) for path in files))
 

@@ -14,9 +14,13 @@ import compiled
 import machine
 import report
 import single
+import truth
+import work_precision
 from contest import OURS, Pace, Row
+from integrators import Setting
+from work_precision import FREE, KOVALEVSKAYA, LAGRANGE, Mark, Panel
 
-TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS)
+TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS, limit=0.1)
 
 
 @pytest.mark.parametrize("topic", [single, batches, compiled, algebras], ids=lambda topic: topic.__name__)
@@ -28,6 +32,93 @@ def test_all_that_is_installed_agrees(topic, monkeypatch):
         unexplained = [note for note in row.notes.values() if not note.startswith(known)]
         assert not unexplained, row.what
         assert OURS in row.entries or OURS in row.notes
+
+
+EXTENDED = np.finfo(np.longdouble).eps
+
+
+@pytest.mark.skipif(not work_precision.REFERENCES.is_file(), reason="needs the reference data")
+@pytest.mark.parametrize(
+    ("top", "name"), [(FREE, "dzhanibekov_001"), (LAGRANGE, "lagrange_loop"), (KOVALEVSKAYA, "kovalevskaya")]
+)
+def test_the_truth_is_that_of_the_reference(top, name):
+    cases = json.loads(work_precision.REFERENCES.read_text())
+    (case,) = (case for kind in ("free_top", "torqued") for case in cases[kind] if case["name"] == name)
+    near = [result for result in case["results"] if float(result["t"]) <= 100]
+    found = truth.rotors([top], [float(result["t"]) for result in near])
+    for rotors, result in zip(found, near, strict=True):
+        expected = np.array([np.longdouble(x) for x in result["R"]])
+        # Rounding of 200 steps, which the flips of the free top magnify 1/0.01 times.
+        assert np.abs(rotors[0] - expected).max() < 200 * 100 * EXTENDED
+
+
+def test_the_truth_says_when_its_step_is_too_long():
+    fast = truth.Top("fast", (1, 2, 3), (0, 0, 0), (30, 20, 10), (1, 0, 0, 0))
+    with pytest.raises(ValueError, match="take a smaller step"):
+        truth.rotors([fast], [1.0])
+    with pytest.raises(ValueError, match="no rising multiple"):
+        truth.rotors([FREE], [0.7])
+
+
+@pytest.mark.parametrize("top", work_precision.TOPS, ids=lambda top: top.name)
+def test_all_integrators_move_the_same_top(top, monkeypatch):
+    monkeypatch.setitem(sys.modules, "jax", None)
+    (panel,) = work_precision.panels(TINY, (top,), (1.0,))
+    assert all(note.startswith("not installed") for note in panel.notes.values()), panel.notes
+    # Order 2 with steps of 0.4 is off by some 0.02; wrong axes, signs or a wrong torque by 1.
+    assert all(mark.error < 0.1 for mark in panel.marks)
+    for tool in {mark.tool for mark in panel.marks}:
+        assert min(mark.error for mark in panel.marks if mark.tool == tool) < 1e-9, tool
+
+
+def test_slow_settings_are_left_out_of_longer_runs(monkeypatch):
+    still = truth.Top("still", (1, 1, 1), (0, 0, 0), (0, 0, 0), (1, 0, 0, 0))
+
+    def tool(top, notes):
+        yield Setting("tool", "slow", lambda time: (np.array([-1.0, 0, 0, 0]), 1))
+        yield Setting("tool", "awaited", lambda time: (np.array([1.0, 0, 0, 0]), 1), patience=np.inf)
+        yield Setting("tool", "broken", lambda time: 1 / 0)
+
+    monkeypatch.setattr(work_precision, "TOOLS", {"tool": tool})
+    near, far = work_precision.panels(Pace(1e-5, 2, 1, limit=1e-12), (still,), (1.0, 2.0))
+    assert [(mark.setting, mark.error) for mark in near.marks] == [("slow", 0), ("awaited", 0)]
+    assert near.notes == {"tool broken": "ZeroDivisionError: division by zero"}
+    assert [mark.setting for mark in far.marks] == ["awaited"]
+    assert far.notes == {"more than 1e-12 s a run": "tool slow"}
+
+
+def compared():
+    marks = [
+        Mark(OURS, "auto", 2e-16, 1e-4, 0),
+        Mark(OURS, "strang, h = 0.1", 1e-3, 1e-5, 1000),
+        Mark("SciPy", "DOP853, 1e-06", 1e-4, 2e-2, 61),
+    ]
+    return Panel(FREE, 100.0, marks, {"MuJoCo": "not installed"})
+
+
+def test_the_table_of_work_and_precision_keeps_its_layout():
+    assert work_precision.section([compared()]).partition("### ")[2] == (
+        "Free top, t = 100\n"
+        "\n"
+        "| tool    |         setting |   error | CPU ms | steps |\n"
+        "| ------- | --------------: | ------: | -----: | ----: |\n"
+        "| polhode |            auto | 2.0e-16 |  0.100 |     – |\n"
+        "| polhode | strang, h = 0.1 | 1.0e-03 | 0.0100 |  1000 |\n"
+        "| SciPy   |   DOP853, 1e-06 | 1.0e-04 |   20.0 |    61 |\n"
+        "\n"
+        "- CPU time of DOP853 / ours at the same error or better: 200× (1e-06; auto); goal 100×\n"
+        "- MuJoCo: not installed\n"
+    )
+
+
+def test_work_and_precision_are_drawn_and_written():
+    pytest.importorskip("matplotlib")
+    panels = [compared(), Panel(LAGRANGE, 1e4)]
+    assert work_precision.plot(panels).startswith(b"\x89PNG")
+    (first, second) = json.loads(json.dumps(work_precision.data(panels)))
+    assert first["top"]["name"] == "Free top"
+    assert first["marks"][2]["seconds"] == 2e-2
+    assert second["marks"] == []
 
 
 def outcomes():

@@ -90,6 +90,8 @@ pub(crate) fn converge(
         let truncation = difference * by.powf(-exponent);
         // Where rounding may rule, the difference itself tells the error.
         let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
+        // Each step rounds, at random.
+        let error = error.max(f64::EPSILON * (fine.steps as f64).sqrt());
         let stuck = error > 0.5 * previous && previous < 1e-2 || number > MOST_PASSES;
         if error <= goal || stuck && error <= acceptable {
             return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });

@@ -164,6 +164,7 @@ impl Walker<'_> {
         if span == 0.0 {
             return Ok(());
         }
+        pass.longest = pass.longest.max(span.abs() / count);
         for i in 0..count as u64 {
             let last = i + 1 == count as u64;
             let to = if last { time } else { from + span * ((i + 1) as f64 / count) };
@@ -210,6 +211,7 @@ impl Walker<'_> {
             // A step cut short by an output time says little of how long it might be.
             walk.next = if cut < walk.next { walk.next.max(h.abs() * growth) } else { h.abs() * growth };
             refused = false;
+            pass.longest = pass.longest.max(h.abs());
             self.arrive(walk, next, to, pass, done)?;
             if pass.steps as f64 > MAX_STEPS {
                 return Err(SimulateError::TooManySteps { steps: pass.steps as f64, step: cut });
@@ -239,7 +241,6 @@ impl Walker<'_> {
         pass: &mut Pass,
         done: Done,
     ) -> Result<(), SimulateError> {
-        pass.longest = pass.longest.max((time - walk.at.phase.time).abs());
         pass.steps += 1;
         next.phase.time = time;
         if !is_finite(&next) {

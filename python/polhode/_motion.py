@@ -322,7 +322,7 @@ def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
 
 def _is_held(torque: Torque | None) -> bool:
     """Whether the body is held at a fixed point, the origin of its axes."""
-    return torque is not None and any(name == "heavy" for name, _ in torque.laws)
+    return torque is not None and torque.holds
 
 
 def _acceleration(force: Any, mass: float | None) -> Array:

@@ -16,6 +16,7 @@ mod program;
 mod scene;
 mod signature;
 mod text;
+mod torque;
 mod value;
 
 /// The compiled core of Polhode; private, called through `polhode`.
@@ -33,6 +34,9 @@ mod _native {
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
+
+    #[pymodule_export]
+    use crate::torque::{Law, torque_at};
 
     #[pymodule_export]
     use crate::formula::Formula;

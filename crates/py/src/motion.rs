@@ -3,8 +3,9 @@
 use crate::arrays::{Array, Rows, bad, line, numbers, one, table, threads};
 use crate::bodies::{Inertia, rotor};
 use crate::pool;
+use crate::torque::{Law, failed};
 use numpy::PyArrayMethods;
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::SimulateError;
 use polhode_rigid::free::FreeMotion;
 use polhode_rigid::simulate::{Options, Problem, Progress, check_horizon};
@@ -25,17 +26,6 @@ const PIECE: usize = 1 << 19;
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {
     METHODS.iter().map(|m| m.name).collect()
-}
-
-fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
-    match (name, values) {
-        ("heavy", &[x, y, z]) => Ok(Torque::Heavy(Vector([x, y, z]))),
-        ("gravity_gradient", &[n]) => Ok(Torque::GravityGradient(n)),
-        ("constant_body", &[x, y, z]) => Ok(Torque::ConstantBody(Bivector([x, y, z]))),
-        ("constant_space", &[x, y, z]) => Ok(Torque::ConstantSpace(Bivector([x, y, z]))),
-        ("damping", &[g]) => Ok(Torque::Damping(g)),
-        _ => Err(bad(format!("no torque law {name} with {} numbers", values.len()))),
-    }
 }
 
 fn check_times(times: &[f64]) -> PyResult<()> {
@@ -161,7 +151,7 @@ pub(crate) fn simulate<'py>(
     inertia: &Inertia,
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
-    laws: Vec<(String, Vec<f64>)>,
+    laws: Vec<Bound<'py, Law>>,
     times: Rows<'py>,
     method: &str,
     step: Option<f64>,
@@ -172,8 +162,8 @@ pub(crate) fn simulate<'py>(
         "auto" => None,
         name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
     };
-    let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
-    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws);
+    let torques: Vec<Torque> = laws.iter().map(|law| law.get().torque.clone()).collect();
+    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques);
     let times = numbers(&times)?;
     let mut watcher = Watcher { progress: progress.as_ref(), last: Instant::now(), error: None };
     let outcome = py.detach(|| {
@@ -183,6 +173,7 @@ pub(crate) fn simulate<'py>(
     let motion = match outcome {
         (Ok(motion), _) => motion,
         (Err(SimulateError::Interrupted), Some(error)) => return Err(error),
+        (Err(error @ SimulateError::Torque { .. }), _) => return Err(failed(&laws, error)),
         (Err(error), _) => return Err(bad(error)),
     };
     let proof = &motion.certificate;

@@ -258,8 +258,8 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
         return _law("formula", text, axes, tuple(given.items()))
     except FormulaError:
         # As in formulas elsewhere, a single value without a scalar part, such as e1*e2, counts as a bivector.
-        narrowed = {name: _narrowed(value) for name, value in given.items()}
-        return _law("formula", text, axes, tuple(narrowed.items()))
+        given = {name: _narrowed(value) for name, value in given.items()}
+    return _law("formula", text, axes, tuple(given.items()))
 
 
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:

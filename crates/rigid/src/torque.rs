@@ -228,6 +228,11 @@ impl Torque {
         }
     }
 
+    /// Its size, or that of its torque at a point of the motion where no largest is known: a scale for steps, in N m.
+    pub fn size_at(&self, body: &Gyrostat, state: &Phase) -> f64 {
+        self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
+    }
+
     /// Its potential energy in J, if it has one that does not change with time and with the rate.
     pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
         let back = state.rotor.reverse();

@@ -61,9 +61,8 @@ struct Compiled {
     result: usize,
 }
 
-/// The names that the motion gives, in the spelling of [`polhode_ga::formula::canonical`]; `Ω` is the angular velocity
-/// in the axes of the law.
-fn given(axes: Axes) -> [(&'static str, Motion); 8] {
+/// The names that the motion gives; `Ω` is the angular velocity in the axes of the law.
+fn given(axes: Axes) -> [(&'static str, Motion); 11] {
     let own = match axes {
         Axes::Body => Motion::OmegaBody,
         Axes::Space => Motion::OmegaSpace,
@@ -74,6 +73,9 @@ fn given(axes: Axes) -> [(&'static str, Motion); 8] {
         ("Ω", own),
         ("Ω_B", Motion::OmegaBody),
         ("Ω_S", Motion::OmegaSpace),
+        ("Omega", own),
+        ("Omega_B", Motion::OmegaBody),
+        ("Omega_S", Motion::OmegaSpace),
         ("L", Motion::MomentumSpace),
         ("L_B", Motion::MomentumBody),
         ("I", Motion::Inertia),
@@ -124,13 +126,10 @@ thread_local! {
 }
 
 impl FormulaTorque {
-    /// The names that the motion gives, which no others may have.
-    pub const GIVEN: [&'static str; 8] = ["R", "t", "Ω", "Ω_B", "Ω_S", "L", "L_B", "I"];
-
     /// Reads a formula whose value is the torque in these axes.
     ///
     /// The motion gives `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a bivector in body
-    /// axes and in space; `Ω` is that in the axes of the law), `L` and `L_B` (the momentum, that of a wheel included,
+    /// axes and in space, or `Omega_B` and `Omega_S`; `Ω` is that in the axes of the law), `L` and `L_B` (the momentum, that of a wheel included,
     /// in space and in body axes), and the inertia map `I(…)` of the body. All other names stand for what `names`
     /// says; `value` tells the value of an input, of the kind it asks for.
     pub fn new(

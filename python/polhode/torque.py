@@ -1,8 +1,8 @@
 """Torque laws for `polhode.simulate`: values that say what turns the body.
 
-Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. Each is a bivector at every point of the motion, whose
-components ``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to space, ``Ω_B`` the
-angular velocity in body axes.
+Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. Each is a bivector at every point of the motion,
+whose components ``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to
+space, ``Ω_B`` the angular velocity in body axes.
 """
 
 from __future__ import annotations
@@ -59,9 +59,9 @@ class Torque:
     def at(self, inertia: Inertia | Body, state: State, t: float = 0.0) -> Multivector:
         """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
 
-        It is the right side of handout eq. (4.21), seen from the body, in N m: of a `gyrostat` what the wheel does
-        as it is turned. The inertia is that about the centre of mass, or the fixed point if a law holds the body; a
-        `Body` is taken so.
+        It is the right side of handout eq. (4.21), seen from the body, in N m: of a `gyrostat` what the
+        wheel does as it is turned. The inertia is that about the centre of mass, or the fixed point if a
+        law holds the body; a `Body` is taken so.
         """
         if isinstance(inertia, Body):
             inertia = inertia.inertia_about(0) if self.holds else inertia.inertia
@@ -69,7 +69,9 @@ class Torque:
             raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
         rotor, omega = state.rotor.components, state.omega_body.components
         if rotor.shape != (4,) or omega.shape != (3,):
-            raise ValueError(f"the state must be a single one, got batch {np.broadcast_shapes(*_batches(state))}")
+            raise ValueError(
+                f"the state must be a single one, got batch {np.broadcast_shapes(*_batches(state))}"
+            )
         time = _finite(as_float(t, "t"), "t")
         return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
 
@@ -80,9 +82,9 @@ class Torque:
 def heavy(c: Any) -> Torque:
     """Uniform gravity along −e3 on a body held at a fixed point, the origin of its axes.
 
-    ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body axes, a vector
-    or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is taken as such, a `Body` is
-    taken about the origin of its axes.
+    ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body
+    axes, a vector or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is
+    taken as such, a `Body` is taken about the origin of its axes.
     """
     return _law("heavy", _vector(c, "c"))
 
@@ -91,9 +93,9 @@ def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 
     """Return the gradient of a planet's field on a Kepler orbit in the plane e1e2 of space.
 
     With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
-    ``3n² (a/r)³ u x I(u)``, ``a/r = (1 + e cos f)/(1 − e²)``. The true anomaly f follows from the mean anomaly
-    ``M = n t + M0`` by Kepler's equation ``M = E − e sin E``, solved to rounding; the product ``n t`` keeps its digits
-    after any number of turns.
+    ``3n² (a/r)³ u x I(u)``, ``a/r = (1 + e cos f)/(1 − e²)``. The true anomaly f follows from the mean
+    anomaly ``M = n t + M0`` by Kepler's equation ``M = E − e sin E``, solved to rounding; the product
+    ``n t`` keeps its digits after any number of turns.
 
     Parameters
     ----------
@@ -111,8 +113,8 @@ def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 
 def magnetic(dipole: Any, field: Any) -> Torque:
     """Return the torque on a dipole of the body in a field that is constant in space.
 
-    ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,) in body
-    axes in A m², the field B one in space in T.
+    ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
+    in body axes in A m², the field B one in space in T.
     """
     return _law("magnetic", _vector(dipole, "the dipole"), _vector(field, "the field"))
 
@@ -146,8 +148,9 @@ def quadratic_damping(k: float) -> Torque:
 def torsion_spring(k: float, rest: Rotor | None = None) -> Torque:
     """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the turn from an attitude at rest.
 
-    ``R = rest exp(−½Θ)``, ``|Θ| <= π``: of R and −R, which are one attitude, the one with the shorter turn counts. Half
-    a turn away both ways are equally short; there the torque jumps from one to the other, while V has an edge only.
+    ``R = rest exp(−½Θ)``, ``|Θ| <= π``: of R and −R, which are one attitude, the one with the shorter turn
+    counts. Half a turn away both ways are equally short; there the torque jumps from one to the other,
+    while V has an edge only.
 
     Parameters
     ----------
@@ -177,9 +180,9 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
 def gyrostat(h: Any) -> Torque:
     """Return a wheel in the body that turns at a constant rate.
 
-    Its momentum h relative to the body is a bivector or (3,) in body axes in kg m²/s; the inertia of the body is that
-    with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the wheel resists being
-    turned.
+    Its momentum h relative to the body is a bivector or (3,) in body axes in kg m²/s; the inertia of the
+    body is that with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the
+    wheel resists being turned.
     """
     return _law("gyrostat", _bivector(h, "h"))
 
@@ -203,15 +206,16 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     Parameters
     ----------
     times
-        In s, (n,), rising, two at least. Outside the first and the last there is no torque, and a motion that gets
-        there is an error.
+        In s, (n,), rising, two at least. Outside the first and the last there is no torque, and a motion
+        that gets there is an error.
     torques
         Bivectors of batch (n,), or (n, 3), in N m.
     frame
         The axes of their components, ``"body"`` or ``"space"``.
     kind
-        ``"linear"``; or ``"cubic"``, the spline whose second derivative has no jumps, with "not a knot" ends (the
-        third derivative has no jumps at the second and the last but one time). Of three rows it is the parabola.
+        ``"linear"``; or ``"cubic"``, the spline whose second derivative has no jumps, with "not a knot"
+        ends (the third derivative has no jumps at the second and the last but one time). Of three rows it
+        is the parabola.
     """
     when, rows = as_floats(times, "times"), as_bivectors(torques, "torques")
     if when.ndim != 1 or rows.shape != (when.size, 3):
@@ -225,14 +229,14 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     """Return the torque that a formula in the handout's notation gives: ``formula("-c ∧ (~R e3 R)", c=c)``.
 
-    The formula is read and checked at once: its value must be a bivector. An axial vector v is the bivector ``I v``.
-    The motion gives
+    The formula is read and checked at once: its value must be a bivector. An axial vector v is the bivector
+    ``I v``. The motion gives
 
     - ``R``, the rotor from body axes to space, and ``t``, the time in s,
-    - ``Ω_B`` and ``Ω_S`` (or ``Omega_B``, ``Omega_S``), the angular velocity in body axes and in space, bivectors in
-      rad/s; ``Ω`` is that in the axes of `frame`,
-    - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a `gyrostat`
-      included,
+    - ``Ω_B`` and ``Ω_S`` (or ``Omega_B``, ``Omega_S``), the angular velocity in body axes and in space,
+      bivectors in rad/s; ``Ω`` is that in the axes of `frame`,
+    - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a
+      `gyrostat` included,
     - ``I(…)``, the inertia map of the body on bivectors in body axes, beside ``I`` the pseudoscalar.
 
     Parameters
@@ -247,8 +251,8 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     Raises
     ------
     FormulaError
-        For a text that is no formula, or whose value is no bivector; with the place. Where a run comes to a point at
-        which the formula has no value, `simulate` tells which part of it.
+        For a text that is no formula, or whose value is no bivector; with the place. Where a run comes to a
+        point at which the formula has no value, `simulate` tells which part of it.
     """
     if not isinstance(text, str):
         raise TypeError(f"a formula is a text, got {type(text).__name__}")
@@ -265,9 +269,10 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     """Return the torque that a Python function gives: ``f(t, rotor, omega_body)``.
 
-    It is called with the time in s, the rotor from body axes to space and the angular velocity in body axes, a
-    bivector, and returns the torque in body axes in N m, a bivector or (3,). What it raises, `simulate` raises. It is
-    some ten times slower than a `formula`, and a law that is one pickles if its function does.
+    It is called with the time in s, the rotor from body axes to space and the angular velocity in body
+    axes, a bivector, and returns the torque in body axes in N m, a bivector or (3,). What it raises,
+    `simulate` raises. It is some ten times slower than a `formula`, and a law that is one pickles if its
+    function does.
     """
     if not callable(f):
         raise TypeError(f"a function of t, rotor and omega_body is needed, got {type(f).__name__}")

@@ -75,7 +75,8 @@ impl Table {
         let (h, x) =
             (self.times[i + 1] - self.times[i], (time - self.times[i]) / (self.times[i + 1] - self.times[i]));
         let (a, b) = (self.torques[i], self.torques[i + 1]);
-        let line = a + (b - a) * x;
+        // From the nearer end, so that the rows are met exactly.
+        let line = if x < 0.5 { a + (b - a) * x } else { b - (b - a) * (1.0 - x) };
         let Some(slopes) = &self.slopes else { return Ok(line) };
         // Hermite's cubic is the line and what the slopes at both ends differ from its own.
         let steep = b - a;

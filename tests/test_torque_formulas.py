@@ -151,6 +151,23 @@ def test_names_of_the_motion_are_its_own():
         T.formula("a ∧ b", a=ph.e1, b=ph.vector(np.eye(3)))
     with pytest.raises(TypeError, match="k"):
         T.formula("k Ω", k="much")
+    with pytest.raises(TypeError, match=r"c is an array of shape \(3,\); .*ph.vector"):
+        T.formula("c ∧ e1", c=[1, 2, 3])
+    with pytest.raises(ValueError, match="k is nan"):
+        T.formula("k Ω", k=np.nan)
+    with pytest.raises(ValueError, match=r"c is .*nan.*finite"):
+        T.formula("c ∧ e1", c=ph.vector([0, np.nan, 1]))
+
+
+def test_laws_with_maps_and_exact_values_are_values():
+    from fractions import Fraction
+
+    stretch = ph.LinearMap.from_function(lambda a: a + ph.e1 * (ph.e1 | a))
+    law = T.formula("F(a) ∧ b", F=stretch, a=ph.vector([Fraction(1, 2), 0, 0]), b=ph.e2)
+    again = pickle.loads(pickle.dumps(law))
+    assert again == law
+    assert again != T.formula("F(a) ∧ b", F=stretch, a=ph.e1, b=ph.e2)
+    assert again.at(BODY, START) == ph.e1 ^ ph.e2
 
 
 @pytest.mark.parametrize(
@@ -240,7 +257,14 @@ def test_what_a_function_raises_is_raised():
     for _ in range(2):
         with pytest.raises(SensorError, match=r"no signal at 2\.5"):
             law.at(BODY, START, 2.5)
+        with pytest.raises(SensorError, match="no signal at"):
+            ph.simulate(BODY, START, [1.0], T.damping(0.5) + law)
     assert pickle.loads(pickle.dumps(law)) == law
+
+
+def test_what_a_function_may_not_return_is_told_by_a_run():
+    with pytest.raises(ValueError, match=r"torque at t = 0.*NaN"):
+        ph.simulate(BODY, START, [1.0], T.function(lambda t, rotor, omega: [np.nan, 0, 0]))
 
 
 def test_laws_keep_no_error_of_others():

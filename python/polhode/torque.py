@@ -237,7 +237,8 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
       bivectors in rad/s; ``Ω`` is that in the axes of `frame`,
     - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a
       `gyrostat` included,
-    - ``I(…)``, the inertia map of the body on bivectors in body axes, beside ``I`` the pseudoscalar.
+    - ``I(…)``, the inertia map of the body on bivectors in body axes, beside ``I`` the pseudoscalar: before
+      a bracket it is the map, so the dual of a bracket is ``(…) I``.
 
     Parameters
     ----------
@@ -347,14 +348,21 @@ def _one_of(words: tuple[str, ...], value: str, name: str) -> str:
 
 
 def _value(value: Any, name: str) -> Any:
-    """Return a value for a formula: a single multivector over float64, a linear map or a number."""
+    """Return a value for a formula: a single finite multivector over float64, a linear map or a number."""
     if isinstance(value, LinearMap):
         return value
     if not isinstance(value, Multivector):
-        return as_float(value, name)
+        number = as_floats(value, name)
+        if number.ndim:
+            raise TypeError(
+                f"{name} is an array of shape {number.shape}; wrap components with ph.vector or ph.bivector"
+            )
+        return _finite(float(number), name)
     if value.shape:
         raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
     data = as_coefficients(value._data, name, float)
+    if not np.isfinite(data).all():
+        raise ValueError(f"{name} is {value}; it must be finite")
     return Rotor._from_rows(data) if isinstance(value, Rotor) else Multivector._of(data, value._mask)
 
 

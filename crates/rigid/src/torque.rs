@@ -272,8 +272,12 @@ impl Torque {
 /// equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
 pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
     let turn = rest.reverse() * rotor;
-    let shorter = if turn.components()[0] < 0.0 { -turn } else { turn };
-    shorter.log() * -2.0
+    let [s, x, y, z] = if turn.components()[0] < 0.0 { -turn } else { turn }.components();
+    let plane = Bivector([x, y, z]);
+    let size = plane.norm();
+    // `q = cos ½θ − sin ½θ Θ/θ`, and θ/sin ½θ = 2 where there is no turn.
+    let factor = if size == 0.0 { 2.0 } else { 2.0 * size.atan2(s) / size };
+    plane * -factor
 }
 
 /// The momentum of all wheels together.

@@ -212,6 +212,7 @@ impl FormulaTorque {
             }
             let torque = Bivector([x, y, z]);
             Ok(match axes {
+                Axes::Body if self.frame == Rotor::IDENTITY => torque,
                 Axes::Body => self.frame.reverse().apply_bivector(torque),
                 Axes::Space => state.rotor.reverse().apply_bivector(torque),
             })

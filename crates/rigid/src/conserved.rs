@@ -1,17 +1,21 @@
 //! What a set of laws leaves constant.
 //!
-//! With `m = I(Ω) + h` the momentum in principal axes, h that of a wheel, Euler's equations are `m' = m x ω + N` in
-//! axial vectors. From them:
+//! With `m = I(Ω) + h` the momentum in principal axes, h that of a wheel, Euler's equations are
+//! `m' = m x ω + N` in axial vectors. From them:
 //!
-//! - `T = ½ ω·I(ω)` changes at the rate `ω·N`, so `E = T + V` is constant where every torque has a potential. The wheel
+//! - `T = ½ ω·I(ω)` changes at the rate `ω·N`, so `E = T + V` is constant where every torque has a
+//!   potential. The wheel
 //!   does no work: `ω·(h x ω) = 0`.
-//! - `L = R m ~R` changes at the rate of the torque in space. It is constant without one; its component along an axis
+//! - `L = R m ~R` changes at the rate of the torque in space. It is constant without one; its component
+//!   along an axis
 //!   about which no torque acts is; its size is under `N = L x b`.
-//! - `m·a`, for an axis a of the body, changes at the rate `(m x ω)·a + N·a`. The first vanishes where the body is
+//! - `m·a`, for an axis a of the body, changes at the rate `(m x ω)·a + N·a`. The first vanishes where the
+//!   body is
 //!   symmetric about a and the wheel lies along a, for then m x ω is perpendicular to a.
 //! - In a field that turns about e3 at the rate n, and with other torques that e3 is an axis of,
 //!   `∂V/∂t = n N3 = n L3'`: Jacobi's integral `E − n L3` is constant.
-//! - Heavy bodies of two shapes have an integral of the fourth and of the third degree: S. Kovalevskaya, Acta Math. 12
+//! - Heavy bodies of two shapes have an integral of the fourth and of the third degree: S. Kovalevskaya,
+//!   Acta Math. 12
 //!   (1889) 177; D. N. Goryachev and S. A. Chaplygin, Mat. Sbornik 21 (1900).
 
 use crate::phase::{Gyrostat, Phase};
@@ -32,10 +36,11 @@ pub enum Conserved {
     AxialAngularMomentum(Vector),
     /// The component of L about a unit axis of the body, in principal axes, in kg m²/s.
     SpinAngularMomentum(Vector),
-    /// `|(ω1 + iω2)² − (c1 + ic2)(γ1 + iγ2)/i3|²` for moments (2, 2, 1) times i3 and `V = c·γ`, `c3 = 0`, in (rad/s)⁴.
+    /// `|(ω1 + iω2)² − (c1 + ic2)(γ1 + iγ2)/i3|²` for moments (2, 2, 1) times i3 and `V = c·γ`, `c3 = 0`,
+    /// in (rad/s)⁴.
     Kovalevskaya(Plane),
-    /// `ω3 (ω1² + ω2²) − γ3 (c1 ω1 + c2 ω2)/i3` for moments (4, 4, 1) times i3 and `V = c·γ`, `c3 = 0`, where L·γ = 0,
-    /// in (rad/s)³.
+    /// `ω3 (ω1² + ω2²) − γ3 (c1 ω1 + c2 ω2)/i3` for moments (4, 4, 1) times i3 and `V = c·γ`, `c3 = 0`,
+    /// where L·γ = 0, in (rad/s)³.
     GoryachevChaplygin(Plane),
     /// `E − n L·N` of a satellite on a circular orbit at the rate n, N its normal e3, in J.
     Jacobi(f64),
@@ -131,13 +136,14 @@ impl Conserved {
         }
     }
 
-    /// The size against which a change counts: that of the terms that make it up, or what the energy lets them become
-    /// where the start is at rest.
+    /// The size against which a change counts: that of the terms that make it up, or what the energy lets
+    /// them become where the start is at rest.
     pub fn scale(self, body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
         let kinetic = body.kinetic(start.momentum);
         let range: f64 = torques.iter().map(|t| t.potential_range()).sum();
         let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
-        // `T <= T0 + range`: `|ω|² i <= 2T` of the slowest turn for an energy, `|I(ω)|² <= 2 i T` of the heaviest.
+        // `T <= T0 + range`: `|ω|² i <= 2T` of the slowest turn for an energy, `|I(ω)|² <= 2 i T` of the
+        // heaviest.
         let momentum = start.momentum.norm() + (2.0 * largest * range).sqrt();
         match self {
             Conserved::Energy => kinetic + torques.iter().map(|t| t.size(body)).sum::<f64>(),
@@ -211,7 +217,8 @@ fn is_symmetric(body: &Gyrostat, axis: usize) -> bool {
     (a - b).abs() <= ROUNDING * a.max(b)
 }
 
-/// The symmetry axis of a body, if no law has a torque about it. A sphere has any: that of the laws, or of the wheel.
+/// The symmetry axis of a body, if no law has a torque about it. A sphere has any: that of the laws, or of
+/// the wheel.
 fn spin_axis(body: &Gyrostat, acting: &[&Torque]) -> Option<Vector> {
     let own = |torque: &Torque| match torque {
         Torque::Heavy(c) => Some(*c),

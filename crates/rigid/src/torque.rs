@@ -22,8 +22,8 @@ use std::sync::Arc;
 
 pub(crate) const E3: Vector = Vector([0.0, 0.0, 1.0]);
 
-/// What turns the body. Vectors and bivectors of the body are in body axes, `Ω` is its angular velocity in them,
-/// `R` the rotor from body axes to space.
+/// What turns the body. Vectors and bivectors of the body are in body axes, `Ω` is its angular velocity in
+/// them, `R` the rotor from body axes to space.
 #[derive(Clone, Debug)]
 pub enum Torque {
     /// Uniform gravity along −e3 on a body held at the origin of its axes: `V = c·γ`, `γ = ~R e3 R`, where
@@ -42,8 +42,8 @@ pub enum Torque {
     QuadraticDamping(f64),
     /// `−d Ω`, with d in N m s.
     ViscousDamping(Gains),
-    /// A dipole of the body, in A m², in a field fixed in space, in T: `V = −m·b`, `b = ~R B R`, torque `m∧b`,
-    /// which is the axial vector `m x b`.
+    /// A dipole of the body, in A m², in a field fixed in space, in T: `V = −m·b`, `b = ~R B R`, torque
+    /// `m∧b`, which is the axial vector `m x b`.
     Magnetic {
         /// m, in body axes.
         dipole: Vector,
@@ -69,7 +69,8 @@ pub enum Torque {
         /// The attitude to reach.
         target: Rotor,
     },
-    /// The axial torque `L x b`, b in space, in rad/s, L the momentum in space: L turns about b at the rate −|b|.
+    /// The axial torque `L x b`, b in space, in rad/s, L the momentum in space: L turns about b at the rate
+    /// −|b|.
     Larmor(Vector),
     /// Interpolated between the rows of a table.
     Tabulated(Arc<Table>),
@@ -163,7 +164,8 @@ impl Torque {
         }
     }
 
-    /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a wheel.
+    /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a
+    /// wheel.
     pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
         let rotor = state.rotor;
         Ok(match self {
@@ -228,7 +230,8 @@ impl Torque {
         }
     }
 
-    /// Its size, or that of its torque at a point of the motion where no largest is known: a scale for steps, in N m.
+    /// Its size, or that of its torque at a point of the motion where no largest is known: a scale for
+    /// steps, in N m.
     pub fn size_at(&self, body: &Gyrostat, state: &Phase) -> f64 {
         self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
     }
@@ -265,11 +268,12 @@ impl Torque {
     }
 }
 
-/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way: `|Θ| <= π`.
+/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way:
+/// `|Θ| <= π`.
 ///
-/// `R` and `−R` are one attitude, so of `q = ±~rest R` the one with a scalar part >= 0 is taken. Along a motion
-/// `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. Half a turn away the two ways are
-/// equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
+/// `R` and `−R` are one attitude, so of `q = ±~rest R` the one with a scalar part >= 0 is taken. Along a
+/// motion `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. Half a turn away
+/// the two ways are equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
 pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
     let turn = rest.reverse() * rotor;
     let [s, x, y, z] = if turn.components()[0] < 0.0 { -turn } else { turn }.components();
@@ -288,8 +292,8 @@ pub fn wheel(torques: &[Torque]) -> Bivector {
     })
 }
 
-/// The whole torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: that of all laws, the part
-/// `−g I(Ω)`, and what the wheel does as it is turned, `Ω × h`.
+/// The whole torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: that of all laws,
+/// the part `−g I(Ω)`, and what the wheel does as it is turned, `Ω × h`.
 pub fn total(body: &Gyrostat, torques: &[Torque], state: &Phase) -> Result<Bivector, TorqueError> {
     let omega = body.omega(state.momentum);
     let mut sum = omega.commutator(body.wheel);

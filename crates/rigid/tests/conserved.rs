@@ -1,7 +1,8 @@
 //! What is said to be conserved is, and what does not fit is not said to be.
 //!
-//! A step of the classical Runge–Kutta method of length 1e-3 follows `R' = −½ R Ω` and `m' = Ω × I(Ω) + T` to h⁵, some
-//! roundings. Over it a conserved quantity changes by roundings of its terms, any other by a thousandth of them.
+//! A step of the classical Runge–Kutta method of length 1e-3 follows `R' = −½ R Ω` and `m' = Ω × I(Ω) + T`
+//! to h⁵, some roundings. Over it a conserved quantity changes by roundings of its terms, any other by a
+//! thousandth of them.
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::conserved::Conserved;

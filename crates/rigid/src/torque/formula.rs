@@ -1,7 +1,8 @@
 //! Laws that are formulas: `-c ∧ (~R e3 R)`.
 //!
-//! A formula is read, compiled and checked once, when the law is made: its value must be a bivector by the grades of
-//! what it is made of. Then it is run like any formula on single values, on what the motion gives for its names.
+//! A formula is read, compiled and checked once, when the law is made: its value must be a bivector by the
+//! grades of what it is made of. Then it is run like any formula on single values, on what the motion gives
+//! for its names.
 
 use super::{Dependence, TorqueError};
 use crate::phase::{Gyrostat, Phase};
@@ -128,10 +129,11 @@ thread_local! {
 impl FormulaTorque {
     /// Reads a formula whose value is the torque in these axes.
     ///
-    /// The motion gives `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a bivector in body
-    /// axes and in space, or `Omega_B` and `Omega_S`; `Ω` is that in the axes of the law), `L` and `L_B` (the momentum, that of a wheel included,
-    /// in space and in body axes), and the inertia map `I(…)` of the body. All other names stand for what `names`
-    /// says; `value` tells the value of an input, of the kind it asks for.
+    /// The motion gives `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a
+    /// bivector in body axes and in space, or `Omega_B` and `Omega_S`; `Ω` is that in the axes of the law),
+    /// `L` and `L_B` (the momentum, that of a wheel included, in space and in body axes), and the inertia
+    /// map `I(…)` of the body. All other names stand for what `names` says; `value` tells the value of an
+    /// input, of the kind it asks for.
     pub fn new(
         text: &str,
         axes: Axes,

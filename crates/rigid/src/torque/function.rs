@@ -6,7 +6,8 @@ use polhode_ga::{Bivector, Rotor};
 use std::fmt;
 use std::sync::Arc;
 
-/// The torque in body axes at a time, for a rotor from body axes to space and an angular velocity in body axes.
+/// The torque in body axes at a time, for a rotor from body axes to space and an angular velocity in body
+/// axes.
 type Call = dyn Fn(f64, Rotor, Bivector) -> Result<Bivector, TorqueError> + Send + Sync;
 
 /// A law that is a function.
@@ -18,7 +19,8 @@ pub struct FunctionTorque {
 }
 
 impl FunctionTorque {
-    /// A torque in body axes at a time in s, for a rotor from body axes to space and an angular velocity in body axes.
+    /// A torque in body axes at a time in s, for a rotor from body axes to space and an angular velocity in
+    /// body axes.
     pub fn new(
         call: impl Fn(f64, Rotor, Bivector) -> Result<Bivector, TorqueError> + Send + Sync + 'static,
     ) -> FunctionTorque {

@@ -46,16 +46,17 @@ impl Orbit {
 
     /// The direction u from planet to body, and `(a/r)³`.
     ///
-    /// With the eccentric anomaly E: `r/a = 1 − e cos E`, and `u = ((cos E − e) e1 + √(1−e²) sin E e2) a/r`. Both
-    /// differences are small near the periapsis of a long orbit; with `v = 2 sin²(E/2) = 1 − cos E` they are
-    /// `(1−e) + e v` and `(1−e) − v`, whose `1 − e` is exact there.
+    /// With the eccentric anomaly E: `r/a = 1 − e cos E`, and
+    /// `u = ((cos E − e) e1 + √(1−e²) sin E e2) a/r`. Both differences are small near the periapsis of a
+    /// long orbit; with `v = 2 sin²(E/2) = 1 − cos E` they are `(1−e) + e v` and `(1−e) − v`, whose `1 − e`
+    /// is exact there.
     pub fn place(&self, time: f64) -> (Vector, f64) {
         let (e, mean) = (self.eccentricity, self.mean_anomaly(time));
         if e == 0.0 {
-            let (sin, cos) = mean.sin_cos();
+            let (sin, cos) = sin_cos(mean);
             return (Vector([cos, sin, 0.0]), 1.0);
         }
-        let anomaly = eccentric_anomaly(mean, e);
+        let anomaly = eccentric_anomaly(reduced(mean), e);
         let versine = 2.0 * (0.5 * anomaly).sin() * (0.5 * anomaly).sin();
         let distance = (1.0 - e) + e * versine;
         let along = (1.0 - e) - versine;
@@ -68,21 +69,34 @@ impl Orbit {
         (1.0 - self.eccentricity).powi(-3)
     }
 
-    /// `M = n t + M0` in [−π, π]. The product is exact in two numbers and is reduced in twice the precision, so that
-    /// M has its digits after any number of turns.
-    fn mean_anomaly(&self, time: f64) -> f64 {
-        let turns =
-            (DoubleDouble::two_product(self.rate, time) + self.anomaly.into()) * DoubleDouble::OVER_TWO_PI;
-        let part = turns - turns.hi.round().into();
-        (part.value() * TAU).clamp(-PI, PI)
+    /// `M = n t + M0`, in twice the precision: rounded, n t would lose a digit with every ten turns.
+    fn mean_anomaly(&self, time: f64) -> DoubleDouble {
+        DoubleDouble::two_product(self.rate, time) + self.anomaly.into()
     }
+}
+
+/// An angle without its whole turns, in [−π, π].
+fn reduced(angle: DoubleDouble) -> f64 {
+    let turns = angle * DoubleDouble::OVER_TWO_PI;
+    let part = turns - turns.hi.round().into();
+    (part.value() * TAU).clamp(-PI, PI)
+}
+
+/// Sine and cosine of an angle. The library's know the turns of `hi` exactly; `lo` turns a little further,
+/// and below 1e-8 its square is rounding.
+fn sin_cos(angle: DoubleDouble) -> (f64, f64) {
+    if angle.lo.abs() > 1e-8 {
+        return reduced(angle).sin_cos();
+    }
+    let (sin, cos) = angle.hi.sin_cos();
+    (sin + angle.lo * cos, cos - angle.lo * sin)
 }
 
 /// Kepler's equation `M = E − e sin E` for `|M| <= π`.
 ///
-/// For M >= 0 the left side of `f(E) = (1−e) E + e (E − sin E) − M = 0` is convex on [0, π], so Newton's steps from
-/// above fall to the root and stop where rounding ends them. It lies below `M + e`, below `M/(1−e)`, and, since
-/// `E − sin E >= E³/π²` there, below `(π² M/e)^(1/3)`.
+/// For M >= 0 the left side of `f(E) = (1−e) E + e (E − sin E) − M = 0` is convex on [0, π], so Newton's
+/// steps from above fall to the root and stop where rounding ends them. It lies below `M + e`, below
+/// `M/(1−e)`, and, since `E − sin E >= E³/π²` there, below `(π² M/e)^(1/3)`.
 fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
     let m = mean.abs();
     let mut anomaly = (m + e).min(m / (1.0 - e)).min((PI * PI * m / e).cbrt()).min(PI);
@@ -103,23 +117,27 @@ fn less_its_sine(x: f64) -> f64 {
     if x > 1.0 {
         return x - x.sin();
     }
-    // x³/3! − x⁵/5! + …: the term of x^21 is below 2⁻⁵³ of the first.
-    let mut term = x * x * x / 6.0;
-    let mut sum = 0.0;
-    for k in 0..9 {
-        sum += term;
-        let n = f64::from(2 * k + 4);
-        term *= -x * x / (n * (n + 1.0));
-    }
-    sum
+    // x³/6 (1 − x²/(4·5) (1 − x²/(6·7) (…))): the next factor would change it by less than 2⁻⁵³.
+    const FACTORS: [f64; 8] = {
+        let mut factors = [0.0; 8];
+        let mut k = 0;
+        while k < 8 {
+            factors[k] = 1.0 / ((2 * k + 4) * (2 * k + 5)) as f64;
+            k += 1;
+        }
+        factors
+    };
+    let square = x * x;
+    let nested = FACTORS.iter().rev().fold(1.0, |inner, factor| 1.0 - square * factor * inner);
+    x * square / 6.0 * nested
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// `M = E − e sin E` for the E found, to the rounding of M: from circles to near-parabolas, from periapsis to
-    /// apoapsis.
+    /// `M = E − e sin E` for the E found, to the rounding of M: from circles to near-parabolas, from
+    /// periapsis to apoapsis.
     #[test]
     fn keplers_equation_holds() {
         for e in [1e-9, 0.1, 0.5, 0.9, 0.99, 0.999_999, 1.0 - 1e-12] {

@@ -8,8 +8,8 @@ use polhode_ga::{Bivector, Rotor};
 pub enum Kind {
     /// By straight lines.
     Linear,
-    /// By the cubic spline whose second derivative has no jumps, and its third none at the second and the last but
-    /// one time (not a knot). Of three rows it is their parabola, of two their line.
+    /// By the cubic spline whose second derivative has no jumps, and its third none at the second and the
+    /// last but one time (not a knot). Of three rows it is their parabola, of two their line.
     Cubic,
 }
 
@@ -108,7 +108,8 @@ impl Table {
 
 /// The slopes of the spline.
 ///
-/// With `h_i` the distances and `m_i` the mean slopes between the times, the second derivative has no jump at `t_i` if
+/// With `h_i` the distances and `m_i` the mean slopes between the times, the second derivative has no jump
+/// at `t_i` if
 ///
 /// ```text
 /// h_i s_(i−1) + 2 (h_(i−1) + h_i) s_i + h_(i−1) s_(i+1) = 3 (h_i m_(i−1) + h_(i−1) m_i),

@@ -16,6 +16,7 @@ __all__ = [
     "Buffer",
     "Formula",
     "Inertia",
+    "Law",
     "Multivector",
     "Program",
     "Rotor",
@@ -55,6 +56,7 @@ __all__ = [
     "subspaces",
     "symmetric_top",
     "to_pauli",
+    "torque_at",
 ]
 
 __version__: str
@@ -224,6 +226,18 @@ class Body:
     def moved(self, rotor_row: Array, position: Array) -> Body: ...
     def combine(self, other: Body) -> Body: ...
 
+@final
+class Law:
+    def __new__(cls, name: str, *arguments: Any) -> Law: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def arguments(self) -> tuple[Any, ...]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[type[Law], tuple[Any, ...]]: ...
+
+def torque_at(laws: list[Law], inertia: Inertia, rotor_row: Array, omega: Array, time: float) -> Array: ...
 def methods() -> list[str]: ...
 def symmetric_top(inertia: Inertia, rotor_row: Array, omega: Array, times: Array) -> tuple[Array, Array]: ...
 def free_motion(inertia: Inertia, rotor_row: Array, omega: Array, times: Array) -> tuple[Array, Array]: ...
@@ -264,7 +278,7 @@ def simulate(
     inertia: Inertia,
     rotor_row: Array,
     omega: Array,
-    laws: list[tuple[str, tuple[float, ...]]],
+    laws: list[Law],
     center: Array,
     mass: float,
     forces: list[Force],

@@ -16,7 +16,7 @@ from polhode._trajectory import Certificate, Trajectory
 from polhode._values import as_point, vector
 from polhode.event import Event
 from polhode.force import Force
-from polhode.torque import Torque, constant_body
+from polhode.torque import Torque, constant_body, function
 
 METHODS: tuple[str, ...] = ("auto", "exact", *_native.methods())
 
@@ -25,7 +25,7 @@ def simulate(
     body: Body | Inertia,
     state: State,
     times: Any,
-    torque: Torque | None = None,
+    torque: Torque | Callable[..., Any] | None = None,
     force: Any = None,
     method: str = "auto",
     rtol: float | None = None,
@@ -47,7 +47,8 @@ def simulate(
     times
         Output times in s, (n,), not decreasing, of either sign.
     torque
-        A law of `polhode.torque`, or a sum of them; None for free motion.
+        A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
+        free motion.
     force
         What moves the centre of mass: a law of `polhode.force`, a sum of them, or a vector or (3,) in N for a
         constant force in space. It needs a `Body`.
@@ -75,10 +76,7 @@ def simulate(
     ValueError
         For input that is not usable, or a tolerance that was not reached.
     """
-    if torque is not None and not isinstance(torque, Torque):
-        raise TypeError(
-            f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}"
-        )
+    torque = _torque(torque)
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be callable, got {type(progress).__name__}")
     if method not in METHODS:
@@ -116,6 +114,15 @@ def simulate(
     return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for])
 
 
+def _torque(torque: Any) -> Torque | None:
+    if torque is None or isinstance(torque, Torque):
+        return torque
+    # A maker of laws, given without its arguments, is callable too.
+    if callable(torque) and getattr(torque, "__module__", None) != function.__module__:
+        return function(torque)
+    raise TypeError(f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}")
+
+
 def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     """Both measure the same scaled difference, so the larger one rules."""
     given = {name: as_float(x, name) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
@@ -135,7 +142,7 @@ def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
 
 def _is_held(torque: Torque | None) -> bool:
     """Whether the body is held at a fixed point, the origin of its axes."""
-    return torque is not None and any(name == "heavy" for name, _ in torque.laws)
+    return torque is not None and torque.holds
 
 
 def _forces(force: Any, body: Body | Inertia) -> tuple[list[_native.Force], Torque | None]:

@@ -177,6 +177,11 @@ _QUANTITIES = {
     "energy": ("energy", "J"),
     "angular_momentum": ("|L|", "kg m²/s"),
     "vertical_angular_momentum": ("L about e3", "kg m²/s"),
+    "axial_angular_momentum": ("L about the field", "kg m²/s"),
+    "spin_angular_momentum": ("L about the body's axis", "kg m²/s"),
+    "kovalevskaya_integral": ("Kovalevskaya's K", "rad⁴/s⁴"),
+    "goryachev_chaplygin_integral": ("Goryachev, Chaplygin", "rad³/s³"),
+    "jacobi_integral": ("Jacobi's integral", "J"),
 }
 
 

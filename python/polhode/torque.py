@@ -1,22 +1,43 @@
 """Torque laws for `polhode.simulate`: values that say what turns the body.
 
-Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``.
+Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. Each is a bivector at every point of the motion,
+whose components ``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to
+space, ``Ω_B`` the angular velocity in body axes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from polhode._arrays import Array, as_float
-from polhode._values import as_bivectors, as_vectors
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import Array, as_float, as_floats
+from polhode._bodies import Body, Inertia
+from polhode._coefficients import as_coefficients
+from polhode._formula_error import FormulaError
+from polhode._linear import LinearMap
+from polhode._multivector import Multivector
+from polhode._rotor import Rotor
+from polhode._values import as_bivectors, as_vectors, bivector
+
+if TYPE_CHECKING:
+    from polhode._motion import State
+
+_FRAMES = ("body", "space")
+_KINDS = ("linear", "cubic")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Torque:
-    """A sum of laws; made by the functions of this module."""
+    """A sum of laws; made by the functions of this module.
 
-    laws: tuple[tuple[str, tuple[float, ...]], ...]
+    Laws are values: equal where their arguments are, and pickled by them.
+    """
+
+    laws: tuple[_native.Law, ...]
 
     def __add__(self, other: Torque) -> Torque:
         if not isinstance(other, Torque):
@@ -27,42 +48,349 @@ class Torque:
         """``0 + torque``, so that ``sum(torques)`` works."""
         return self if other == 0 else NotImplemented
 
+    def __repr__(self) -> str:
+        return " + ".join(map(_shown, self.laws)) or "Torque(())"
+
+    @property
+    def holds(self) -> bool:
+        """Whether a law holds the body at the origin of its axes, as `heavy` does."""
+        return any(law.name == "heavy" for law in self.laws)
+
+    def at(self, inertia: Inertia | Body, state: State, t: float = 0.0) -> Multivector:
+        """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
+
+        It is the right side of handout eq. (4.21), seen from the body, in N m: of a `gyrostat` what the
+        wheel does as it is turned. The inertia is that about the centre of mass, or the fixed point if a
+        law holds the body; a `Body` is taken so.
+        """
+        if isinstance(inertia, Body):
+            inertia = inertia.inertia_about(0) if self.holds else inertia.inertia
+        if not isinstance(inertia, Inertia):
+            raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
+        rotor, omega = state.rotor.components, state.omega_body.components
+        if rotor.shape != (4,) or omega.shape != (3,):
+            raise ValueError(
+                f"the state must be a single one, got batch {np.broadcast_shapes(*_batches(state))}"
+            )
+        time = _finite(as_float(t, "t"), "t")
+        return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
+
+
+# --- fields
+
 
 def heavy(c: Any) -> Torque:
     """Uniform gravity along −e3 on a body held at a fixed point, the origin of its axes.
 
-    ``V = c·γ`` with ``γ = ~R e3 R``; ``c = m g (centre of mass)`` in body axes, a vector or (3,) in N m.
-    The inertia that counts is that about the fixed point: an `Inertia` is taken as such, a `Body` is
-    taken about the origin of its axes.
+    ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body
+    axes, a vector or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is
+    taken as such, a `Body` is taken about the origin of its axes.
     """
-    return Torque((("heavy", _three(as_vectors(c, "c"), "c")),))
+    return _law("heavy", _vector(c, "c"))
 
 
-def gravity_gradient(n: float) -> Torque:
-    """Return the gradient of a planet's field on a circular orbit of rate n (rad/s) in the plane e1e2.
+def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 0.0) -> Torque:
+    """Return the gradient of a planet's field on a Kepler orbit in the plane e1e2 of space.
 
-    With ``u = cos(nt) e1 + sin(nt) e2`` from planet to body, the axial vector of the torque is
-    ``3n² u x I(u)``.
+    With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
+    ``3n² (a/r)³ u x I(u)``, ``a/r = (1 + e cos f)/(1 − e²)``. The true anomaly f follows from the mean
+    anomaly ``M = n t + M0`` by Kepler's equation ``M = E − e sin E``, solved to rounding; the product
+    ``n t`` keeps its digits after any number of turns.
+
+    Parameters
+    ----------
+    n
+        The mean motion in rad/s.
+    eccentricity
+        e, at least 0 and below 1.
+    mean_anomaly
+        M0 in rad, that at time 0; the periapsis lies on e1.
     """
-    return Torque((("gravity_gradient", (as_float(n, "n"),)),))
+    arguments = {"n": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
+    return _law("gravity_gradient", *(_number(value, name) for name, value in arguments.items()))
+
+
+def magnetic(dipole: Any, field: Any) -> Torque:
+    """Return the torque on a dipole of the body in a field that is constant in space.
+
+    ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
+    in body axes in A m², the field B one in space in T.
+    """
+    return _law("magnetic", _vector(dipole, "the dipole"), _vector(field, "the field"))
+
+
+def larmor(b: Any) -> Torque:
+    """Return the torque whose axial vector in space is ``L x b``, b a vector or (3,) in space in rad/s.
+
+    L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
+    """
+    return _law("larmor", _vector(b, "b"))
+
+
+# --- springs, dampers, control
 
 
 def damping(g: float) -> Torque:
-    """Return the torque ``−g L``, g in 1/s: spin dies away as ``exp(−g t)``."""
-    return Torque((("damping", (as_float(g, "g"),)),))
+    """Return the torque ``−g I(Ω_B)``, g in 1/s: without another, spin dies away as ``exp(−g t)``."""
+    return _law("damping", _number(g, "g"))
+
+
+def viscous_damping(d: Any) -> Torque:
+    """Return the torque ``−d Ω_B``, d in N m s: a number, or three along the body axes; none negative."""
+    return _law("viscous_damping", _gains(d, "d"))
+
+
+def quadratic_damping(k: float) -> Torque:
+    """Return the torque ``−k |Ω_B| Ω_B``, as of a fast turn in air; k in N m s², not negative."""
+    return _law("quadratic_damping", _not_negative(_number(k, "k"), "k"))
+
+
+def torsion_spring(k: float, rest: Rotor | None = None) -> Torque:
+    """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the turn from an attitude at rest.
+
+    ``R = rest exp(−½Θ)``, ``|Θ| <= π``: of R and −R, which are one attitude, the one with the shorter turn
+    counts. Half a turn away both ways are equally short; there the torque jumps from one to the other,
+    while V has an edge only.
+
+    Parameters
+    ----------
+    k
+        In N m per rad.
+    rest
+        A single rotor from body axes to space; None for the identity.
+    """
+    return _law("torsion_spring", _number(k, "k"), _rotor(rest, "rest"))
+
+
+def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
+    """Return the torque ``−kp Θ − kd Ω_B`` that brings a body to an attitude and to rest there.
+
+    ``R = target exp(−½Θ)``, ``|Θ| <= π``, as for `torsion_spring`.
+
+    Parameters
+    ----------
+    kp, kd
+        In N m per rad and in N m s; numbers, or three along the body axes, none negative.
+    target
+        A single rotor from body axes to space; None for the identity.
+    """
+    return _law("pd_control", _gains(kp, "kp"), _gains(kd, "kd"), _rotor(target, "target"))
+
+
+def gyrostat(h: Any) -> Torque:
+    """Return a wheel in the body that turns at a constant rate.
+
+    Its momentum h relative to the body is a bivector or (3,) in body axes in kg m²/s; the inertia of the
+    body is that with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the
+    wheel resists being turned.
+    """
+    return _law("gyrostat", _bivector(h, "h"))
+
+
+# --- given torques
 
 
 def constant_body(N: Any) -> Torque:
     """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
-    return Torque((("constant_body", _three(as_bivectors(N, "N"), "N")),))
+    return _law("constant_body", _bivector(N, "N"))
 
 
 def constant_space(N: Any) -> Torque:
     """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
-    return Torque((("constant_space", _three(as_bivectors(N, "N"), "N")),))
+    return _law("constant_space", _bivector(N, "N"))
+
+
+def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
+    """Return torques given at times, and interpolated between them.
+
+    Parameters
+    ----------
+    times
+        In s, (n,), rising, two at least. Outside the first and the last there is no torque, and a motion
+        that gets there is an error.
+    torques
+        Bivectors of batch (n,), or (n, 3), in N m.
+    frame
+        The axes of their components, ``"body"`` or ``"space"``.
+    kind
+        ``"linear"``; or ``"cubic"``, the spline whose second derivative has no jumps, with "not a knot"
+        ends (the third derivative has no jumps at the second and the last but one time). Of three rows it
+        is the parabola.
+    """
+    when, rows = as_floats(times, "times"), as_bivectors(torques, "torques")
+    if when.ndim != 1 or rows.shape != (when.size, 3):
+        raise ValueError(
+            f"times of shape (n,) need torques of shape (n, 3), got shapes {when.shape} and {rows.shape}"
+        )
+    table = tuple(when.tolist()), tuple(map(tuple, rows.tolist()))
+    return _law("tabulated", *table, _one_of(_FRAMES, frame, "frame"), _one_of(_KINDS, kind, "kind"))
+
+
+def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
+    """Return the torque that a formula in the handout's notation gives: ``formula("-c ∧ (~R e3 R)", c=c)``.
+
+    The formula is read and checked at once: its value must be a bivector. An axial vector v is the bivector
+    ``I v``. The motion gives
+
+    - ``R``, the rotor from body axes to space, and ``t``, the time in s,
+    - ``Ω_B`` and ``Ω_S`` (or ``Omega_B``, ``Omega_S``), the angular velocity in body axes and in space,
+      bivectors in rad/s; ``Ω`` is that in the axes of `frame`,
+    - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a
+      `gyrostat` included,
+    - ``I(…)``, the inertia map of the body on bivectors in body axes, beside ``I`` the pseudoscalar: before
+      a bracket it is the map, so the dual of a bracket is ``(…) I``.
+
+    Parameters
+    ----------
+    text
+        The formula, in N m.
+    frame
+        The axes of its value, ``"body"`` or ``"space"``.
+    values
+        What the other names stand for: single multivectors, rotors, linear maps, numbers.
+
+    Raises
+    ------
+    FormulaError
+        For a text that is no formula, or whose value is no bivector; with the place. Where a run comes to a
+        point at which the formula has no value, `simulate` tells which part of it.
+    """
+    if not isinstance(text, str):
+        raise TypeError(f"a formula is a text, got {type(text).__name__}")
+    axes = _one_of(_FRAMES, frame, "frame")
+    given = {name: _value(value, name) for name, value in values.items()}
+    try:
+        return _law("formula", text, axes, tuple(given.items()))
+    except FormulaError:
+        # As in formulas elsewhere, a single value without a scalar part, such as e1*e2, counts as a bivector.
+        given = {name: _narrowed(value) for name, value in given.items()}
+    return _law("formula", text, axes, tuple(given.items()))
+
+
+def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
+    """Return the torque that a Python function gives: ``f(t, rotor, omega_body)``.
+
+    It is called with the time in s, the rotor from body axes to space and the angular velocity in body
+    axes, a bivector, and returns the torque in body axes in N m, a bivector or (3,). What it raises,
+    `simulate` raises. It is some ten times slower than a `formula`, and a law that is one pickles if its
+    function does.
+    """
+    if not callable(f):
+        raise TypeError(f"a function of t, rotor and omega_body is needed, got {type(f).__name__}")
+    return _law("function", f)
+
+
+# --- what laws are given
+
+
+def _law(name: str, *arguments: Any) -> Torque:
+    return Torque((_native.Law(name, *arguments),))
+
+
+def _finite(value: float, name: str) -> float:
+    if not np.isfinite(value):
+        raise ValueError(f"{name} is {value}; it must be finite")
+    return value
+
+
+def _number(value: Any, name: str) -> float:
+    return _finite(as_float(value, name), name)
+
+
+def _not_negative(value: float, name: str) -> float:
+    if value < 0:
+        raise ValueError(f"{name} is {value}; a damper takes energy away, so it must not be negative")
+    return value
 
 
 def _three(components: Array, name: str) -> tuple[float, ...]:
     if components.shape != (3,):
         raise ValueError(f"{name} must be a single value, got shape {components.shape}")
+    if not np.isfinite(components).all():
+        raise ValueError(f"{name} is {components.tolist()}; it must be finite")
     return tuple(components.tolist())
+
+
+def _vector(value: Any, name: str) -> tuple[float, ...]:
+    return _three(as_vectors(value, name), name)
+
+
+def _bivector(value: Any, name: str) -> tuple[float, ...]:
+    return _three(as_bivectors(value, name), name)
+
+
+def _gains(value: Any, name: str) -> tuple[float, ...]:
+    """Return three numbers from one or three, none negative."""
+    array = as_floats(value, name)
+    if array.shape not in ((), (3,)):
+        raise ValueError(f"{name} must be a number or three along the body axes, got shape {array.shape}")
+    along = _three(np.broadcast_to(array, (3,)), name)
+    if min(along) < 0:
+        raise ValueError(f"{name} is {array.tolist()}; it must not be negative")
+    return along
+
+
+def _rotor(value: Rotor | None, name: str) -> tuple[float, ...]:
+    if value is None:
+        return (1.0, 0.0, 0.0, 0.0)
+    if not isinstance(value, Rotor):
+        raise TypeError(f"{name} must be a Rotor, got {type(value).__name__}; see Rotor.from_components")
+    components = as_coefficients(value._data, name, float)
+    if components.shape != (4,):
+        raise ValueError(f"{name} must be a single rotor, got batch shape {value.shape}")
+    return tuple(components.tolist())
+
+
+def _one_of(words: tuple[str, ...], value: str, name: str) -> str:
+    if value not in words:
+        raise ValueError(f"{name} is {value!r}, expected {' or '.join(map(repr, words))}")
+    return value
+
+
+def _value(value: Any, name: str) -> Any:
+    """Return a value for a formula: a single finite multivector over float64, a linear map or a number."""
+    if isinstance(value, LinearMap):
+        return value
+    if not isinstance(value, Multivector):
+        number = as_floats(value, name)
+        if number.ndim:
+            raise TypeError(
+                f"{name} is an array of shape {number.shape}; wrap components with ph.vector or ph.bivector"
+            )
+        return _finite(float(number), name)
+    if value.shape:
+        raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
+    data = as_coefficients(value._data, name, float)
+    if not np.isfinite(data).all():
+        raise ValueError(f"{name} is {value}; it must be finite")
+    return Rotor._from_rows(data) if isinstance(value, Rotor) else Multivector._of(data, value._mask)
+
+
+def _narrowed(value: Any) -> Any:
+    if not isinstance(value, Multivector) or isinstance(value, Rotor):
+        return value
+    held = value._held()
+    return value if held in (0, value._mask) else value._part(held)
+
+
+def _batches(state: State) -> tuple[tuple[int, ...], ...]:
+    return state.rotor.shape, state.omega_body.shape
+
+
+# --- how laws are shown
+
+
+def _shown(law: _native.Law) -> str:
+    arguments: list[str] = []
+    if law.name == "tabulated":
+        times, _, frame, kind = law.arguments
+        arguments = [f"{len(times)} rows, {times[0]:.6g} s to {times[-1]:.6g} s", f"{frame=}, {kind=}"]
+    elif law.name == "formula":
+        text, frame, values = law.arguments
+        arguments = [repr(text), *([f"{frame=}"] if frame != "body" else [])]
+        arguments += [f"{name}={value}" for name, value in values]
+    elif law.name == "function":
+        arguments = [getattr(law.arguments[0], "__name__", repr(law.arguments[0]))]
+    else:
+        arguments = [str(list(x) if isinstance(x, tuple) else x) for x in law.arguments]
+    return f"{law.name}({', '.join(arguments)})"

@@ -128,7 +128,7 @@ impl Argument {
 }
 
 /// The matrix or the determinant of a single linear map.
-fn of_map(map: &Bound<'_, PyAny>, kind: InputKind) -> PyResult<Given> {
+pub(crate) fn of_map(map: &Bound<'_, PyAny>, kind: InputKind) -> PyResult<Given> {
     let py = map.py();
     let name = match kind {
         InputKind::Determinant => {

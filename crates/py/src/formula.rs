@@ -81,11 +81,8 @@ impl Formula {
         algebra: Py<Algebra>,
         given: Vec<Said>,
     ) -> PyResult<String> {
-        let tree = if given.is_empty() {
-            self.read_open(py)?
-        } else {
-            self.read(py, &algebra, self.names(&given)?.0)?.0
-        };
+        let tree =
+            if given.is_empty() { self.read_open(py)? } else { self.read(py, &algebra, names(&given)?.0)?.0 };
         Ok(match style {
             "latex" => tree.latex(),
             "ascii" => tree.text(Style::Ascii),
@@ -120,7 +117,7 @@ impl Formula {
 
     /// The tree as nested dictionaries, for values of these kinds; without any, of whatever names.
     fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<Said>) -> Object<'py> {
-        let names = if given.is_empty() { Names::open() } else { self.names(&given)?.0 };
+        let names = if given.is_empty() { Names::open() } else { names(&given)?.0 };
         let space = space(&algebra);
         let (tree, names) = self.read(py, &algebra, names)?;
         let types = types(&tree, space, &names).map_err(|e| error(py, &self.text, &e))?;
@@ -199,41 +196,8 @@ impl Formula {
         Ok((tree, names))
     }
 
-    /// What the names stand for, and each of them in the canonical spelling.
-    fn names(&self, given: &[Said]) -> PyResult<(Names, Vec<String>)> {
-        let mut names = Names::new([]);
-        let mut spelled: Vec<String> = Vec::new();
-        for (name, grades, kind) in given {
-            let grades = Grades(*grades);
-            let meaning = match kind {
-                0 => Meaning::Value(Type::of(grades)),
-                1 => Meaning::Value(Type::ROTOR),
-                _ => Meaning::Map { grade: grades.0 as u8 },
-            };
-            let Some(spelling) = canonical(name) else {
-                // Such as __name__, which no text can have.
-                if name.chars().all(|c| c.is_alphanumeric() || c == '_') {
-                    spelled.push(String::new());
-                    continue;
-                }
-                return Err(PyTypeError::new_err(format!(
-                    "{name:?} is no name in formulas; names are letters with subscripts and primes, or words"
-                )));
-            };
-            if let Some(i) = spelled.iter().position(|other| *other == spelling) {
-                let other = &given[i].0;
-                return Err(PyTypeError::new_err(format!(
-                    "{other:?} and {name:?} are the same name; give one"
-                )));
-            }
-            spelled.push(spelling.clone());
-            names.bind(spelling, meaning);
-        }
-        Ok((names, spelled))
-    }
-
     fn compiled(&self, py: Python<'_>, algebra: &Py<Algebra>, given: &[Said]) -> PyResult<Program> {
-        let (names, spelled) = self.names(given)?;
+        let (names, spelled) = names(given)?;
         let (tree, names) = self.read(py, algebra, names)?;
         let program = compile(&tree, space(algebra), &names).map_err(|e| error(py, &self.text, &e))?;
         let place = |name: &String| spelled.iter().position(|other| other == name);
@@ -266,6 +230,37 @@ impl Formula {
         shown.set_item("children", children)?;
         Ok(shown)
     }
+}
+
+/// What the names stand for, and each of them in the canonical spelling.
+pub(crate) fn names(given: &[Said]) -> PyResult<(Names, Vec<String>)> {
+    let mut names = Names::new([]);
+    let mut spelled: Vec<String> = Vec::new();
+    for (name, grades, kind) in given {
+        let grades = Grades(*grades);
+        let meaning = match kind {
+            0 => Meaning::Value(Type::of(grades)),
+            1 => Meaning::Value(Type::ROTOR),
+            _ => Meaning::Map { grade: grades.0 as u8 },
+        };
+        let Some(spelling) = canonical(name) else {
+            // Such as __name__, which no text can have.
+            if name.chars().all(|c| c.is_alphanumeric() || c == '_') {
+                spelled.push(String::new());
+                continue;
+            }
+            return Err(PyTypeError::new_err(format!(
+                "{name:?} is no name in formulas; names are letters with subscripts and primes, or words"
+            )));
+        };
+        if let Some(i) = spelled.iter().position(|other| *other == spelling) {
+            let other = &given[i].0;
+            return Err(PyTypeError::new_err(format!("{other:?} and {name:?} are the same name; give one")));
+        }
+        spelled.push(spelling.clone());
+        names.bind(spelling, meaning);
+    }
+    Ok((names, spelled))
 }
 
 /// The value of a formula.

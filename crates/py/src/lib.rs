@@ -18,6 +18,7 @@ mod scene;
 mod signature;
 mod simulation;
 mod text;
+mod torque;
 mod value;
 
 /// The compiled core of Polhode; private, called through `polhode`.
@@ -39,6 +40,9 @@ mod _native {
     use crate::motion::{describe_free, free_motion, symmetric_top};
     #[pymodule_export]
     use crate::simulation::{Motion, methods, simulate};
+
+    #[pymodule_export]
+    use crate::torque::{Law, torque_at};
 
     #[pymodule_export]
     use crate::formula::Formula;

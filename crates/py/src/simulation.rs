@@ -4,13 +4,13 @@ use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use crate::laws::{Event, Force};
 use crate::motion::check_times;
+use crate::torque::{Law, failed};
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::event::Direction;
 use polhode_rigid::force::Center;
 use polhode_rigid::method::Method;
 use polhode_rigid::simulate::{self as rigid, Options, Problem, Progress, States};
-use polhode_rigid::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::time::{Duration, Instant};
@@ -22,17 +22,6 @@ const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {
     polhode_rigid::method::methods().map(Method::name).collect()
-}
-
-fn torque(name: &str, values: &[f64]) -> PyResult<Torque> {
-    match (name, values) {
-        ("heavy", &[x, y, z]) => Ok(Torque::Heavy(Vector([x, y, z]))),
-        ("gravity_gradient", &[n]) => Ok(Torque::GravityGradient(n)),
-        ("constant_body", &[x, y, z]) => Ok(Torque::ConstantBody(Bivector([x, y, z]))),
-        ("constant_space", &[x, y, z]) => Ok(Torque::ConstantSpace(Bivector([x, y, z]))),
-        ("damping", &[g]) => Ok(Torque::Damping(g)),
-        _ => Err(bad(format!("no torque law {name} with {} numbers", values.len()))),
-    }
 }
 
 /// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.
@@ -75,32 +64,37 @@ fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
 
 /// A simulated motion.
 #[pyclass(frozen, module = "polhode._native")]
-pub(crate) struct Motion(rigid::Motion);
+pub(crate) struct Motion {
+    motion: rigid::Motion,
+    laws: Vec<Py<Law>>,
+}
 
 #[pymethods]
 impl Motion {
     fn states<'py>(&self, py: Python<'py>) -> Points<'py> {
-        points(py, self.0.states())
+        points(py, self.motion.states())
     }
 
     /// The states at other times.
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> Points<'py> {
         let times = numbers(&times)?;
         check_times(times)?;
-        let states = run(py, None, |progress| self.0.at(times, progress))?;
+        let laws: Vec<_> = self.laws.iter().map(|law| law.bind(py).clone()).collect();
+        let states = run(py, &laws, None, |progress| self.motion.at(times, progress))?;
         points(py, states)
     }
 
     /// The events in the order in which they were met: which, whether rising, and the states there.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<(Vec<usize>, Vec<bool>, [Array<'py>; 7])> {
-        let which = self.0.events.iter().map(|happened| happened.event).collect();
-        let rising = self.0.events.iter().map(|happened| happened.direction == Direction::Rising).collect();
-        Ok((which, rising, points(py, self.0.event_states())?))
+        let which = self.motion.events.iter().map(|happened| happened.event).collect();
+        let rising =
+            self.motion.events.iter().map(|happened| happened.direction == Direction::Rising).collect();
+        Ok((which, rising, points(py, self.motion.event_states())?))
     }
 
     /// How the motion was made and what it conserved.
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let proof = &self.0.certificate;
+        let proof = &self.motion.certificate;
         let certificate = PyDict::new(py);
         certificate.set_item("method", proof.method)?;
         certificate.set_item("step", proof.step)?;
@@ -122,6 +116,7 @@ impl Motion {
 /// Runs without the GIL, with progress and Ctrl-C.
 fn run<T: Send>(
     py: Python<'_>,
+    laws: &[Bound<'_, Law>],
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<T, SimulateError> + Send,
 ) -> PyResult<T> {
@@ -133,6 +128,7 @@ fn run<T: Send>(
     match (result, error) {
         (Ok(found), _) => Ok(found),
         (Err(SimulateError::Interrupted), Some(error)) => Err(error),
+        (Err(error @ SimulateError::Torque { .. }), _) => Err(failed(laws, error)),
         (Err(error), _) => Err(bad(error)),
     }
 }
@@ -146,7 +142,7 @@ pub(crate) fn simulate<'py>(
     inertia: &Inertia,
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
-    laws: Vec<(String, Vec<f64>)>,
+    laws: Vec<Bound<'py, Law>>,
     center: Rows<'py>,
     mass: f64,
     forces: Vec<PyRef<'py, Force>>,
@@ -161,14 +157,15 @@ pub(crate) fn simulate<'py>(
         "auto" => None,
         name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
     };
-    let laws = laws.iter().map(|(name, values)| torque(name, values)).collect::<PyResult<Vec<_>>>()?;
+    let torques: Vec<_> = laws.iter().map(|law| law.get().torque.clone()).collect();
     let forces: Vec<_> = forces.iter().map(|force| force.0.clone()).collect();
     let events = events.iter().map(|event| event.0.clone()).collect();
     let [x, y, z, u, v, w] = one(&center)?;
     let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
-    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &laws)
+    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques)
         .with_center(center, mass, &forces);
     let times = numbers(&times)?;
     let options = Options { method, step, rtol, events };
-    run(py, progress.as_ref(), |progress| problem.simulate(times, options, progress)).map(Motion)
+    let motion = run(py, &laws, progress.as_ref(), |progress| problem.simulate(times, options, progress))?;
+    Ok(Motion { motion, laws: laws.into_iter().map(Bound::unbind).collect() })
 }

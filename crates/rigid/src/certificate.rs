@@ -52,7 +52,7 @@ impl<'a> Watch<'a> {
         Watch {
             body,
             torques,
-            quantities: Conserved::under(&body, torques).into_iter().map(follow).collect(),
+            quantities: Conserved::under(&body, torques, &start).into_iter().map(follow).collect(),
         }
     }
 

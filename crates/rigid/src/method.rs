@@ -7,7 +7,7 @@ use crate::runge_kutta::{Carried, DOP853, RK4, RungeKutta, Tableau};
 use crate::simulate_error::SimulateError;
 use crate::splitting::{COMPOSITIONS, RKN6, Sequence, Splitting};
 use crate::symmetric_top::equal;
-use crate::torque::{Dependence, Torque, TorqueError};
+use crate::torque::{Dependence, Torque};
 
 /// How a motion is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,7 +131,7 @@ impl Engine {
 
     /// One step of length `h`, and an estimate of its error where the method has one, relative to the angular velocity
     /// `fastest` in rad/s, else 0.
-    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), TorqueError> {
+    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
         match self {
             Engine::Splitting(splitting) => {
                 let mut to = *from;

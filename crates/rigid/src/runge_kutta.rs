@@ -20,7 +20,8 @@ mod tableau;
 
 use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
-use crate::torque::{Torque, TorqueError};
+use crate::simulate_error::SimulateError;
+use crate::torque::{Torque, TorqueError, exerted};
 use polhode_ga::{Bivector, Rotor, Vector};
 pub use tableau::{DOP853, RK4, Tableau};
 
@@ -85,7 +86,7 @@ impl RungeKutta {
 
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
     /// angular velocity relative to `fastest` (rad/s), whichever is larger; NaN where the step is too long to tell.
-    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), TorqueError> {
+    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
         let tableau = self.tableau;
         let mut slopes = [Change::default(); 12];
         for (stage, (row, node)) in tableau.rows.iter().zip(tableau.nodes).enumerate() {
@@ -112,7 +113,7 @@ impl RungeKutta {
     }
 
     /// σ' and L' at `from` changed by σ and ΔL.
-    fn slope(&self, from: &Carried, change: &Change, dt: f64) -> Result<Change, TorqueError> {
+    fn slope(&self, from: &Carried, change: &Change, dt: f64) -> Result<Change, SimulateError> {
         let (turn, cotangent) = exponential(&change.turn);
         let rotor = turn * from.phase.rotor;
         let momentum = from.momentum_space + Bivector(change.momentum);
@@ -123,10 +124,7 @@ impl RungeKutta {
             |b: &Axial| [0, 1, 2].map(|i| axes[0][i] * b[0] + axes[1][i] * b[1] + axes[2][i] * b[2]);
         let state = Phase { rotor, momentum: Bivector(into_body(&momentum.0)), time: from.phase.time + dt };
         let omega = self.body.omega(state.momentum);
-        let mut torque = Bivector::default();
-        for law in &self.torques {
-            torque += law.value(&self.body, &state)?;
-        }
+        let mut torque = exerted(&self.torques, &self.body, &state)?;
         if self.damping != 0.0 {
             torque += self.body.carried(omega) * -self.damping;
         }
@@ -139,7 +137,8 @@ impl RungeKutta {
             return Ok(Change { turn, momentum, ..Change::default() });
         };
         let center = self.moved(&from.center, change, dt);
-        let acceleration = translation.acceleration(&state, &center)?;
+        let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
+        let acceleration = translation.acceleration(&state, &center).map_err(failed)?;
         // The place beside that of the uniform motion from the start of the step.
         Ok(Change { turn, momentum, position: change.velocity, velocity: acceleration.0 })
     }

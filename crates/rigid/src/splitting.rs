@@ -31,7 +31,8 @@ mod sequences;
 
 use crate::free::FreeMotion;
 use crate::phase::{Gyrostat, Phase};
-use crate::torque::{Torque, TorqueError};
+use crate::simulate_error::SimulateError;
+use crate::torque::{Torque, exerted};
 use polhode_ga::{Bivector, Rotor};
 pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
 
@@ -88,7 +89,7 @@ impl Splitting {
     }
 
     /// One step of length `h`, which may be negative.
-    pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), TorqueError> {
+    pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
         let start = state.time;
         match (self.fixed, self.sequence) {
             (Some(fixed), Sequence::Composition(composition)) => {
@@ -185,11 +186,8 @@ impl Splitting {
     }
 
     /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
-    fn kick(&self, state: &mut Phase, h: f64) -> Result<(), TorqueError> {
-        let mut torque = Bivector::default();
-        for law in &self.torques {
-            torque += law.value(&self.body, state)?;
-        }
+    fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
+        let torque = exerted(&self.torques, &self.body, state)?;
         let decay = -self.damping * h;
         let impulse = if decay == 0.0 { h } else { h * decay.exp_m1() / decay };
         if decay != 0.0 {

@@ -3,32 +3,82 @@
 //! A law is a value: what it needs to know, its torque at a point of the motion, and what it conserves
 //! ([`crate::conserved`]). Laws add up.
 
+mod formula;
+mod function;
+mod gains;
+mod orbit;
+mod table;
+
+pub use formula::{Axes, FormulaTorque};
+pub use function::FunctionTorque;
+pub use gains::Gains;
+pub use orbit::Orbit;
+pub use table::{Kind, Table};
+
 use crate::phase::{Gyrostat, Phase};
+use crate::simulate_error::SimulateError;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::fmt;
+use std::sync::Arc;
 
-const E1: Vector = Vector([1.0, 0.0, 0.0]);
-const E2: Vector = Vector([0.0, 1.0, 0.0]);
-const E3: Vector = Vector([0.0, 0.0, 1.0]);
+pub(crate) const E3: Vector = Vector([0.0, 0.0, 1.0]);
 
-/// What turns the body. Vectors and bivectors of the body are in body axes.
+/// What turns the body. Vectors and bivectors of the body are in body axes, `Ω` is its angular velocity in
+/// them, `R` the rotor from body axes to space.
 #[derive(Clone, Debug)]
 pub enum Torque {
     /// Uniform gravity along −e3 on a body held at the origin of its axes: `V = c·γ`, `γ = ~R e3 R`, where
     /// `c = m g (centre of mass)`, in N m. The torque is `γ∧c`.
     Heavy(Vector),
-    /// The gradient of a central field on a circular orbit of rate `n` (rad/s) in the plane e1e2: with
-    /// `u = cos(nt) e1 + sin(nt) e2` from planet to body, axial torque `3n² u x I(u)`.
-    GravityGradient(f64),
+    /// The gradient of a central field along an orbit: with u from planet to body, `V = 3/2 n² (a/r)³ u·I(u)`
+    /// and the axial torque `3n² (a/r)³ u x I(u)`.
+    GravityGradient(Orbit),
     /// Constant in body axes, in N m.
     ConstantBody(Bivector),
     /// Constant in space, in N m.
     ConstantSpace(Bivector),
     /// `−g I(Ω)`, with g in 1/s.
     Damping(f64),
+    /// `−k |Ω| Ω`, with k in N m s².
+    QuadraticDamping(f64),
+    /// `−d Ω`, with d in N m s.
+    ViscousDamping(Gains),
+    /// A dipole of the body, in A m², in a field fixed in space, in T: `V = −m·b`, `b = ~R B R`, torque
+    /// `m∧b`, which is the axial vector `m x b`.
+    Magnetic {
+        /// m, in body axes.
+        dipole: Vector,
+        /// B, in space.
+        field: Vector,
+    },
+    /// `V = ½ k θ²`, torque `−k Θ`, with `R = rest exp(−½Θ)` and `θ = |Θ| <= π`: see [`turn_from`].
+    TorsionSpring {
+        /// k, in N m.
+        stiffness: f64,
+        /// The attitude without torque.
+        rest: Rotor,
+    },
     /// A wheel inside the body with this constant momentum relative to it, kg m²/s: part of the body
     /// ([`Gyrostat`]) rather than a torque.
     Wheel(Bivector),
+    /// `−kp Θ − kd Ω`, with `R = target exp(−½Θ)`, `|Θ| <= π`.
+    Control {
+        /// kp, in N m.
+        stiffness: Gains,
+        /// kd, in N m s.
+        damping: Gains,
+        /// The attitude to reach.
+        target: Rotor,
+    },
+    /// The axial torque `L x b`, b in space, in rad/s, L the momentum in space: L turns about b at the rate
+    /// −|b|.
+    Larmor(Vector),
+    /// Interpolated between the rows of a table.
+    Tabulated(Arc<Table>),
+    /// A formula.
+    Formula(FormulaTorque),
+    /// What a function of the caller's returns.
+    Function(FunctionTorque),
 }
 
 /// What a law's torque depends on besides time.
@@ -40,7 +90,7 @@ pub enum Dependence {
     Rate,
 }
 
-/// Why a law has no torque at some point of the motion.
+/// Why a law has no torque at some point of the motion, or is no law.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TorqueError(pub String);
 
@@ -50,6 +100,8 @@ impl fmt::Display for TorqueError {
     }
 }
 
+impl std::error::Error for TorqueError {}
+
 impl Torque {
     /// The same law with its body components seen from other body axes: `x' = ~F x F`.
     pub fn in_axes(self, frame: Rotor) -> Torque {
@@ -58,7 +110,27 @@ impl Torque {
             Torque::Heavy(c) => Torque::Heavy(back.apply(c)),
             Torque::ConstantBody(n) => Torque::ConstantBody(back.apply_bivector(n)),
             Torque::Wheel(h) => Torque::Wheel(back.apply_bivector(h)),
-            other => other,
+            Torque::ViscousDamping(d) => Torque::ViscousDamping(d.in_axes(frame)),
+            Torque::Magnetic { dipole, field } => Torque::Magnetic { dipole: back.apply(dipole), field },
+            Torque::TorsionSpring { stiffness, rest } => {
+                Torque::TorsionSpring { stiffness, rest: rest * frame }
+            }
+            Torque::Control { stiffness, damping, target } => Torque::Control {
+                stiffness: stiffness.in_axes(frame),
+                damping: damping.in_axes(frame),
+                target: target * frame,
+            },
+            Torque::Tabulated(table) => match table.axes {
+                Axes::Body => Torque::Tabulated(Arc::new(table.turned(back))),
+                Axes::Space => Torque::Tabulated(table),
+            },
+            Torque::Formula(law) => Torque::Formula(law.in_axes(frame)),
+            Torque::Function(law) => Torque::Function(law.in_axes(frame)),
+            same @ (Torque::GravityGradient(_)
+            | Torque::ConstantSpace(_)
+            | Torque::Damping(_)
+            | Torque::QuadraticDamping(_)
+            | Torque::Larmor(_)) => same,
         }
     }
 
@@ -70,22 +142,64 @@ impl Torque {
             | Torque::ConstantBody(_)
             | Torque::ConstantSpace(_)
             | Torque::Damping(_)
-            | Torque::Wheel(_) => Dependence::Attitude,
+            | Torque::Magnetic { .. }
+            | Torque::TorsionSpring { .. }
+            | Torque::Wheel(_)
+            | Torque::Tabulated(_) => Dependence::Attitude,
+            Torque::Control { damping, .. } if damping.is_zero() => Dependence::Attitude,
+            Torque::QuadraticDamping(_)
+            | Torque::ViscousDamping(_)
+            | Torque::Control { .. }
+            | Torque::Larmor(_)
+            | Torque::Function(_) => Dependence::Rate,
+            Torque::Formula(law) => law.dependence(),
         }
     }
 
-    /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a wheel.
+    /// Whether the torque of one attitude and rate is the same at all times.
+    pub fn is_autonomous(&self) -> bool {
+        match self {
+            Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Function(_) => false,
+            Torque::Formula(law) => !law.needs_time(),
+            _ => true,
+        }
+    }
+
+    /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a
+    /// wheel.
     pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
         let rotor = state.rotor;
         Ok(match self {
             Torque::Heavy(c) => rotor.reverse().apply(E3).wedge(*c),
-            Torque::GravityGradient(n) => {
-                let u = rotor.reverse().apply(radial(*n, state.time));
-                u.wedge(body.stretched(u)) * (3.0 * n * n)
+            Torque::GravityGradient(orbit) => {
+                let (u, nearness) = orbit.place(state.time);
+                let u = rotor.reverse().apply(u);
+                u.wedge(body.stretched(u)) * (3.0 * orbit.rate() * orbit.rate() * nearness)
             }
             Torque::ConstantBody(torque) => *torque,
             Torque::ConstantSpace(torque) => rotor.reverse().apply_bivector(*torque),
             Torque::Damping(_) | Torque::Wheel(_) => Bivector::default(),
+            Torque::QuadraticDamping(k) => {
+                let omega = body.omega(state.momentum);
+                omega * (-k * omega.norm())
+            }
+            Torque::ViscousDamping(d) => -d.times(body.omega(state.momentum)),
+            Torque::Magnetic { dipole, field } => dipole.wedge(rotor.reverse().apply(*field)),
+            Torque::TorsionSpring { stiffness, rest } => turn_from(*rest, rotor) * -stiffness,
+            Torque::Control { stiffness, damping, target } => {
+                let pull = stiffness.times(turn_from(*target, rotor));
+                -(pull + damping.times(body.omega(state.momentum)))
+            }
+            Torque::Larmor(b) => state.momentum.dual().wedge(rotor.reverse().apply(*b)),
+            Torque::Tabulated(table) => {
+                let torque = table.at(state.time)?;
+                match table.axes {
+                    Axes::Body => torque,
+                    Axes::Space => rotor.reverse().apply_bivector(torque),
+                }
+            }
+            Torque::Formula(law) => law.value(body, state)?,
+            Torque::Function(law) => law.value(body, state)?,
         })
     }
 
@@ -94,44 +208,108 @@ impl Torque {
         if let Torque::Damping(g) = self { *g } else { 0.0 }
     }
 
-    /// Largest torque it can exert, in N m, where that is bounded: a scale for steps.
+    /// Largest torque it can exert, in N m, where that is known and bounded: a scale for steps. 0 elsewhere.
     pub fn size(&self, body: &Gyrostat) -> f64 {
         match self {
             Torque::Heavy(c) => c.norm(),
-            Torque::GravityGradient(n) => 3.0 * n * n * body.moments.iter().fold(0.0, |m: f64, x| m.max(*x)),
+            Torque::GravityGradient(orbit) => {
+                let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
+                3.0 * orbit.rate() * orbit.rate() * orbit.largest_nearness() * largest
+            }
             Torque::ConstantBody(torque) | Torque::ConstantSpace(torque) => torque.norm(),
-            Torque::Damping(_) | Torque::Wheel(_) => 0.0,
+            Torque::Magnetic { dipole, field } => dipole.norm() * field.norm(),
+            Torque::TorsionSpring { stiffness, .. } => stiffness.abs() * std::f64::consts::PI,
+            Torque::Control { stiffness, .. } => stiffness.bound() * std::f64::consts::PI,
+            Torque::Tabulated(table) => table.largest(),
+            Torque::Damping(_)
+            | Torque::QuadraticDamping(_)
+            | Torque::ViscousDamping(_)
+            | Torque::Wheel(_)
+            | Torque::Larmor(_)
+            | Torque::Formula(_)
+            | Torque::Function(_) => 0.0,
         }
+    }
+
+    /// Its size, or that of its torque at a point of the motion where no largest is known: a scale for
+    /// steps, in N m.
+    pub fn size_at(&self, body: &Gyrostat, state: &Phase) -> f64 {
+        self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
     }
 
     /// Its potential energy in J, if it has one that does not change with time and with the rate.
     pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
+        let back = state.rotor.reverse();
         match self {
-            Torque::Heavy(c) => Some(state.rotor.reverse().apply(E3).dot(*c)),
+            Torque::Heavy(c) => Some(back.apply(E3).dot(*c)),
+            Torque::Magnetic { dipole, field } => Some(-dipole.dot(back.apply(*field))),
+            Torque::TorsionSpring { stiffness, rest } => {
+                Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())
+            }
             Torque::Wheel(_) => Some(0.0),
-            Torque::GravityGradient(_)
-            | Torque::ConstantBody(_)
-            | Torque::ConstantSpace(_)
-            | Torque::Damping(_) => None,
+            _ => None,
+        }
+    }
+
+    /// How far its potential energy can rise or fall, in J.
+    pub fn potential_range(&self) -> f64 {
+        match self {
+            Torque::Heavy(c) => 2.0 * c.norm(),
+            Torque::Magnetic { dipole, field } => 2.0 * dipole.norm() * field.norm(),
+            Torque::TorsionSpring { stiffness, .. } => {
+                0.5 * stiffness.abs() * std::f64::consts::PI * std::f64::consts::PI
+            }
+            _ => 0.0,
         }
     }
 
     /// Times at which the law is not smooth, rising: steps end there.
     pub fn breaks(&self) -> &[f64] {
-        &[]
+        if let Torque::Tabulated(table) = self { table.times() } else { &[] }
     }
 }
 
+/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way:
+/// `|Θ| <= π`.
+///
+/// `R` and `−R` are one attitude, so of `q = ±~rest R` the one with a scalar part >= 0 is taken. Along a
+/// motion `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. Half a turn away
+/// the two ways are equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
+pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
+    let turn = rest.reverse() * rotor;
+    let [s, x, y, z] = if turn.components()[0] < 0.0 { -turn } else { turn }.components();
+    let plane = Bivector([x, y, z]);
+    let size = plane.norm();
+    // `q = cos ½θ − sin ½θ Θ/θ`, and θ/sin ½θ = 2 where there is no turn.
+    let factor = if size == 0.0 { 2.0 } else { 2.0 * size.atan2(s) / size };
+    plane * -factor
+}
+
+/// The sum of all laws at a point of the motion, without damping and wheels; why and when there is none.
+pub(crate) fn exerted(torques: &[Torque], body: &Gyrostat, state: &Phase) -> Result<Bivector, SimulateError> {
+    let mut total = Bivector::default();
+    for law in torques {
+        let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
+        total += law.value(body, state).map_err(failed)?;
+    }
+    Ok(total)
+}
+
 /// The momentum of all wheels together.
-pub(crate) fn wheel(torques: &[Torque]) -> Bivector {
+pub fn wheel(torques: &[Torque]) -> Bivector {
     torques.iter().fold(Bivector::default(), |sum, torque| match torque {
         Torque::Wheel(h) => sum + *h,
         _ => sum,
     })
 }
 
-/// The direction from planet to body.
-pub(crate) fn radial(n: f64, time: f64) -> Vector {
-    let (sin, cos) = (n * time).sin_cos();
-    E1 * cos + E2 * sin
+/// The whole torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: that of all laws,
+/// the part `−g I(Ω)`, and what the wheel does as it is turned, `Ω × h`.
+pub fn total(body: &Gyrostat, torques: &[Torque], state: &Phase) -> Result<Bivector, TorqueError> {
+    let omega = body.omega(state.momentum);
+    let mut sum = omega.commutator(body.wheel);
+    for torque in torques {
+        sum = sum + torque.value(body, state)? - body.carried(omega) * torque.damping_rate();
+    }
+    Ok(sum)
 }

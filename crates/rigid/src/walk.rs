@@ -228,8 +228,7 @@ impl Walker<'_> {
         pass: &mut Pass,
     ) -> Result<(Carried, f64), SimulateError> {
         pass.evaluations += self.engine.evaluations();
-        let failed = |error: TorqueError| SimulateError::Torque { time: at.phase.time, message: error.0 };
-        self.engine.step(at, h, fastest).map_err(failed)
+        self.engine.step(at, h, fastest)
     }
 
     /// Takes a step, up to an event that ends the motion.

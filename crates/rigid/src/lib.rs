@@ -20,6 +20,7 @@ pub mod elliptic;
 mod exact;
 pub mod free;
 pub mod inertia;
+pub mod lagrange;
 pub mod mesh;
 pub mod regime;
 pub mod scene;

@@ -7,6 +7,7 @@ mod arrays;
 mod batches;
 mod bodies;
 mod calls;
+mod closed_forms;
 mod formula;
 mod motion;
 mod multivector;
@@ -31,6 +32,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
+    #[pymodule_export]
+    use crate::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};
     #[pymodule_export]
     use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
 

@@ -70,6 +70,7 @@ use crate::free::lanes::Phase;
 use crate::free::series::LARGEST_NOME;
 use crate::free::{FreeMotion, MOST_TURNS};
 use crate::inertia::Inertia;
+use crate::simulate_error::SimulateError;
 use crate::torque::angular_momentum;
 pub use description::{LagrangeDescription, LagrangeRegime};
 use flow::{Flow, times};
@@ -80,53 +81,6 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use series::{Circular, Hyperbolic, Series};
 use start::{Axes, Start};
 use std::f64::consts::PI;
-use std::fmt;
-
-/// Why there is no such top.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub enum LagrangeError {
-    /// Moments must be positive to turn momentum into rate.
-    SingularInertia { moments: [f64; 3] },
-    /// All three moments differ.
-    NotSymmetric { moments: [f64; 3] },
-    /// The centre of mass lies beside the axis of symmetry.
-    OffAxis { c: Vector, axis: Vector },
-    /// A number that is not finite, or whose square is not.
-    NotFinite { what: &'static str, value: f64 },
-    /// So near to the unstable upright that floating point cannot tell how far.
-    Undecided,
-}
-
-impl fmt::Display for LagrangeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            LagrangeError::SingularInertia { moments: [a, b, c] } => write!(
-                f,
-                "principal moments {a}, {b}, {c} kg m² include a zero: the body has no definite rate about that \
-                 axis; give it some thickness"
-            ),
-            LagrangeError::NotSymmetric { moments: [a, b, c] } => write!(
-                f,
-                "the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use simulate"
-            ),
-            LagrangeError::OffAxis { c: Vector([x, y, z]), axis: Vector([p, q, r]) } => write!(
-                f,
-                "c = ({x}, {y}, {z}) N m does not point along the axis of symmetry ({p}, {q}, {r}); use simulate"
-            ),
-            LagrangeError::NotFinite { what, value } => {
-                write!(f, "{what} is {value}; it must be finite, with rates between 1e-140 and 1e140 rad/s")
-            }
-            LagrangeError::Undecided => write!(
-                f,
-                "the top starts so near to the upright that floating point cannot tell how far; start it upright \
-                 or farther from it"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for LagrangeError {}
 
 /// The motion of a heavy symmetric top: rotor and angular velocity at any time up to its
 /// [`LagrangeTop::horizon`].
@@ -154,7 +108,7 @@ impl LagrangeTop {
         rotor: Rotor,
         omega: Bivector,
         c: Vector,
-    ) -> Result<LagrangeTop, LagrangeError> {
+    ) -> Result<LagrangeTop, SimulateError> {
         let axes = Axes::new(inertia, c)?;
         let start = Start::new(&axes, rotor, omega)?;
         if start.is_steady() {
@@ -163,7 +117,7 @@ impl LagrangeTop {
             let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);
             return Ok(LagrangeTop { axes, start, form: Form::Steady(motion) });
         }
-        let orbit = Orbit::new(&start).ok_or(LagrangeError::Undecided)?;
+        let orbit = Orbit::new(&start).ok_or(SimulateError::NearUpright)?;
         Ok(LagrangeTop { axes, start, form: form(&axes, &start, orbit) })
     }
 

@@ -14,6 +14,7 @@
 
 pub mod body;
 pub mod certificate;
+pub mod damped;
 mod double_double;
 mod eigen;
 pub mod elliptic;
@@ -21,7 +22,9 @@ mod exact;
 pub mod free;
 pub mod inertia;
 pub mod lagrange;
+pub mod larmor;
 pub mod mesh;
+mod quaternion;
 pub mod regime;
 pub mod scene;
 pub mod simulate;

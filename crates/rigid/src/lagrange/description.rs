@@ -125,11 +125,15 @@ impl LagrangeTop {
         let [z1, z2] = orbit.above.map(|x| x.value());
         let (tilt_min, tilt_max) = (self::tilt(w2, z2), self::tilt(w1, z1));
         let (delta, sigma, spin) = (orbit.delta.value(), orbit.sigma.value(), start.spin.value());
-        // b − ℓu at the bounds; through the pole the precession has the sign of ℓ.
-        let (upper, lower) =
-            (delta + spin * w2, if w1 < 1.0 { delta + spin * w1 } else { sigma - spin * z1 });
-        let upper = if w2 == 0.0 { spin } else { upper };
-        let small = ROUNDING * (delta.abs() + (spin * w2).abs());
+        // b − ℓu at the bounds, and the size of its terms; through a pole the precession has the sign of ±ℓ.
+        let numerator = |below: f64, above: f64| match () {
+            () if below == 0.0 => (spin, spin),
+            () if above == 0.0 => (-spin, spin),
+            () if below < 1.0 => (delta + spin * below, spin * below),
+            () => (sigma - spin * above, spin * above),
+        };
+        let ((upper, term), (lower, _)) = (numerator(w2, z2), numerator(w1, z1));
+        let small = ROUNDING * term.abs();
         let surplus = orbit.surplus.value();
         let regime = match () {
             () if orbit.mean.is_none() => LagrangeRegime::Separatrix,

@@ -1,9 +1,11 @@
 //! What a heavy symmetric top starts with: its axes, and its state in twice the precision.
 
-use super::LagrangeError;
 use crate::double_double::DoubleDouble;
 use crate::free::power_of_two;
 use crate::inertia::Inertia;
+use crate::quaternion::{product, quaternion, turned_back};
+use crate::simulate::check_moments;
+use crate::simulate_error::SimulateError;
 use crate::symmetric_top::equal;
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -35,20 +37,18 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    pub fn new(inertia: &Inertia, c: Vector) -> Result<Axes, LagrangeError> {
+    pub fn new(inertia: &Inertia, c: Vector) -> Result<Axes, SimulateError> {
         let (moments, principal) = (inertia.principal_moments(), inertia.principal_frame());
-        if !moments.iter().all(|i| *i > 0.0) {
-            return Err(LagrangeError::SingularInertia { moments });
-        }
+        check_moments(moments)?;
         if let Some(&value) = c.0.iter().find(|x| !x.is_finite()) {
-            return Err(LagrangeError::NotFinite { what: "a component of c", value });
+            return Err(SimulateError::BadValue { what: "a component of c", value });
         }
         let others = |k: usize| [moments[(k + 1) % 3], moments[(k + 2) % 3]];
         let along = principal.reverse().apply(c);
         let axis = (0..3)
             .filter(|&k| equal(others(k)[0], others(k)[1]))
             .max_by(|&j, &k| along.0[j].abs().total_cmp(&along.0[k].abs()))
-            .ok_or(LagrangeError::NotSymmetric { moments })?;
+            .ok_or(SimulateError::NotSymmetric { moments })?;
         let [x, y] = others(axis);
         let size = c.norm();
         let frame = if aside(along, axis) <= ASIDE * size {
@@ -59,7 +59,7 @@ impl Axes {
         } else {
             let mut e = Vector::default();
             e.0[axis] = 1.0;
-            return Err(LagrangeError::OffAxis { c, axis: principal.apply(e) });
+            return Err(SimulateError::OffAxis { c, axis: principal.apply(e) });
         };
         Ok(Axes { frame, i1: 0.5 * x + 0.5 * y, i3: moments[axis], c: size })
     }
@@ -106,15 +106,15 @@ pub(super) struct Start {
 }
 
 impl Start {
-    pub fn new(axes: &Axes, rotor: Rotor, omega: Bivector) -> Result<Start, LagrangeError> {
+    pub fn new(axes: &Axes, rotor: Rotor, omega: Bivector) -> Result<Start, SimulateError> {
         if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
-            return Err(LagrangeError::NotFinite { what: "a component of the angular velocity", value });
+            return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
         }
         let rate = (2.0 * (axes.c / axes.i1)).sqrt();
         let fastest = omega.0.iter().fold(rate, |m: f64, x| m.max(x.abs()));
         // Squares of rates, and their ratios to the moments, must be numbers.
         if !(fastest < 1e140 && (fastest == 0.0 || fastest > 1e-140)) {
-            return Err(LagrangeError::NotFinite {
+            return Err(SimulateError::BadValue {
                 what: "the square of the largest rate",
                 value: fastest * fastest,
             });
@@ -150,27 +150,4 @@ impl Start {
         let zero = |a: Complex| a[0].hi == 0.0 && a[1].hi == 0.0;
         zero(self.w) && (zero(self.g) || self.gravity.hi == 0.0)
     }
-}
-
-/// Quaternion units are the negatives of the planes.
-fn quaternion(rotor: Rotor) -> [DoubleDouble; 4] {
-    let [s, x, y, z] = rotor.components();
-    [s, -x, -y, -z].map(DoubleDouble::from)
-}
-
-fn product(p: [DoubleDouble; 4], q: [DoubleDouble; 4]) -> [DoubleDouble; 4] {
-    [
-        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
-    ]
-}
-
-/// An axial vector in axes turned by q.
-fn turned_back(q: [DoubleDouble; 4], v: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
-    let back = [q[0], -q[1], -q[2], -q[3]];
-    let [_, x, y, z] = product(product(back, [DoubleDouble::ZERO, v[0], v[1], v[2]]), q);
-    let [norm, ..] = product(back, q);
-    [x / norm, y / norm, z / norm]
 }

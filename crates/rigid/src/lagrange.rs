@@ -111,7 +111,7 @@ impl LagrangeTop {
     ) -> Result<LagrangeTop, SimulateError> {
         let axes = Axes::new(inertia, c)?;
         let start = Start::new(&axes, rotor, omega)?;
-        if start.is_steady() {
+        if start.is_steady()? {
             let moments = [axes.i1, axes.i1, axes.i3];
             let along = Bivector([0.0, 0.0, start.omega3]);
             let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);

@@ -54,9 +54,11 @@ fn root_below(start: DoubleDouble, f: impl Fn(DoubleDouble) -> [DoubleDouble; 2]
     x
 }
 
-/// Distances of a point p from the roots, up to a factor; |p − r2| and |p − r3| for p between these.
+/// Distances of a point p between r2 and r3 from the roots, up to a factor.
 struct Point {
     to: [DoubleDouble; 3],
+    /// `(p − r2)/(p − r1)`, which the factor may not have left.
+    ratio: DoubleDouble,
     /// `N(p) = b − ℓp`, times the same factor.
     n: DoubleDouble,
 }
@@ -121,7 +123,9 @@ impl Orbit {
         let [x1, x2] = beside(gravity * w0 + v);
         let w1 = w0 + x1;
         let gap = x1 + x2;
-        let [z1, z2] = factors(sigma * sigma / (two * gravity + v), gap);
+        // The last one times 2ĉ.
+        let z3 = two * gravity + v;
+        let [z1, z2] = factors(sigma * sigma / z3, gap);
 
         let gaps = [gravity * gap, gravity * w1 + v, gravity * w2 + v];
         if !(gaps[1].hi > 0.0 && gaps[1].hi.is_finite()) {
@@ -133,8 +137,7 @@ impl Orbit {
             lambda: gaps[1].sqrt() * 0.5.into(),
             gaps,
         };
-        let down = Point { to: [z1, z2, two * gravity + v], n: sigma };
-        let up = Point { to: [gravity * w1, gravity * w2, v], n: gravity * delta };
+        let up = Point { to: [gravity * w1, gravity * w2, v], ratio: w2 / w1, n: gravity * delta };
         let across = {
             let direct = surplus + gravity * w2;
             let cancelled = direct.hi <= 1e-2 * (surplus.hi.abs() + gravity.hi * w2.hi);
@@ -145,7 +148,7 @@ impl Orbit {
             let direct = v - surplus;
             let cancelled = direct.hi <= 1e-2 * (v.hi + surplus.hi.abs());
             let to3 = if cancelled && to2.hi > 0.0 { n * n / (to1 * to2) } else { direct };
-            Point { to: [to1, to2, to3], n }
+            Point { to: [to1, to2, to3], ratio: to2 / to1, n }
         };
         let sides = [sign(sigma), sign(delta), -sign(across.n)];
         let half: DoubleDouble = 0.5.into();
@@ -153,7 +156,7 @@ impl Orbit {
         let (rates, mean) = if on_separatrix {
             ([half * spin, DoubleDouble::ZERO, -half * spin], None)
         } else {
-            let (alpha, mean) = modulus.rate_below(&down, gravity);
+            let (alpha, mean) = modulus.rate_below([z1, z2, z3], gravity, sigma);
             let (beta, _) = modulus.rate_above(&up);
             let (across, _) = modulus.rate_above(&across);
             ([alpha, beta, -(half * spin + across)], Some(mean))
@@ -164,7 +167,7 @@ impl Orbit {
             rest: first_kind(rest, modulus.k2),
         };
         let zeros = [
-            zero(0, modulus.amplitudes_below(&down, gravity)),
+            zero(0, modulus.amplitudes_below([z1, z2, z3], gravity)),
             zero(1, modulus.amplitudes_above(&up)),
             zero(2, modulus.amplitudes_above(&across)),
         ];
@@ -191,52 +194,55 @@ impl Orbit {
 }
 
 impl Modulus {
-    /// μ(−1) and M.
-    fn rate_below(&self, p: &Point, gravity: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    /// μ(−1), from 1 + r1, 1 + r2, 2ĉ(1 + r3) and b + ℓ, and M.
+    fn rate_below(
+        &self,
+        [z1, z2, z3]: [DoubleDouble; 3],
+        gravity: DoubleDouble,
+        n: DoubleDouble,
+    ) -> (DoubleDouble, DoubleDouble) {
         /// Beyond this `1 − n` the means take long to meet.
         const FAR: f64 = 1e12;
-        let [z1, z2, z3] = p.to;
         let p2 = z3 / self.gaps[1];
         if p2.hi <= FAR {
             let (mean, sum) = mean_and_sum(self.kc, p2);
-            return (gravity * p.n * sum / (z3 * 4.0.into()), mean);
+            return (gravity * n * sum / (z3 * 4.0.into()), mean);
         }
         let (mean, sum) = mean_and_sum(self.kc, z2 / z1);
         let less = (z2 - z1) / z2 * sum * 0.5.into();
-        let whole = p.n / (z1 * 2.0.into()) * (DoubleDouble::ONE - less);
-        (whole - self.lambda * mean * sign(p.n).into(), mean)
+        let whole = n / (z1 * 2.0.into()) * (DoubleDouble::ONE - less);
+        (whole - self.lambda * mean * sign(n).into(), mean)
     }
 
     /// μ(p) for p between r2 and r3, by whichever of the two parameters is smaller, and M.
     fn rate_above(&self, p: &Point) -> (DoubleDouble, DoubleDouble) {
         let half: DoubleDouble = 0.5.into();
-        let [to1, to2, to3] = p.to;
+        let [_, to2, to3] = p.to;
         if to2.hi * to2.hi <= self.k2 * to3.hi * to3.hi {
             let (mean, sum) = mean_and_sum(self.kc, (to2 + to3) / to3);
             (p.n / to3 * half * (half * sum - DoubleDouble::ONE), mean)
         } else {
-            let (mean, sum) = mean_and_sum(self.kc, self.kc * self.kc * to1 / to2);
-            let less = (to1 - to2) / to1 * sum * half;
+            let (mean, sum) = mean_and_sum(self.kc, self.kc * self.kc / p.ratio);
+            let less = (DoubleDouble::ONE - p.ratio) * sum * half;
             let whole = p.n / to2 * half * (DoubleDouble::ONE - less);
             (whole - self.lambda * mean * sign(p.n).into(), mean)
         }
     }
 
     /// Squared sine and cosine of the amplitudes of η and of K' − η for p = −1.
-    fn amplitudes_below(&self, p: &Point, gravity: DoubleDouble) -> [[f64; 2]; 2] {
-        let [z1, z2, z3] = p.to;
+    fn amplitudes_below(&self, [z1, z2, z3]: [DoubleDouble; 3], gravity: DoubleDouble) -> [[f64; 2]; 2] {
         let eta = [z1 / z2, (z2 - z1) / z2];
         [eta, [self.gaps[1] / z3, gravity * z1 / z3]].map(|pair| pair.map(|x| x.hi))
     }
 
-    /// The same for p between r2 and r3.
+    /// The same for p between r2 and r3; any for a point at both.
     fn amplitudes_above(&self, p: &Point) -> [[f64; 2]; 2] {
-        let [to1, to2, to3] = p.to.map(|x| x.hi);
-        let [short, whole, long] = self.gaps.map(|x| x.hi);
-        if long == 0.0 || to1 == 0.0 {
-            return [[0.0, 1.0], [0.0, 1.0]];
+        let [_, to2, to3] = p.to;
+        let [_, whole, long] = self.gaps;
+        if long.hi == 0.0 {
+            return [[0.0, 1.0]; 2];
         }
-        let eta = [to2 * whole / (to1 * long), to3 * short / (to1 * long)];
-        [eta, [to3 / long, to2 / long]]
+        let eta = [p.ratio * whole / long, (DoubleDouble::ONE - p.ratio) * to3 / long];
+        [eta, [to3 / long, to2 / long]].map(|pair| pair.map(|x| x.hi))
     }
 }

@@ -21,11 +21,11 @@ class _Solution(Protocol):
 class LagrangeTop:
     """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
 
-    The body is held at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the torque
-    of `ph.torque.heavy`. Two principal moments are equal and ``c`` lies along the axis of symmetry, whichever it
-    is. Both Cayley–Klein parameters of the rotor are theta functions times uniform phases, which are
-    reduced in twice the precision: the error is rounding at t = 1e12 as at t = 1, near the separatrix as
-    far from it. The rotor is continuous in time on the double cover.
+    The body is held at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
+    torque of `ph.torque.heavy`. Two principal moments are equal and ``c`` lies along the axis of symmetry,
+    whichever it is. Both Cayley–Klein parameters of the rotor are theta functions times uniform phases,
+    which are reduced in twice the precision: the error is rounding at t = 1e12 as at t = 1, near the
+    separatrix as far from it. The rotor is continuous in time on the double cover.
 
     Parameters
     ----------
@@ -57,11 +57,11 @@ class LagrangeTop:
         """Say what the invariants tell.
 
         The axis is that of symmetry, in the direction of the centre of mass. ``regime``; ``tilt_min`` and
-        ``tilt_max``, angles of the axis from up in rad; ``nutation_period`` in s; ``precession_rate``,
-        ``spin_rate`` (mean φ' about e3 and ψ' about the axis, rad/s) and ``precession_period``; ``modulus`` of
-        the elliptic functions; ``energy`` in J, ``axial_momentum`` L3 and ``vertical_momentum`` Lz in kg m²/s;
-        ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and whether a top with this spin ``sleeps``, that is would be
-        stable upright. None where nothing repeats.
+        ``tilt_max``, angles of the axis from up in rad; ``nutation_period`` in s; ``precession_rate`` and
+        ``spin_rate``, the means of φ' about e3 and of ψ' about the axis in rad/s, ``precession_period``;
+        ``modulus`` of the elliptic functions; ``energy`` in J, ``axial_momentum`` L3 and
+        ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and whether a top
+        with this spin ``sleeps``, that is would be stable upright. None where nothing repeats.
         """
         return self._solution.describe()
 
@@ -86,8 +86,8 @@ class DampedTop:
 class LarmorSphere:
     """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
 
-    ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with the
-    angular velocity ω in space at time 0. A ValueError if the moments differ or a number is not finite.
+    ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with
+    the angular velocity ω in space at time 0. A ValueError if the moments differ or a number is not finite.
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, b: Any) -> None:

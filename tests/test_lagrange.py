@@ -20,7 +20,7 @@ def rotor(*components):
 
 # Moments, c, rotor and angular velocity.
 KINDS = {
-    "loops": ((1, 1, 0.5), (0, 0, 1), (2, 1, 0, 0), (0, -0.5, 6)),
+    "loops": ((1, 1, 0.5), (0, 0, 1), (2, 1, 0, 0), (0, 0.5, 6)),
     "waves": ((1, 1, 0.5), (0, 0, 2), (4, 2, 1, 0), (0.25, -0.5, 6)),
     "cusps": ((1, 1, 0.5), (0, 0, 1), (2, 1, 0, 0), (0, 0, 6)),
     "slow": ((1, 1, 0.25), (0, 0, 1), (4, 1, 1, 0), (0.5, 0.25, 1)),
@@ -83,7 +83,7 @@ def test_agrees_with_steps(kind):
     times = np.array([-6.0, -0.7, 0.0, 1.3, 6.0])
     exact = top_of(*kind).at(times)
     steps = ph.simulate(
-        moments(*i), ph.State(rotor(*r), w), times, ph.torque.heavy(c), "kahan_li8", rtol=1e-11
+        moments(*i), ph.State(rotor(*r), w), times, ph.torque.heavy(c), method="kahan_li8", rtol=1e-11
     )
     assert np.abs(exact.rotor.components - steps.rotor.components).max() <= 1e-10
     assert np.abs(exact.omega_body.components - steps.omega_body.components).max() <= 1e-10
@@ -128,8 +128,8 @@ def test_rotor_is_continuous_and_its_rate_is_the_spin(kind):
     ((1, 0, 0, 2), (0, 0, 3), "sleeping, upright"),
     ((0, 1, 2, 0), (0, 0, 3), "hanging"),
     ((2, 1, 0, 0), (0, 0, 6), "nutating with cusps"),
-    ((2, 1, 0, 0), (0, -0.5, 6), "nutating with loops"),
-    ((2, 1, 0, 0), (0, 0.125, 6), "nutating with waves"),
+    ((2, 1, 0, 0), (0, 0.125, 6), "nutating with loops"),
+    ((2, 1, 0, 0), (0, -0.125, 6), "nutating with waves"),
     ((2, 1, 0, 0), (0, 0, 0), "pendulum, swinging"),
     ((1, 0, 0, 0), (1, 0, 0), "pendulum, circulating"),
     ((0, 1, 0, 0), (2, 0, 0), "separatrix"),
@@ -170,9 +170,9 @@ def test_the_separatrix_is_homoclinic():
     for t in (-500.0, -40.0, -3.0, 0.0, 1.0, 5.0, 40.0, 1e9):
         state = top.at(t)
         _, x, y, _ = state.rotor.components
-        assert np.hypot(x, y) == pytest.approx(1 / np.cosh(min(abs(t), 700)), rel=16 * EPS, abs=1e-290)
+        assert np.hypot(x, y) == pytest.approx(1 / np.cosh(min(abs(t), 700)), rel=16 * EPS, abs=1e-150)
         assert state.omega_body.components[0] == pytest.approx(
-            2 / np.cosh(min(abs(t), 700)), rel=16 * EPS, abs=1e-290
+            2 / np.cosh(min(abs(t), 700)), rel=16 * EPS, abs=1e-150
         )
 
 

@@ -77,12 +77,11 @@ impl DampedTop {
 
     /// Rotor and body angular velocity at time `t` in s.
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
-        let exponent = self.exponent(t);
-        let less = exponent.exp_m1();
+        let [factor, less] = self.exponent(t).exp();
         let time = if less.hi == 0.0 { t.into() } else { -less / self.damping.into() };
         let (rotor, omega) = self.free.at(time.hi);
         let (rotor, omega) = self.ahead(rotor, omega, time.lo);
-        (rotor, omega * exponent.exp().value())
+        (rotor, omega * factor.value())
     }
 
     /// −gt; what is beyond floating point is dead.
@@ -122,21 +121,21 @@ mod tests {
 
     #[test]
     fn the_exponential_has_twice_the_precision() {
-        // e − 1 and e^{−40} − 1 to 32 digits.
+        // e − 1 to 32 digits.
         let cases = [
             (1.0, DoubleDouble { hi: 1.718_281_828_459_045, lo: 1.445_646_891_729_250_2e-16 }),
             (0.0, DoubleDouble::ZERO),
         ];
         for (x, expected) in cases {
-            let found = DoubleDouble::from(x).exp_m1();
+            let found = DoubleDouble::from(x).exp()[1];
             assert!((found - expected).value().abs() <= 1e-30, "{x}: {found:?}");
         }
         for x in [-600.0, -3.0, -0.1, 1e-9, 0.2, 0.4, 5.0, 300.0] {
             // e^x e^{−x} = 1.
-            let both = [x, -x].map(|x: f64| DoubleDouble::from(x).exp());
+            let both = [x, -x].map(|x: f64| DoubleDouble::from(x).exp()[0]);
             assert!((both[0] * both[1] - DoubleDouble::ONE).value().abs() <= 2e-29, "{x}");
             assert!(
-                (DoubleDouble::from(x).exp_m1().value() / x.exp_m1() - 1.0).abs() <= 4.0 * f64::EPSILON,
+                (DoubleDouble::from(x).exp()[1].value() / x.exp_m1() - 1.0).abs() <= 4.0 * f64::EPSILON,
                 "{x}"
             );
         }

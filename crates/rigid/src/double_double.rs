@@ -55,21 +55,9 @@ impl DoubleDouble {
         DoubleDouble::quick_two_sum(root, rest.hi / (2.0 * root))
     }
 
-    /// `e^x`, for exponents that leave a number.
-    pub fn exp(self) -> DoubleDouble {
-        let (power, p) = self.exp_parts();
-        power + p * power
-    }
-
-    /// `e^x − 1`, for such exponents.
-    pub fn exp_m1(self) -> DoubleDouble {
-        let (power, p) = self.exp_parts();
-        p * power + (power - DoubleDouble::ONE)
-    }
-
-    /// 2ⁿ and p with `e^x = 2ⁿ (1 + p)`. With `x = n ln 2 + 2⁹ r` a few terms of a series give `e^r − 1`, and
-    /// `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` that of its doubles; none cancels.
-    fn exp_parts(self) -> (DoubleDouble, DoubleDouble) {
+    /// `e^x` and `e^x − 1`, for exponents that leave a number. With `x = n ln 2 + 2⁹ r` a few terms of a series give
+    /// `e^r − 1`, and `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` that of its doubles; none cancels.
+    pub fn exp(self) -> [DoubleDouble; 2] {
         const LN_2: DoubleDouble =
             DoubleDouble { hi: std::f64::consts::LN_2, lo: 2.319_046_813_846_299_6e-17 };
         const DOUBLINGS: i32 = 9;
@@ -78,7 +66,8 @@ impl DoubleDouble {
         let term = |sum, k: i32| (sum + DoubleDouble::ONE) * r / f64::from(k).into();
         let series = (1..=11).rev().fold(DoubleDouble::ZERO, term);
         let p = (0..DOUBLINGS).fold(series, |p, _| p * (p + 2.0.into()));
-        (n.exp2().into(), p)
+        let power = DoubleDouble::from(n.exp2());
+        [power + p * power, p * power + (power - DoubleDouble::ONE)]
     }
 
     pub fn value(self) -> f64 {

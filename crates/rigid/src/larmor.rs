@@ -45,7 +45,7 @@ impl LarmorSphere {
         }
         for (what, values) in [("the angular velocity", omega.0), ("the field b", b.0)] {
             // Squares must be numbers.
-            if let Some(&value) = values.iter().find(|x| !(x.abs() < 1e140)) {
+            if let Some(&value) = values.iter().find(|x| !(x.abs() * x.abs()).is_finite()) {
                 return Err(SimulateError::BadValue { what, value });
             }
         }

@@ -46,8 +46,7 @@ fn tops() -> impl Strategy<Value = (f64, [f64; 4], [f64; 3], f64)> {
     let component = || prop_oneof![Just(0.0), rate(-40..1), rate(-3..1)];
     let rotor = [component(), component(), component(), component()];
     let omega = (small(), small(), rate(-8..2)).prop_map(|(x, y, z)| [x, y, z]);
-    (0.1..2.0f64, rotor, omega, rate(-40..3))
-        .prop_filter("no rotor", |(_, r, ..)| largest(*r) > 1e-3)
+    (0.1..2.0f64, rotor, omega, rate(-40..3)).prop_filter("no rotor", |(_, r, ..)| largest(*r) > 1e-3)
 }
 
 proptest! {

@@ -117,10 +117,8 @@ impl Start {
         let fastest = omega.0.iter().fold(rate, |m: f64, x| m.max(x.abs()));
         // Squares of rates, and their ratios to the moments, must be numbers.
         if !(fastest < 1e140 && (fastest == 0.0 || fastest > 1e-140)) {
-            return Err(SimulateError::BadValue {
-                what: "the square of the largest rate",
-                value: fastest * fastest,
-            });
+            let what = "the largest rate, which must lie between 1e-140 and 1e140 rad/s,";
+            return Err(SimulateError::BadValue { what, value: fastest });
         }
         let scale = power_of_two([fastest, 0.0, 0.0]);
         let frame = quaternion(axes.frame);

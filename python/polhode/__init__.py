@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from polhode._agreement import Agreement as Agreement
     from polhode._bodies import Body as Body
     from polhode._bodies import Inertia as Inertia
+    from polhode._closed_forms import DampedTop as DampedTop
+    from polhode._closed_forms import LagrangeTop as LagrangeTop
+    from polhode._closed_forms import LarmorSphere as LarmorSphere
     from polhode._formula import Formula as Formula
     from polhode._formula import evaluate as evaluate
     from polhode._formula import formula as formula
@@ -59,6 +62,9 @@ _LATER = {
     "Agreement": "_agreement",
     "Body": "_bodies",
     "Inertia": "_bodies",
+    "DampedTop": "_closed_forms",
+    "LagrangeTop": "_closed_forms",
+    "LarmorSphere": "_closed_forms",
     "Formula": "_formula",
     "evaluate": "_formula",
     "formula": "_formula",

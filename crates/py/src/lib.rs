@@ -7,6 +7,7 @@ mod arrays;
 mod batches;
 mod bodies;
 mod calls;
+mod closed_forms;
 mod formula;
 mod laws;
 mod motion;
@@ -41,6 +42,8 @@ mod _native {
     #[pymodule_export]
     use crate::simulation::{Motion, methods, simulate};
 
+    #[pymodule_export]
+    use crate::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};
     #[pymodule_export]
     use crate::torque::{Law, torque_at};
 

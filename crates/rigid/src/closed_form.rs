@@ -1,7 +1,11 @@
 //! Motions that are known at any time without steps.
 
+use crate::damped::DampedTop;
 use crate::force::Center;
 use crate::free::FreeMotion;
+use crate::inertia::Inertia;
+use crate::lagrange::LagrangeTop;
+use crate::larmor::LarmorSphere;
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::Carried;
 use crate::torque::Torque;
@@ -10,7 +14,10 @@ use polhode_ga::{Bivector, Rotor, Vector};
 /// A rotation in closed form, in principal axes.
 #[derive(Clone, Debug)]
 pub(crate) enum Rotation {
-    Free(FreeMotion),
+    Free(Box<FreeMotion>),
+    Lagrange(Box<LagrangeTop>),
+    Damped(Box<DampedTop>),
+    Larmor(LarmorSphere),
 }
 
 /// Rotation and uniformly accelerated translation in closed form.
@@ -32,10 +39,7 @@ impl ClosedForm {
         center: Center,
         acceleration: Vector,
     ) -> Option<ClosedForm> {
-        let rotation = match torques {
-            [] => Rotation::Free(FreeMotion::in_principal_axes(body.moments, rotor, omega)),
-            _ => return None,
-        };
+        let rotation = rotation(body.moments, rotor, omega, torques)?;
         Some(ClosedForm { body, rotation, center, acceleration })
     }
 
@@ -43,6 +47,9 @@ impl ClosedForm {
     pub fn horizon(&self) -> f64 {
         match &self.rotation {
             Rotation::Free(motion) => motion.horizon(),
+            Rotation::Lagrange(motion) => motion.horizon(),
+            Rotation::Damped(motion) => motion.horizon(),
+            Rotation::Larmor(motion) => motion.horizon(),
         }
     }
 
@@ -50,9 +57,39 @@ impl ClosedForm {
     pub fn at(&self, time: f64) -> Carried {
         let (rotor, omega) = match &self.rotation {
             Rotation::Free(motion) => motion.at(time),
+            Rotation::Lagrange(motion) => motion.at(time),
+            Rotation::Damped(motion) => motion.at(time),
+            Rotation::Larmor(motion) => motion.at(time),
         };
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
         Carried::new(phase, uniformly_accelerated(self.center, self.acceleration, time))
+    }
+}
+
+/// The rotation of a body under these laws, if it is known.
+fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Option<Rotation> {
+    let Some(first) = torques.first() else {
+        return Some(Rotation::Free(Box::new(FreeMotion::in_principal_axes(moments, rotor, omega))));
+    };
+    let inertia = Inertia::from_principal_moments(moments).ok()?;
+    // Laws of one kind add up.
+    match first {
+        Torque::Heavy(_) => {
+            let each = torques.iter().map(|t| if let Torque::Heavy(c) = t { Some(*c) } else { None });
+            let c = each.collect::<Option<Vec<_>>>()?.into_iter().fold(Vector::default(), |sum, c| sum + c);
+            LagrangeTop::new(&inertia, rotor, omega, c).ok().map(Box::new).map(Rotation::Lagrange)
+        }
+        Torque::Damping(_) => {
+            let each = torques.iter().map(|t| if let Torque::Damping(g) = t { Some(*g) } else { None });
+            let damping = each.sum::<Option<f64>>()?;
+            DampedTop::new(&inertia, rotor, omega, damping).ok().map(Box::new).map(Rotation::Damped)
+        }
+        Torque::Larmor(_) => {
+            let each = torques.iter().map(|t| if let Torque::Larmor(b) = t { Some(*b) } else { None });
+            let b = each.collect::<Option<Vec<_>>>()?.into_iter().fold(Vector::default(), |sum, b| sum + b);
+            LarmorSphere::new(&inertia, rotor, omega, b).ok().map(Rotation::Larmor)
+        }
+        _ => None,
     }
 }
 

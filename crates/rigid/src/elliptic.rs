@@ -67,6 +67,13 @@ fn r_c1(e: f64) -> f64 {
     if e > 0.0 { root.atan() / root } else { root.atanh() / root }
 }
 
+/// `F(φ, k')`, the incomplete integral of the first kind to the complementary modulus, from `sin² φ`, `cos² φ` and
+/// k². Infinite for φ = π/2 and k = 0.
+pub(crate) fn first_kind([sin2, cos2]: [f64; 2], k2: f64) -> f64 {
+    let delta2 = cos2 + k2 * sin2;
+    if delta2 == 0.0 { f64::INFINITY } else { sin2.sqrt() * r_f(cos2, delta2, 1.0) }
+}
+
 /// The arithmetic-geometric mean of 1 and a number in [0, 1].
 pub(crate) fn mean(mut g: f64) -> f64 {
     let mut a = 1.0;

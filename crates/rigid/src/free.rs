@@ -77,9 +77,9 @@
 //! 30 (2008); DLMF 20.7 (theta functions), 19.7 and 19.8 (integrals).
 
 mod flow;
-mod lanes;
-mod orbit;
-mod series;
+pub(crate) mod lanes;
+pub(crate) mod orbit;
+pub(crate) mod series;
 
 use crate::double_double::DoubleDouble;
 use crate::elliptic::mean;
@@ -99,7 +99,7 @@ use series::{Circular, Hyperbolic, LARGEST_NOME, Series};
 use std::f64::consts::PI;
 
 /// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
-const MOST_TURNS: f64 = 1e17;
+pub(crate) const MOST_TURNS: f64 = 1e17;
 
 /// A free motion: rotor and angular velocity at any time up to its [`FreeMotion::horizon`].
 #[derive(Clone, Copy, Debug)]
@@ -130,7 +130,7 @@ impl FreeMotion {
     }
 
     /// From principal axes to space, and with the frame from principal axes to those of the body.
-    fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
+    pub(crate) fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
         let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
         let orbit = Orbit::new(moments.map(|i| i / size), omega.0.map(|w| w / scale));
         let flow = match &orbit {
@@ -207,7 +207,7 @@ impl FreeMotion {
 }
 
 /// The power of two next below the largest magnitude; 1 for zeros.
-fn power_of_two(components: [f64; 3]) -> f64 {
+pub(crate) fn power_of_two(components: [f64; 3]) -> f64 {
     let largest = components.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
 }

@@ -101,7 +101,7 @@ pub(crate) enum Engine {
     Splitting(Splitting),
     RungeKutta(RungeKutta),
     /// The closed form, looked at in steps.
-    ClosedForm(Box<ClosedForm>),
+    ClosedForm(ClosedForm),
 }
 
 impl Engine {

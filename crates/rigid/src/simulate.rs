@@ -136,7 +136,7 @@ impl Problem {
         let (engine, name) = match closed {
             Some(closed) => {
                 check_horizon(times, closed.horizon())?;
-                (Engine::ClosedForm(Box::new(closed)), "exact")
+                (Engine::ClosedForm(closed), "exact")
             }
             None => (
                 Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?,

@@ -1,5 +1,6 @@
 //! Why a motion could not be computed.
 
+use polhode_ga::Vector;
 use std::fmt;
 
 /// Most steps that a run may take: hours of work, and beyond it rounding adds up.
@@ -11,6 +12,14 @@ pub(crate) const MAX_STEPS: f64 = 1e10;
 pub enum SimulateError {
     /// Moments must be positive to turn momentum into rate.
     SingularInertia { moments: [f64; 3] },
+    /// All three moments differ, where two must be equal.
+    NotSymmetric { moments: [f64; 3] },
+    /// The moments differ, where all must be equal.
+    NotSpherical { moments: [f64; 3] },
+    /// The centre of mass lies beside the axis of symmetry.
+    OffAxis { c: Vector, axis: Vector },
+    /// So near to the unstable upright that floating point cannot tell how far.
+    NearUpright,
     /// Output times must be finite and must not fall.
     BadTime { index: usize, time: f64 },
     /// A step, tolerance, angular velocity or torque that is not usable.
@@ -42,6 +51,23 @@ impl fmt::Display for SimulateError {
                 f,
                 "principal moments {a}, {b}, {c} kg m² include a zero: the body has no definite rate about that \
                  axis; give it some thickness"
+            ),
+            SimulateError::NotSymmetric { moments: [a, b, c] } => write!(
+                f,
+                "the principal moments {a}, {b}, {c} kg m² all differ: not a symmetric top; use simulate"
+            ),
+            SimulateError::NotSpherical { moments: [a, b, c] } => write!(
+                f,
+                "the principal moments {a}, {b}, {c} kg m² are not equal: not a sphere; use simulate"
+            ),
+            SimulateError::OffAxis { c: Vector([x, y, z]), axis: Vector([p, q, r]) } => write!(
+                f,
+                "c = ({x}, {y}, {z}) N m does not point along the axis of symmetry ({p}, {q}, {r}); use simulate"
+            ),
+            SimulateError::NearUpright => write!(
+                f,
+                "the top starts so near to the upright that floating point cannot tell how far; start it upright, or \
+                 farther from it"
             ),
             SimulateError::BadTime { index, time } => {
                 write!(

@@ -9,7 +9,7 @@ const INTEGER: f64 = 6_755_399_441_055_744.0;
 
 /// A phase that grows linearly with time, in turns.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Phase {
+pub(crate) struct Phase {
     /// Per second.
     pub rate: DoubleDouble,
     /// At time 0, as a sum: what is large of it is exact.
@@ -33,7 +33,7 @@ impl Phase {
 
 /// Sine and cosine of a few turns, and a small rest.
 #[inline(always)]
-pub(super) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64) {
+pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64) {
     let quarters = 4.0 * turns;
     let shifted = quarters + INTEGER;
     let part = (quarters - (shifted - INTEGER)) + 4.0 * rest;
@@ -45,7 +45,7 @@ pub(super) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64
 ///
 /// `−x = n ln 2 + r` with `|r| <= ½ ln 2`; the series of `e^r − 1` ends below 2⁻⁵⁶ of it.
 #[inline(always)]
-pub(super) fn exp_minus(x: f64) -> (f64, f64) {
+pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
     /// ln 2 in two parts, the first of 32 bits, so that its products with n are exact.
     const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
     /// 1/k! from 2 on.
@@ -77,7 +77,7 @@ pub(super) fn exp_minus(x: f64) -> (f64, f64) {
 
 /// A polynomial, coefficients by rising powers.
 #[inline(always)]
-pub(super) fn horner<const N: usize>(c: &[f64; N], x: f64) -> f64 {
+pub(crate) fn horner<const N: usize>(c: &[f64; N], x: f64) -> f64 {
     let mut sum = c[N - 1];
     for k in (0..N - 1).rev() {
         sum = sum * x + c[k];

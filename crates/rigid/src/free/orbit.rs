@@ -2,7 +2,7 @@
 
 use super::power_of_two;
 use crate::double_double::DoubleDouble;
-use crate::elliptic::{mean_and_sum, r_f};
+use crate::elliptic::{first_kind, mean_and_sum, r_f};
 use crate::exact::Exact;
 
 /// A motion that is not steady, in principal axes.
@@ -31,17 +31,12 @@ pub(super) struct Orbit {
 impl Orbit {
     /// η, finite unless k = 0.
     pub fn eta(&self) -> f64 {
-        self.integral(self.amplitudes_of_eta[0])
+        first_kind(self.amplitudes_of_eta[0], self.k2)
     }
 
     /// K' − η.
     pub fn rest_of_eta(&self) -> f64 {
-        self.integral(self.amplitudes_of_eta[1])
-    }
-
-    /// Of the first kind to the modulus k'.
-    fn integral(&self, [sin2, cos2]: [f64; 2]) -> f64 {
-        sin2.sqrt() * r_f(cos2, cos2 + self.k2 * sin2, 1.0)
+        first_kind(self.amplitudes_of_eta[1], self.k2)
     }
 }
 
@@ -185,7 +180,7 @@ fn difference(i: [f64; 3], w: [f64; 3], [small, b, large]: [usize; 3]) -> (Doubl
 
 /// The u in [−2K, 2K] with given cn u and sn u, up to a factor, as so many K and a rest of at most K/2. On the
 /// separatrix, where `k' = 0`, all is rest.
-fn argument(cn: f64, sn: f64, kc: f64) -> (f64, f64) {
+pub(crate) fn argument(cn: f64, sn: f64, kc: f64) -> (f64, f64) {
     // Beyond K/2 tan am(u − K) = −cn u / (k' sn u).
     let (whole, sin, cos) = if cn * cn >= kc * (sn * sn) {
         (if cn < 0.0 { 2.0 } else { 0.0 }, sn.copysign(sn * cn), cn.abs())

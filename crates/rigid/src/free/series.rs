@@ -16,7 +16,7 @@ use super::lanes::{exp_minus, horner, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The nome up to which the trigonometric series serve.
-pub(super) const LARGEST_NOME: f64 = 0.2;
+pub(crate) const LARGEST_NOME: f64 = 0.2;
 
 /// What the series give at `W` times: the rotor `Z` up to its norm, in the frame (e1, e2, d) of quaternion
 /// units; cn, sn and dn up to a common denominator; and by what part of a turn the precession is ahead.
@@ -37,7 +37,7 @@ pub(super) trait Series: Copy + Sync {
 }
 
 /// `Σ h_n p_n(x)` in powers of x; `p_0 = 1`, and `p_{−1}`, in powers of x too, tells which polynomials.
-fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
+pub(crate) fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
     let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [0.0; N]);
     previous[..2].copy_from_slice(&before);
     p[0] = 1.0;
@@ -52,10 +52,10 @@ fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
 }
 
 /// T_n, U_n, V_n and W_n by the polynomial at −1.
-const FIRST: [f64; 2] = [0.0, 1.0];
+pub(crate) const FIRST: [f64; 2] = [0.0, 1.0];
 const SECOND: [f64; 2] = [0.0, 0.0];
-const THIRD: [f64; 2] = [1.0, 0.0];
-const FOURTH: [f64; 2] = [-1.0, 0.0];
+pub(crate) const THIRD: [f64; 2] = [1.0, 0.0];
+pub(crate) const FOURTH: [f64; 2] = [-1.0, 0.0];
 
 /// −1 for odd n.
 fn sign(n: usize) -> f64 {
@@ -153,7 +153,7 @@ impl Series for Circular {
 /// Series in the nome q', by Jacobi's imaginary transformation, in `x = πu/4K'` for u within a half period; at
 /// u = ±K it is ±X.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hyperbolic {
+pub(crate) struct Hyperbolic {
     /// X.
     border: f64,
     nome: f64,
@@ -195,7 +195,7 @@ impl Hyperbolic {
     }
 
     /// u over the turns that are no more than its start, on the separatrix: so much is never reached.
-    pub const NEVER: f64 = (1u128 << 70) as f64;
+    pub(crate) const NEVER: f64 = (1u128 << 70) as f64;
 
     /// The limit K → ∞, with `u = NEVER · turns`.
     pub fn separatrix(gamma: f64, s: f64) -> Hyperbolic {

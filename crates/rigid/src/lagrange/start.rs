@@ -1,0 +1,165 @@
+//! What a heavy symmetric top starts with: its axes, and its state in twice the precision.
+
+use crate::double_double::DoubleDouble;
+use crate::free::power_of_two;
+use crate::inertia::Inertia;
+use crate::quaternion::{product, quaternion, turned_back};
+use crate::simulate::check_moments;
+use crate::simulate_error::SimulateError;
+use crate::symmetric_top::equal;
+use polhode_ga::{Bivector, Rotor, Vector};
+
+/// How far `c` may point beside the symmetry axis, relative to its size, and be on it: the rounding of axes
+/// found from a matrix.
+const ASIDE: f64 = 64.0 * f64::EPSILON;
+
+/// Torques below this, relative to what the largest rate takes, do nothing.
+const NONE: f64 = 1e-250;
+
+/// A complex number of twice the precision.
+pub(super) type Complex = [DoubleDouble; 2];
+
+/// `a b*`.
+pub(super) fn times_conjugate(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]]
+}
+
+pub(super) fn square(a: Complex) -> DoubleDouble {
+    a[0] * a[0] + a[1] * a[1]
+}
+
+/// The top's own axes: the third is that of symmetry, in the direction of the centre of mass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    /// From the top's axes to those of the body.
+    pub frame: Rotor,
+    pub i1: f64,
+    pub i3: f64,
+    /// |c|, in N m.
+    pub c: f64,
+}
+
+impl Axes {
+    pub fn new(inertia: &Inertia, c: Vector) -> Result<Axes, SimulateError> {
+        let (moments, principal) = (inertia.principal_moments(), inertia.principal_frame());
+        check_moments(moments)?;
+        if let Some(&value) = c.0.iter().find(|x| !x.is_finite()) {
+            return Err(SimulateError::BadValue { what: "a component of c", value });
+        }
+        let others = |k: usize| [moments[(k + 1) % 3], moments[(k + 2) % 3]];
+        let along = principal.reverse().apply(c);
+        let axis = (0..3)
+            .filter(|&k| equal(others(k)[0], others(k)[1]))
+            .max_by(|&j, &k| along.0[j].abs().total_cmp(&along.0[k].abs()))
+            .ok_or(SimulateError::NotSymmetric { moments })?;
+        let [x, y] = others(axis);
+        let size = c.norm();
+        let frame = if aside(along, axis) <= ASIDE * size {
+            principal * axis_to(axis, along.0[axis] < 0.0)
+        } else if equal(x, moments[axis]) {
+            // Any axis of a sphere is one of symmetry.
+            Rotor::from_vectors(Vector([0.0, 0.0, 1.0]), c).unwrap_or(Rotor::IDENTITY)
+        } else {
+            let mut e = Vector::default();
+            e.0[axis] = 1.0;
+            return Err(SimulateError::OffAxis { c, axis: principal.apply(e) });
+        };
+        Ok(Axes { frame, i1: 0.5 * x + 0.5 * y, i3: moments[axis], c: size })
+    }
+}
+
+fn aside(along: Vector, axis: usize) -> f64 {
+    along.0[(axis + 1) % 3].hypot(along.0[(axis + 2) % 3])
+}
+
+/// The rotor that carries e3 to the axis, or to its opposite: a cyclic exchange of axes, and a half turn about e1
+/// before it. Its components are exact.
+fn axis_to(axis: usize, opposite: bool) -> Rotor {
+    let cyclic = match axis {
+        0 => [0.5, -0.5, -0.5, -0.5],
+        1 => [0.5; 4],
+        _ => [1.0, 0.0, 0.0, 0.0],
+    };
+    let half_turn = if opposite { [0.0, 1.0, 0.0, 0.0] } else { [1.0, 0.0, 0.0, 0.0] };
+    Rotor::from_unit_components(cyclic) * Rotor::from_unit_components(half_turn)
+}
+
+/// The state at the start, rates in units of `scale`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    /// A power of two near the largest rate, in rad/s.
+    pub scale: f64,
+    /// 2c/i1.
+    pub gravity: DoubleDouble,
+    /// ℓ = L3/i1.
+    pub spin: DoubleDouble,
+    /// What the rate about the axis exceeds ℓ by.
+    pub excess: DoubleDouble,
+    /// The rate about the axis, in rad/s.
+    pub omega3: f64,
+    /// The Cayley–Klein parameters, with their norm.
+    pub alpha: Complex,
+    pub beta: Complex,
+    /// 1 − u and 1 + u.
+    pub below: DoubleDouble,
+    pub above: DoubleDouble,
+    /// g = γ1 + iγ2 and w = ω1 + iω2.
+    pub g: Complex,
+    pub w: Complex,
+}
+
+impl Start {
+    pub fn new(axes: &Axes, rotor: Rotor, omega: Bivector) -> Result<Start, SimulateError> {
+        if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
+            return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+        }
+        let rate = (2.0 * (axes.c / axes.i1)).sqrt();
+        let fastest = omega.0.iter().fold(rate, |m: f64, x| m.max(x.abs()));
+        // Squares of rates, and their ratios to the moments, must be numbers.
+        if !(fastest < 1e140 && (fastest == 0.0 || fastest > 1e-140)) {
+            let what = "the largest rate, which must lie between 1e-140 and 1e140 rad/s,";
+            return Err(SimulateError::BadValue { what, value: fastest });
+        }
+        let scale = power_of_two([fastest, 0.0, 0.0]);
+        let frame = quaternion(axes.frame);
+        let [s, x, y, z] = product(quaternion(rotor), frame);
+        let norm = s * s + x * x + y * y + z * z;
+        let (alpha, beta) = ([s, z], [y, -x]);
+        let double = |a: DoubleDouble| (a + a) / norm;
+        let [g, g_im] = times_conjugate(beta, alpha).map(double);
+        let [w1, w2, w3] = turned_back(frame, omega.0.map(|w| (w / scale).into()));
+        let spin = w3 * axes.i3.into() / axes.i1.into();
+        let unit = power_of_two([axes.c, 0.0, 0.0]);
+        let gravity = DoubleDouble::from(2.0 * (axes.c / unit)) / axes.i1.into();
+        // A power of two, so that nothing is rounded; so small a torque is none up to any horizon.
+        let factor = unit / scale / scale;
+        let gravity = if gravity.hi * factor < NONE { DoubleDouble::ZERO } else { gravity * factor.into() };
+        Ok(Start {
+            scale,
+            gravity,
+            spin,
+            excess: w3 - spin,
+            omega3: w3.value() * scale,
+            alpha,
+            beta,
+            below: double(square(beta)),
+            above: double(square(alpha)),
+            g: [-g, -g_im],
+            w: [w1, w2],
+        })
+    }
+
+    /// Whether no torque acts and the axis of rotation is that of the top, for ever. An error where it would be
+    /// so but for a disturbance that grows, and that is below floating point.
+    pub fn is_steady(&self) -> Result<bool, SimulateError> {
+        /// Fourth powers of tilts and rates, relative to the largest rate, must keep their digits.
+        const LEAST: f64 = 1e-130;
+        let (w, g) = (square(self.w).hi, square(self.g).hi);
+        let steady = w < LEAST && (g < LEAST || self.gravity.hi == 0.0);
+        let unstable = self.spin.hi * self.spin.hi < 2.0 * self.gravity.hi && self.below.hi < 1.0;
+        if steady && unstable && (w > 0.0 || g > 0.0) {
+            return Err(SimulateError::NearUpright);
+        }
+        Ok(steady)
+    }
+}

@@ -1,0 +1,115 @@
+//! Lagrange's top: against states computed by other formulas to 34 digits, and against its own laws.
+
+use polhode_ga::threads::Threads;
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::Inertia;
+use polhode_rigid::lagrange::{LagrangeRegime, LagrangeTop};
+use proptest::prelude::*;
+
+const EPS: f64 = f64::EPSILON;
+
+fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
+    // NaN is the largest of all.
+    numbers.into_iter().fold(0.0, |m: f64, x| if x.is_nan() { x } else { m.max(x.abs()) })
+}
+
+/// Phases are known to half a rounding, series and products add some: 8 in all.
+#[test]
+fn states_of_every_kind_at_any_time() {
+    for line in include_str!("data/lagrange_states.txt").lines() {
+        let (kind, numbers) = line.split_once(' ').unwrap();
+        let x: Vec<f64> = numbers.split(' ').map(|x| x.parse().unwrap()).collect();
+        let inertia = Inertia::from_principal_moments([x[0], x[1], x[2]]).unwrap();
+        let rotor = Rotor::from_components([x[6], x[7], x[8], x[9]]).unwrap();
+        let (c, omega) = (Vector([x[3], x[4], x[5]]), Bivector([x[10], x[11], x[12]]));
+        let (rotor, omega) = LagrangeTop::new(&inertia, rotor, omega, c).unwrap().at(x[13]);
+        let apart = |found: &[f64], expected: &[f64]| {
+            let pairs = found.iter().zip(expected.as_chunks::<2>().0);
+            largest(pairs.map(|(found, [high, low])| (found - high) - low))
+        };
+        let rotor_error = apart(&rotor.components(), &x[14..22]);
+        let omega_error = apart(&omega.0, &x[22..]) / largest(x[22..].iter().copied());
+        assert!(rotor_error <= 8.0 * EPS, "{kind}: rotor off by {rotor_error:e} at {}", x[13]);
+        assert!(omega_error <= 8.0 * EPS, "{kind}: spin off by {omega_error:e} at {}", x[13]);
+    }
+}
+
+/// Powers of two times a number near 1, of either sign.
+fn rate(exponents: std::ops::Range<i32>) -> impl Strategy<Value = f64> {
+    (exponents, 1.0..2.0f64, prop::bool::ANY)
+        .prop_map(|(e, x, minus)| if minus { -x } else { x } * 2f64.powi(e))
+}
+
+/// i3, rotor, angular velocity and c of a top with the moments 1 and 1; rates up to 8.
+fn tops() -> impl Strategy<Value = (f64, [f64; 4], [f64; 3], f64)> {
+    let small = || prop_oneof![Just(0.0), rate(-40..2), rate(-3..2)];
+    let component = || prop_oneof![Just(0.0), rate(-40..1), rate(-3..1)];
+    let rotor = [component(), component(), component(), component()];
+    let omega = (small(), small(), rate(-8..2)).prop_map(|(x, y, z)| [x, y, z]);
+    (0.1..2.0f64, rotor, omega, rate(-40..3)).prop_filter("no rotor", |(_, r, ..)| largest(*r) > 1e-3)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// The start is met; energy, L3 and Lz stay up to t = 1e12, as far as roundings of R and Ω let them; one time or
+    /// many, the same bits.
+    #[test]
+    fn integrals_stay((i3, r, w, c) in tops(), t in -1e12..1e12f64, near in -30.0..30.0f64) {
+        let inertia = Inertia::from_principal_moments([1.0, 1.0, i3]).unwrap();
+        let (rotor, omega, c) = (Rotor::from_components(r).unwrap(), Bivector(w), Vector([0.0, 0.0, c]));
+        let top = LagrangeTop::new(&inertia, rotor, omega, c).unwrap();
+        let speed = (omega.norm() + c.norm().sqrt()) * (1.0 + i3);
+        let (first, spin) = top.at(0.0);
+        prop_assert!(largest((0..4).map(|k| first.components()[k] - rotor.components()[k])) <= 8.0 * EPS);
+        prop_assert!(largest((0..3).map(|k| spin.0[k] - w[k])) <= 16.0 * EPS * speed);
+        let integrals = |(r, w): (Rotor, Bivector)| {
+            let momentum = inertia.apply(w);
+            let gamma = r.reverse().apply(Vector([0.0, 0.0, 1.0]));
+            [0.5 * w.0.iter().zip(momentum.0).map(|(w, l)| w * l).sum::<f64>() + gamma.dot(c), momentum.0[2],
+             r.apply_bivector(momentum).0[2]]
+        };
+        let (start, scales) = (integrals((rotor, omega)), [speed * speed, speed, speed]);
+        for t in [t, near] {
+            let now = integrals(top.at(t));
+            for k in 0..3 {
+                prop_assert!((now[k] - start[k]).abs() <= 64.0 * EPS * scales[k], "{} at {}", k, t);
+            }
+        }
+        let (mut rotors, mut omegas) = ([0.0; 8], [0.0; 6]);
+        top.at_many(Threads::new(1), &[t, near], &mut rotors, &mut omegas);
+        prop_assert_eq!(&rotors[4..], &top.at(near).0.components()[..]);
+        prop_assert_eq!(&omegas[..3], &top.at(t).1.0[..]);
+    }
+
+    /// `R' = −½ R Ω`, by central differences of order 4.
+    #[test]
+    fn the_rate_of_the_rotor_is_the_spin((i3, r, w, c) in tops(), t in -30.0..30.0f64) {
+        let inertia = Inertia::from_principal_moments([1.0, 1.0, i3]).unwrap();
+        let (rotor, omega, c) = (Rotor::from_components(r).unwrap(), Bivector(w), Vector([0.0, 0.0, c]));
+        let top = LagrangeTop::new(&inertia, rotor, omega, c).unwrap();
+        let speed = (omega.norm() + 2.0 * c.norm().sqrt()) * (1.0 + i3);
+        let h = 2f64.powi(-9) / speed;
+        let at = |k: f64| top.at(t + k * h).0.components();
+        let (a, b, c, d) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
+        let (now, spin) = top.at(t);
+        let rate = now.reverse();
+        // −2 ~R R' is Ω: the slope in the rotor's own axes.
+        let slope: [f64; 4] = std::array::from_fn(|k| (8.0 * (a[k] - b[k]) - (c[k] - d[k])) / (12.0 * h));
+        let found = rate * Rotor::from_unit_components(slope.map(|x| -2.0 * x));
+        let [_, x, y, z] = found.components();
+        let bound = speed * 2f64.powi(-36) * 4.0 + 64.0 * EPS * (1.0 + speed * (1.0 + t.abs())) / h;
+        prop_assert!(largest([x - spin.0[0], y - spin.0[1], z - spin.0[2]]) <= bound);
+    }
+}
+
+#[test]
+fn horizon_and_regime() {
+    let inertia = Inertia::from_principal_moments([1.0, 1.0, 0.5]).unwrap();
+    let up = Vector([0.0, 0.0, 1.0]);
+    let top = LagrangeTop::new(&inertia, Rotor::IDENTITY, Bivector([0.0, 0.0, 3.0]), up).unwrap();
+    assert_eq!(top.describe().regime, LagrangeRegime::Sleeping);
+    assert!(!top.describe().sleeps && top.horizon() > 1e16);
+    let top = LagrangeTop::new(&inertia, Rotor::IDENTITY, Bivector([0.5, 0.0, 3.0]), up).unwrap();
+    assert!(top.horizon() > 1e16 && top.horizon() < 1e18);
+}

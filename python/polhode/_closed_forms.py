@@ -1,0 +1,119 @@
+"""Torqued motion in closed form: Lagrange's heavy top, the damped body, the sphere in a field."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import Array, as_float, as_floats
+from polhode._bodies import Inertia
+from polhode._motion import State
+from polhode._rotor import Rotor
+from polhode._values import as_point, bivector
+
+
+class _Solution(Protocol):
+    def at(self, times: Array) -> tuple[Array, Array]: ...
+
+
+class LagrangeTop:
+    """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
+
+    The body is held at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
+    torque of `ph.torque.heavy`. Two principal moments are equal and ``c`` lies along the axis of symmetry,
+    whichever it is. Both Cayley–Klein parameters of the rotor are theta functions times uniform phases,
+    which are reduced in twice the precision: the error is rounding at t = 1e12 as at t = 1, near the
+    separatrix as far from it. The rotor is continuous in time on the double cover.
+
+    Parameters
+    ----------
+    inertia
+        About the fixed point, in body axes, kg m².
+    rotor
+        At time 0, from body axes to space.
+    omega_body
+        At time 0, a bivector or (3,) in rad/s.
+    c
+        ``m g (centre of mass)`` in body axes, a vector or (3,) in N m.
+
+    Raises
+    ------
+    ValueError
+        If all moments differ, one is zero, or ``c`` lies beside the axis; for numbers that are not finite.
+    """
+
+    def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, c: Any) -> None:
+        start = _start(inertia, rotor, omega_body)
+        c = as_point(c, "c")
+        self._solution = _native.LagrangeTop(inertia._core, start.rotor._data, start.omega_body._data, c)
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        return _state(self._solution, t)
+
+    def describe(self) -> dict[str, Any]:
+        """Say what the invariants tell.
+
+        The axis is that of symmetry, in the direction of the centre of mass. ``regime``; ``tilt_min`` and
+        ``tilt_max``, angles of the axis from up in rad; ``nutation_period`` in s; ``precession_rate`` and
+        ``spin_rate``, the means of φ' about e3 and of ψ' about the axis in rad/s, ``precession_period``;
+        ``modulus`` of the elliptic functions; ``energy`` in J, ``axial_momentum`` L3 and
+        ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and whether a top
+        with this spin ``sleeps``, that is would be stable upright. None where nothing repeats.
+        """
+        return self._solution.describe()
+
+
+class DampedTop:
+    """Any body with the torque ``N = −g L``, exact at any time.
+
+    The free body at ``τ = (1 − e^(−gt))/g``, its angular velocity times ``e^(−gt)``; g in 1/s of either sign.
+    τ is known in twice the precision. A ValueError if a principal moment is zero or a number is not finite.
+    """
+
+    def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, g: float) -> None:
+        start = _start(inertia, rotor, omega_body)
+        g = as_float(g, "g")
+        self._solution = _native.DampedTop(inertia._core, start.rotor._data, start.omega_body._data, g)
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        return _state(self._solution, t)
+
+
+class LarmorSphere:
+    """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
+
+    ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with
+    the angular velocity ω in space at time 0. A ValueError if the moments differ or a number is not finite.
+    """
+
+    def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, b: Any) -> None:
+        start = _start(inertia, rotor, omega_body)
+        b = as_point(b, "b")
+        self._solution = _native.LarmorSphere(inertia._core, start.rotor._data, start.omega_body._data, b)
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        return _state(self._solution, t)
+
+
+def _start(inertia: Inertia, rotor: Rotor, omega_body: Any) -> State:
+    if not isinstance(inertia, Inertia):
+        raise TypeError(f"inertia must be an Inertia, got {type(inertia).__name__}; see Body.inertia")
+    start = State(rotor, omega_body)
+    if start.rotor.shape or start.omega_body.shape:
+        shapes = (start.rotor.shape, start.omega_body.shape)
+        raise ValueError(f"the start must be a single one, got batch shapes {shapes}")
+    return start
+
+
+def _state(solution: _Solution, t: Any) -> State:
+    times = as_floats(t, "time")
+    rotors, omegas = solution.at(np.ravel(times))
+    return State(
+        Rotor._from_rows(rotors.reshape(*times.shape, 4)),
+        bivector(omegas.reshape(*times.shape, 3), copy=False),
+    )

@@ -100,7 +100,8 @@ pub(crate) fn torque_at<'py>(
     }
     let omega = frame.reverse().apply_bivector(Bivector(one(&omega)?));
     let state = Phase { rotor: rotor(&rotor_row)? * frame, momentum: body.momentum(omega), time };
-    let torque = total(&body, &torques, &state).map_err(|error| failed(&laws, error))?;
+    let torque =
+        total(&body, &torques, &state).map_err(|error| failed(&laws, format!("at t = {time} s: {error}")))?;
     Ok(line(py, frame.apply_bivector(torque).0.to_vec()))
 }
 

@@ -63,7 +63,7 @@ impl Conserved {
         let acting: Vec<&Torque> = torques.iter().filter(|t| acts(t)).collect();
         let keeps_size = acting.iter().all(|t| matches!(t, Torque::Larmor(_)));
         let mut found = Vec::new();
-        if acting.iter().all(|t| does_no_hidden_work(t, body)) {
+        if acting.iter().all(|t| is_conservative(t, body)) {
             found.push(Conserved::Energy);
         }
         if keeps_size {
@@ -177,7 +177,7 @@ fn acts(torque: &Torque) -> bool {
 }
 
 /// Whether all the work of a law is in its potential. `ω·(L x b)` vanishes where L and ω are parallel.
-fn does_no_hidden_work(torque: &Torque, body: &Gyrostat) -> bool {
+fn is_conservative(torque: &Torque, body: &Gyrostat) -> bool {
     match torque {
         Torque::Heavy(_) | Torque::Magnetic { .. } | Torque::TorsionSpring { .. } => true,
         Torque::Larmor(_) => body.wheel == Default::default() && (0..3).all(|k| is_symmetric(body, k)),

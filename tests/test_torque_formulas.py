@@ -263,7 +263,7 @@ def test_what_a_function_raises_is_raised():
 
 
 def test_what_a_function_may_not_return_is_told_by_a_run():
-    with pytest.raises(ValueError, match=r"torque at t = 0.*NaN"):
+    with pytest.raises(ValueError, match=r"at t = 0.* s: the torque .*NaN"):
         ph.simulate(BODY, START, [1.0], T.function(lambda t, rotor, omega: [np.nan, 0, 0]))
 
 

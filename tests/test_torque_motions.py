@@ -137,3 +137,15 @@ def test_the_integrals_of_special_tops_are_watched(c):
     assert motion.certificate.drift.keys() == {"energy", "vertical_angular_momentum"}
     motion = ph.simulate(moments(1, 1, 0.5), start, times, ph.torque.heavy([0, 0, 2]), step=0.02)
     assert motion.certificate.drift["spin_angular_momentum"] <= 4 * EPS * np.sqrt(51 * 5000)
+
+
+@pytest.mark.parametrize("method", ["strang", "kahan_li6", "kahan_li8"])
+@pytest.mark.parametrize("end", [1.0, 0.7, 10.1, 1e6 / 3])
+def test_a_table_may_end_where_the_motion_does(method, end):
+    """The rounding of the last stage's time does not leave the table."""
+    law = ph.torque.tabulated([0, 0.4 * end, end], np.outer([1, 2, 1], [0.1, 0, 0.2]) / end)
+    for steps in (1, 3, 7, 10, 29, 100):
+        motion = ph.simulate(BODY, ph.State(R0, [0, 0, 0]), [end], law, method=method, step=end / steps)
+        assert np.isfinite(motion.rotor.components).all()
+    with pytest.raises(ValueError, match="table of torques spans 0 s to"):
+        ph.simulate(BODY, START, [1.01 * end], law, method=method, step=end / 7)

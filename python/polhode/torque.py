@@ -238,7 +238,9 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a
       `gyrostat` included,
     - ``I(…)``, the inertia map of the body on bivectors in body axes, beside ``I`` the pseudoscalar: before
-      a bracket it is the map, so the dual of a bracket is ``(…) I``.
+      a bracket it is the map, so the bivector of a vector in brackets is ``(…) I``.
+
+    A body held at a point moves by its inertia about that point: give `simulate` ``body.inertia_about(0)``.
 
     Parameters
     ----------

@@ -100,7 +100,8 @@ pub(crate) fn torque_at<'py>(
     }
     let omega = frame.reverse().apply_bivector(Bivector(one(&omega)?));
     let state = Phase { rotor: rotor(&rotor_row)? * frame, momentum: body.momentum(omega), time };
-    let torque = total(&body, &torques, &state).map_err(|error| failed(&laws, error))?;
+    let torque =
+        total(&body, &torques, &state).map_err(|error| failed(&laws, format!("at t = {time} s: {error}")))?;
     Ok(line(py, frame.apply_bivector(torque).0.to_vec()))
 }
 
@@ -219,6 +220,13 @@ fn asked(call: &Bound<'_, PyAny>, time: f64, rotor: Rotor, omega: Bivector) -> P
     {
         return Ok(Bivector([x, y, z]));
     }
+    if let Some(([x, y, z, ..], 3)) = value::row(&answer) {
+        return Ok(Bivector([x, y, z]));
+    }
+    if let Ok(three) = answer.extract::<Rows<'_>>().and_then(|rows| one(&rows)) {
+        return Ok(Bivector(three));
+    }
+    // Any other value of three numbers, or the error that says why it is none.
     static CHECKED: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let what = format!("the torque that the function returned at t = {time} s");
     let rows = CHECKED.import(py, "polhode._values", "as_bivectors")?.call1((answer, &what))?;

@@ -4,19 +4,15 @@
 //! `m' = m x ω + N` in axial vectors. From them:
 //!
 //! - `T = ½ ω·I(ω)` changes at the rate `ω·N`, so `E = T + V` is constant where every torque has a
-//!   potential. The wheel
-//!   does no work: `ω·(h x ω) = 0`.
+//!   potential. The wheel does no work: `ω·(h x ω) = 0`.
 //! - `L = R m ~R` changes at the rate of the torque in space. It is constant without one; its component
-//!   along an axis
-//!   about which no torque acts is; its size is under `N = L x b`.
+//!   along an axis about which no torque acts is; its size is under `N = L x b`.
 //! - `m·a`, for an axis a of the body, changes at the rate `(m x ω)·a + N·a`. The first vanishes where the
-//!   body is
-//!   symmetric about a and the wheel lies along a, for then m x ω is perpendicular to a.
+//!   body is symmetric about a and the wheel lies along a, for then m, ω and a lie in one plane.
 //! - In a field that turns about e3 at the rate n, and with other torques that e3 is an axis of,
 //!   `∂V/∂t = n N3 = n L3'`: Jacobi's integral `E − n L3` is constant.
 //! - Heavy bodies of two shapes have an integral of the fourth and of the third degree: S. Kovalevskaya,
-//!   Acta Math. 12
-//!   (1889) 177; D. N. Goryachev and S. A. Chaplygin, Mat. Sbornik 21 (1900).
+//!   Acta Math. 12 (1889) 177; D. N. Goryachev, Mat. Sb. 21 (1900) 431, and S. A. Chaplygin (1901).
 
 use crate::phase::{Gyrostat, Phase};
 use crate::torque::{E3, Torque};
@@ -67,7 +63,7 @@ impl Conserved {
         let acting: Vec<&Torque> = torques.iter().filter(|t| acts(t)).collect();
         let keeps_size = acting.iter().all(|t| matches!(t, Torque::Larmor(_)));
         let mut found = Vec::new();
-        if acting.iter().all(|t| does_no_hidden_work(t, body)) {
+        if acting.iter().all(|t| is_conservative(t, body)) {
             found.push(Conserved::Energy);
         }
         if keeps_size {
@@ -181,7 +177,7 @@ fn acts(torque: &Torque) -> bool {
 }
 
 /// Whether all the work of a law is in its potential. `ω·(L x b)` vanishes where L and ω are parallel.
-fn does_no_hidden_work(torque: &Torque, body: &Gyrostat) -> bool {
+fn is_conservative(torque: &Torque, body: &Gyrostat) -> bool {
     match torque {
         Torque::Heavy(_) | Torque::Magnetic { .. } | Torque::TorsionSpring { .. } => true,
         Torque::Larmor(_) => body.wheel == Default::default() && (0..3).all(|k| is_symmetric(body, k)),

@@ -90,7 +90,7 @@ pub enum Dependence {
     Rate,
 }
 
-/// Why a law has no torque at some point of the motion, or is no law.
+/// Why a law has no torque at some point of the motion, whose time the caller knows, or is no law.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TorqueError(pub String);
 

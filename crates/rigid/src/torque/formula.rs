@@ -227,7 +227,7 @@ impl FormulaTorque {
         let text = &self.compiled.text;
         let part = text.get(start..end).unwrap_or(text);
         let within = if part == text { String::new() } else { format!(" in the formula `{text}`") };
-        TorqueError(format!("no torque: `{part}`{within} has no value: {why}"))
+        TorqueError(format!("`{part}`{within} has no value: {why}"))
     }
 }
 

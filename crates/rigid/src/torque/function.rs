@@ -37,7 +37,7 @@ impl FunctionTorque {
         let torque = (self.call)(state.time, state.rotor * back, omega)?;
         if !torque.0.iter().all(|x| x.is_finite()) {
             let Bivector(torque) = torque;
-            return Err(TorqueError(format!("the function's torque at t = {} s is {torque:?}", state.time)));
+            return Err(TorqueError(format!("the torque that the function returned is {torque:?}")));
         }
         Ok(back.apply_bivector(torque))
     }

@@ -65,12 +65,14 @@ impl Table {
     /// The torque at a time between the first and the last.
     pub fn at(&self, time: f64) -> Result<Bivector, TorqueError> {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
-        if !(first..=last).contains(&time) {
+        // A step that ends at the last time may come to it a rounding late.
+        let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
+        if !(first - rounding..=last + rounding).contains(&time) {
             return Err(TorqueError(format!(
-                "no torque at t = {time} s: the table spans {first} s to {last} s; give rows for all the time that is \
-                 simulated"
+                "the table of torques spans {first} s to {last} s; give rows for all the time that is simulated"
             )));
         }
+        let time = time.clamp(first, last);
         let i = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1) - 1;
         let (h, x) =
             (self.times[i + 1] - self.times[i], (time - self.times[i]) / (self.times[i + 1] - self.times[i]));

@@ -33,6 +33,10 @@ if TYPE_CHECKING:
     from polhode._formula import evaluate as evaluate
     from polhode._formula import formula as formula
     from polhode._formula_error import FormulaError as FormulaError
+    from polhode._free_motion import FlowDerivatives as FlowDerivatives
+    from polhode._free_motion import FreeMotion as FreeMotion
+    from polhode._free_motion import SymmetricTop as SymmetricTop
+    from polhode._free_motion import describe_free as describe_free
     from polhode._geometry import axial as axial
     from polhode._geometry import from_axial as from_axial
     from polhode._geometry import split as split
@@ -43,13 +47,10 @@ if TYPE_CHECKING:
     from polhode._interpolation import slerp as slerp
     from polhode._linear import LinearMap as LinearMap
     from polhode._motion import Certificate as Certificate
-    from polhode._motion import FreeMotion as FreeMotion
-    from polhode._motion import State as State
-    from polhode._motion import SymmetricTop as SymmetricTop
     from polhode._motion import Trajectory as Trajectory
-    from polhode._motion import describe_free as describe_free
     from polhode._motion import simulate as simulate
     from polhode._scene import Scene as Scene
+    from polhode._state import State as State
 
 # Imported when they are first asked for: those who only multiply need not wait for mechanics.
 _LATER = {
@@ -60,6 +61,10 @@ _LATER = {
     "evaluate": "_formula",
     "formula": "_formula",
     "FormulaError": "_formula_error",
+    "FlowDerivatives": "_free_motion",
+    "FreeMotion": "_free_motion",
+    "SymmetricTop": "_free_motion",
+    "describe_free": "_free_motion",
     "axial": "_geometry",
     "from_axial": "_geometry",
     "split": "_geometry",
@@ -70,13 +75,10 @@ _LATER = {
     "slerp": "_interpolation",
     "LinearMap": "_linear",
     "Certificate": "_motion",
-    "FreeMotion": "_motion",
-    "State": "_motion",
-    "SymmetricTop": "_motion",
     "Trajectory": "_motion",
-    "describe_free": "_motion",
     "simulate": "_motion",
     "Scene": "_scene",
+    "State": "_state",
 }
 
 

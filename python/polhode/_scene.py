@@ -11,8 +11,9 @@ from polhode import _native
 from polhode import torque as laws
 from polhode._arrays import Array, frozen
 from polhode._bodies import Body
-from polhode._motion import State, Trajectory, simulate
+from polhode._motion import Trajectory, simulate
 from polhode._rotor import Rotor
+from polhode._state import State
 from polhode.torque import Torque
 
 DRIFT_BOUND = 1e-8

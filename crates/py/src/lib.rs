@@ -8,6 +8,7 @@ mod batches;
 mod bodies;
 mod calls;
 mod formula;
+mod free;
 mod motion;
 mod multivector;
 mod operators;
@@ -32,7 +33,9 @@ mod _native {
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
-    use crate::motion::{describe_free, free_motion, methods, simulate, symmetric_top};
+    use crate::free::FreeMotion;
+    #[pymodule_export]
+    use crate::motion::{methods, simulate, symmetric_top};
 
     #[pymodule_export]
     use crate::formula::Formula;

@@ -107,8 +107,7 @@ impl Differentiated {
     /// Of the unit motion: the turn ε in the body, δω, and ω'.
     fn in_principal_axes(&self, t: f64) -> ([Form; 3], [Form; 3], [f64; 3]) {
         let (i, start) = (self.unit.moments, self.unit.omega.0);
-        let (rotor, omega) = self.unit.at(t);
-        let varied = self.variation.at(t, omega.0);
+        let (rotor, varied) = (self.unit.at(t).0, self.variation.at(t));
         let w = varied.omega;
         let m: [f64; 3] = from_fn(|k| i[k] * w[k]);
         let rate = from_fn(|x| {

@@ -8,7 +8,7 @@ use crate::value::{Multivector, number, one, one_rotor};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor};
-use polhode_rigid::free::{self, Differentiated, at_each};
+use polhode_rigid::free::{self, FlowDerivatives, at_each};
 use polhode_rigid::inertia;
 use polhode_rigid::regime::FreeDescription;
 use polhode_rigid::simulate::check_horizon;
@@ -198,11 +198,15 @@ impl FreeMotion {
     ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Array<'py>, Array<'py>, Array<'py>)> {
         let times = numbers(&times)?;
         self.check(times)?;
-        let motions: Vec<Differentiated> =
-            self.motions.iter().map(free::FreeMotion::differentiated).collect();
-        let found = pieces(py, motions.len() * times.len(), |row| {
-            motions[row / times.len()].at(times[row % times.len()])
-        })?;
+        let mut found: Vec<FlowDerivatives> = Vec::with_capacity(self.motions.len() * times.len());
+        // What a motion's derivatives have in common is large, and kept for some motions at a time.
+        for bodies in self.motions.chunks(1024) {
+            let common = pieces(py, bodies.len(), |row| Some(bodies[row].differentiated()))?;
+            found.extend(pieces(py, bodies.len() * times.len(), |row| {
+                let common = common[row / times.len()].as_ref();
+                common.map_or_else(FlowDerivatives::default, |common| common.at(times[row % times.len()]))
+            })?);
+        }
         if let Some(row) = found.iter().position(|one| !one.is_finite()) {
             let (body, index) = (place(row / times.len(), &self.shape), row % times.len());
             return Err(bad(format!(

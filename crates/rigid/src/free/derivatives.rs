@@ -49,7 +49,7 @@ impl FlowDerivatives {
 }
 
 /// A free motion whose derivatives are wanted.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Differentiated {
     motion: FreeMotion,
     /// Power of two near the moments.

@@ -91,18 +91,18 @@ pub(super) struct Varied {
 }
 
 /// Of a motion with moments and rates near 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Variation {
     Steady(Steady),
-    Tumbling(Tumbling),
+    Tumbling(Box<Tumbling>),
 }
 
 impl Variation {
     /// Of a motion in principal axes.
     pub fn of(motion: &FreeMotion) -> Variation {
         match &motion.orbit {
-            Some(orbit) => Variation::Tumbling(Tumbling::new(motion, orbit)),
-            None => Variation::Steady(Steady::new(motion.moments, motion.omega.0)),
+            Some(orbit) => Variation::Tumbling(Box::new(Tumbling::new(motion, orbit))),
+            None => Variation::Steady(Steady { moments: motion.moments, omega: motion.omega.0 }),
         }
     }
 
@@ -288,49 +288,41 @@ impl Tumbling {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steady {
+    moments: [f64; 3],
     omega: [f64; 3],
-    /// A, p and μ.
-    matrix: [[f64; 3]; 3],
-    push: [Form; 3],
-    mu: f64,
 }
 
 impl Steady {
-    fn new(i: [f64; 3], w: [f64; 3]) -> Steady {
+    /// A and p.
+    fn field(&self) -> ([[f64; 3]; 3], [Form; 3]) {
+        let Steady { moments: i, omega: w } = self;
         let mut matrix = [[0.0; 3]; 3];
         let push = from_fn(|x| {
             let (y, z) = ((x + 1) % 3, (x + 2) % 3);
             let ratio = (i[y] - i[z]) / i[x];
-            matrix[x][y] = ratio * w[z];
-            matrix[x][z] = ratio * w[y];
+            (matrix[x][y], matrix[x][z]) = (ratio * w[z], ratio * w[y]);
             (Form::moment(y) - Form::moment(z)) * (w[y] * w[z] / i[x])
         });
-        let mu = (0..3).map(|x| matrix[x][(x + 1) % 3] * matrix[(x + 1) % 3][x]).sum();
-        Steady { omega: w, matrix, push, mu }
-    }
-
-    fn times(&self, x: [Form; 3]) -> [Form; 3] {
-        self.matrix.map(|row| x[0] * row[0] + x[1] * row[1] + x[2] * row[2])
+        (matrix, push)
     }
 
     fn at(&self, t: f64) -> Varied {
-        let root = self.mu.abs().sqrt();
-        let phase = root * t;
-        let (first, second) = if self.mu == 0.0 {
+        let (matrix, push) = self.field();
+        let mu: f64 = (0..3).map(|x| matrix[x][(x + 1) % 3] * matrix[(x + 1) % 3][x]).sum();
+        let root = mu.abs().sqrt();
+        let (first, second) = if mu == 0.0 {
             (t, 0.5 * t * t)
-        } else if self.mu > 0.0 {
-            let half = (0.5 * phase).sinh() / root;
-            (phase.sinh() / root, 2.0 * half * half)
         } else {
-            let half = (0.5 * phase).sin() / root;
-            (phase.sin() / root, 2.0 * half * half)
+            let function = if mu > 0.0 { f64::sinh } else { f64::sin };
+            let half = function(0.5 * root * t) / root;
+            (function(root * t) / root, 2.0 * half * half)
         };
+        let times = |x: [Form; 3]| matrix.map(|row| x[0] * row[0] + x[1] * row[1] + x[2] * row[2]);
         let start = from_fn(Form::rate);
-        let once = self.times(start);
-        let twice = self.times(once);
-        let pushed = self.times(self.push);
+        let once = times(start);
+        let (twice, pushed) = (times(once), times(push));
         let change = from_fn(|k| {
-            start[k] + once[k] * first + twice[k] * second + self.push[k] * t + pushed[k] * (0.5 * t * t)
+            start[k] + once[k] * first + twice[k] * second + push[k] * t + pushed[k] * (0.5 * t * t)
         });
         Varied { omega: self.omega, change, squares: self.omega.map(|w| w * w * t) }
     }

@@ -108,7 +108,7 @@ WOBBLES = {
 
 @pytest.mark.parametrize(("i", "omega"), WOBBLES.values(), ids=WOBBLES.keys())
 def test_wobble_and_phase(i, omega):
-    """The angle from L to the encircled axis is sampled; the phase is seen after a period, and Montgomery's."""
+    """The angle from L to the encircled axis is sampled; the phase is seen after a period."""
     body = moments(*i)
     motion = ph.FreeMotion(body, R0, omega)
     found = motion.describe()
@@ -117,7 +117,7 @@ def test_wobble_and_phase(i, omega):
     m = body(motion.polhode(n + 1)).components
     a, b = np.delete(m, c, axis=1).T
     angle = np.arctan2(np.hypot(a, b), np.abs(m[:, c]))
-    # Extremes are seen as well as a parabola through the samples about them: to second order in their distance.
+    # Near the separatrix the motion is too quick for the samples.
     least, most = found["wobble_min"], found["wobble_max"]
     assert least * (1 - 8 * EPS) <= angle.min()
     assert angle.max() <= most * (1 + 8 * EPS)
@@ -136,8 +136,8 @@ def test_wobble_and_phase(i, omega):
     # The solid angle is ∫ (1 − cos θ) dψ = ∫ tan(θ/2) sin θ dψ, by the trapezoidal rule over a period.
     t = np.arange(n) * (T / n)
     w = motion.at(t).omega_body.components
-    x, y, z = (np.roll(np.array(i) * w, -c - 1, axis=1).T)
-    u, v, s = (np.roll(w, -c - 1, axis=1).T)
+    x, y, z = np.roll(np.array(i) * w, -c - 1, axis=1).T
+    u, v, s = np.roll(w, -c - 1, axis=1).T
     moved = np.roll(i, -c - 1)
     dx, dy = (moved[1] - moved[2]) * v * s, (moved[2] - moved[0]) * s * u
     g = found["angular_momentum"]
@@ -156,7 +156,7 @@ def test_small_wobbles():
         found = ph.describe_free(moments(*i), omega)
         assert found["wobble_period"] == pytest.approx(wobble, rel=4 * EPS)
         assert found["wobble_min"] == found["wobble_max"] == 0
-        wobbling = ph.describe_free(moments(*i), np.add(omega, 1e-9))
+        wobbling = ph.describe_free(moments(*i), np.where(omega, omega, 1e-9))
         # To the square of the wobble.
         assert wobbling["period"] == pytest.approx(wobble, rel=1e-15)
         assert wobbling["wobble_period"] is None

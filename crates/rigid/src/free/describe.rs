@@ -4,7 +4,7 @@
 //! With the energy `2E = (G² + sP)/c` and ν of [`super`], `ν − 2E/G = −s A/T` with
 //!
 //! ```text
-//! A = (TP/cG) (1 − ½ S(k²/n)),   νT = 2ET/G − s A:
+//! A = (TP/cG) (1 − ½ S(k²/n)) = 2π + T (G|b−a| S(n)/2ab − Q/aG),   νT = 2ET/G − s A:
 //! ```
 //!
 //! the angle is what energy and time tell, less the solid angle A that L sweeps round the encircled axis in the
@@ -21,6 +21,9 @@ use crate::symmetric_top::equal;
 use crate::torque::{angular_momentum, kinetic};
 use polhode_ga::Bivector;
 use std::f64::consts::PI;
+
+/// From so large a parameter 1 − k²/n on the other form of A is taken; A is nearly 2π there.
+const FAR: f64 = 1e4;
 
 impl FreeMotion {
     /// Period of the angular velocity in the body, 4K/λ, in s; None where nothing repeats or changes.
@@ -85,12 +88,20 @@ impl FreeMotion {
         let [a, b, c] = orbit.axes.map(|k| DoubleDouble::from(self.moments[k] / size));
         let [wa, wb, wc] = orbit.axes.map(|k| DoubleDouble::from(self.omega.0[k] / self.scale));
         let [ma, mb, mc] = [a * wa, b * wb, c * wc];
-        let (ac, bc) = ((c - a).abs(), (c - b).abs());
+        let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
         let p = ac * ma * wa + bc * mb * wb;
-        let q = (b - a).abs() * mb * wb + ac * mc * wc;
+        let q = ab * mb * wb + ac * mc * wc;
         let g2 = ma * ma + mb * mb + mc * mc;
-        let (_, sum) = mean_and_sum(orbit.kc.into(), ac * g2 / (c * q));
-        let part = p / (c * g2.sqrt() * orbit.lambda * mean) * (DoubleDouble::ONE - sum * 0.5.into());
+        let (g, turn, half) = (g2.sqrt(), orbit.lambda * mean, DoubleDouble::from(0.5));
+        // 1 − k²/n.
+        let p2 = ac * g2 / (c * q);
+        let part = if p2.hi < FAR {
+            let (_, sum) = mean_and_sum(orbit.kc.into(), p2);
+            p / (c * g * turn) * (DoubleDouble::ONE - sum * half)
+        } else {
+            let (_, sum) = mean_and_sum(orbit.kc.into(), b * ac / (a * bc));
+            DoubleDouble::ONE + (g * ab * sum * half / (a * b) - q / (a * g)) / turn
+        };
         Some(2.0 * PI * part.value()).filter(|x| x.is_finite())
     }
 

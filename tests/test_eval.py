@@ -384,7 +384,7 @@ def test_it_is_quick_to_start():
     """It loads neither mechanics nor SciPy."""
     code = (
         "import sys; from polhode import _cli; _cli.main(['eval', 'e1']); "
-        "print([m for m in sys.modules if m.startswith(('scipy', 'polhode._motion', 'rich'))])"
+        "print([m for m in sys.modules if m.startswith(('scipy', 'polhode._simulate', 'rich'))])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == ["e1", "[]"]

@@ -290,8 +290,10 @@ def test_bad_input_is_refused():
         ph.FreeMotion(inertia, [1, 0, 0, 0], ph.bivector([1, 0, 0]))
     with pytest.raises(TypeError, match="Inertia"):
         ph.FreeMotion(ph.Body.sphere(1.0, mass=1.0), ph.Rotor.identity(), ph.bivector([1, 0, 0]))
-    with pytest.raises(ValueError, match="batch"):
-        ph.FreeMotion(inertia, ph.Rotor.identity((2,)), ph.bivector([1, 0, 0]))
+    with pytest.raises(ValueError, match="component"):
+        ph.FreeMotion(inertia, ph.Rotor.identity(), [1, 0])
+    with pytest.raises(TypeError, match="bivector"):
+        ph.FreeMotion(inertia, ph.Rotor.identity(), ph.e1)
 
 
 @pytest.mark.parametrize("case", STATES.values(), ids=STATES.keys())

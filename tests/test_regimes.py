@@ -93,6 +93,97 @@ def test_special_motions_are_named(i, omega, regime, axis):
     assert found["angular_momentum"] == pytest.approx(np.linalg.norm(np.multiply(i, omega)), rel=4 * EPS)
 
 
+WOBBLES = {
+    "short axis": ((1, 2, 3), (0.25, -0.5, 1.0)),
+    "long axis": ((2, 3, 1.5), (-0.25, 0.125, -1.5)),
+    "near the separatrix": ((1, 2, 3), (2**-20, 1.0, 2**-20)),
+    "needle": ((1, 1000, 1000.5), (2.0, 0.5, 0.25)),
+    "plate": ((1, 1, 2), (0.5, -0.25, 1.0)),
+    "rod-like": ((2, 2, 1), (0.5, -0.25, 1.0)),
+    "nearly a sphere": ((1, 1 + 2**-33, 1 + 2**-32), (0.5, -0.25, 1.0)),
+    "tiny wobble": ((1, 2, 3), (2**-30, 2**-31, 1.0)),
+    "tiny wobble, long axis": ((1, 2, 2.5), (1.0, 2**-30, 2**-31)),
+}
+
+
+@pytest.mark.parametrize(("i", "omega"), WOBBLES.values(), ids=WOBBLES.keys())
+def test_wobble_and_phase(i, omega):
+    """The angle from L to the encircled axis is sampled; the phase is seen after a period."""
+    body = moments(*i)
+    motion = ph.FreeMotion(body, R0, omega)
+    found = motion.describe()
+    c, sign = found["axis"] - 1, 1 if i[found["axis"] - 1] == max(i) else -1
+    n = 4096
+    m = body(motion.polhode(n + 1)).components
+    a, b = np.delete(m, c, axis=1).T
+    angle = np.arctan2(np.hypot(a, b), np.abs(m[:, c]))
+    # Near the separatrix the motion is too quick for the samples.
+    least, most = found["wobble_min"], found["wobble_max"]
+    assert least * (1 - 8 * EPS) <= angle.min()
+    assert angle.max() <= most * (1 + 8 * EPS)
+    near = 0.05 if "near" in found["regime"] or found["modulus"] > 0.999 else 1e-4
+    assert angle.min() == pytest.approx(least, rel=near)
+    assert angle.max() == pytest.approx(most, rel=near)
+    # R(T) = −exp(−½ L/|L| φ) R(0). The period is rounded, and the body turns meanwhile.
+    T, phase = found["period"], found["phase_per_period"]
+    L = R0(body(ph.bivector(omega)))
+    after = -(-0.5 * phase * L / L.norm()).exp() * R0
+    spin = np.linalg.norm(omega)
+    assert (after - motion.at(T).rotor).norm() <= 64 * EPS * (1 + T * spin)
+    dynamic = 2 * found["energy"] * T / found["angular_momentum"]
+    area = found["solid_angle"]
+    assert phase - dynamic == pytest.approx(sign * (2 * np.pi - area), abs=64 * EPS * (1 + abs(dynamic)))
+    # The solid angle is ∫ (1 − cos θ) dψ = ∫ tan(θ/2) sin θ dψ, by the trapezoidal rule over a period.
+    t = np.arange(n) * (T / n)
+    w = motion.at(t).omega_body.components
+    x, y, z = np.roll(np.array(i) * w, -c - 1, axis=1).T
+    u, v, s = np.roll(w, -c - 1, axis=1).T
+    moved = np.roll(i, -c - 1)
+    dx, dy = (moved[1] - moved[2]) * v * s, (moved[2] - moved[0]) * s * u
+    g = found["angular_momentum"]
+    rate = (x * dy - y * dx) / (g * (g + np.abs(z)))
+    tolerance = 1e-3 if found["modulus"] > 0.999 else 1e-12
+    assert abs(rate.sum()) * T / n == pytest.approx(area, rel=tolerance)
+
+
+def test_small_wobbles():
+    """A steady rotation tells the period of a wobble that it does not have; Feynman's plate wobbles twice."""
+    for i, omega, wobble in (
+        ((1, 2, 2.5), (0, 0, -2.0), np.pi / np.sqrt(1.5 * 0.5 / 2)),
+        ((1, 2, 2.5), (0.5, 0, 0), 4 * np.pi / np.sqrt(1.5 * 1 / 5)),
+        ((1, 1, 2), (0, 0, 1.0), 2 * np.pi),
+    ):
+        found = ph.describe_free(moments(*i), omega)
+        assert found["wobble_period"] == pytest.approx(wobble, rel=4 * EPS)
+        assert found["wobble_min"] == found["wobble_max"] == 0
+        wobbling = ph.describe_free(moments(*i), np.where(omega, omega, 1e-9))
+        # To the square of the wobble.
+        assert wobbling["period"] == pytest.approx(wobble, rel=1e-15)
+        assert wobbling["wobble_period"] is None
+    for i, omega in (((1, 2, 3), (0, 1, 0)), ((2, 2, 2), (1, 2, 3)), ((1, 1, 2), (3, 4, 0))):
+        assert ph.describe_free(moments(*i), omega)["wobble_period"] is None
+    assert ph.describe_free(moments(1, 2, 3), [0, 0, 0])["wobble_max"] is None
+
+
+def test_a_small_solid_angle_keeps_its_digits():
+    """A circle of the small radius θ about the axis of a plate or rod: ``2π (1 − cos θ)``, 1e-26 of 2π."""
+    for i in ((1, 1, 2), (2, 2, 1)):
+        for small in (1e-13, 1e-3, 1.0, 1e9):
+            found = ph.describe_free(moments(*i), [small, 0, 1])
+            theta = np.arctan2(i[0] * small, i[2])
+            assert found["wobble_min"] == pytest.approx(theta, rel=4 * EPS)
+            assert found["wobble_max"] == pytest.approx(theta, rel=4 * EPS)
+            area = 4 * np.pi * np.sin(theta / 2) ** 2
+            assert found["solid_angle"] == pytest.approx(area, rel=8 * EPS)
+
+
+def test_the_separatrix_wobbles_up_to_a_right_angle():
+    found = ph.describe_free(moments(1, 2, 2.25), [0.375, 0.5, 0.5])
+    assert found["wobble_max"] == np.pi / 2
+    assert found["solid_angle"] is None
+    assert found["phase_per_period"] is None
+
+
 def test_symmetric_top_takes_any_times_and_axes():
     top = ph.SymmetricTop(moments(2, 1, 2), R0, [0.5, -0.25, 1.0])
     assert top.at(0.0).rotor.is_close(R0, rtol=4 * EPS)

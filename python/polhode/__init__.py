@@ -38,6 +38,10 @@ if TYPE_CHECKING:
     from polhode._formula import evaluate as evaluate
     from polhode._formula import formula as formula
     from polhode._formula_error import FormulaError as FormulaError
+    from polhode._free_motion import FlowDerivatives as FlowDerivatives
+    from polhode._free_motion import FreeMotion as FreeMotion
+    from polhode._free_motion import SymmetricTop as SymmetricTop
+    from polhode._free_motion import describe_free as describe_free
     from polhode._geometry import axial as axial
     from polhode._geometry import from_axial as from_axial
     from polhode._geometry import split as split
@@ -47,12 +51,9 @@ if TYPE_CHECKING:
     from polhode._interpolation import mean as mean
     from polhode._interpolation import slerp as slerp
     from polhode._linear import LinearMap as LinearMap
-    from polhode._motion import FreeMotion as FreeMotion
-    from polhode._motion import State as State
-    from polhode._motion import SymmetricTop as SymmetricTop
-    from polhode._motion import describe_free as describe_free
     from polhode._scene import Scene as Scene
     from polhode._simulate import simulate as simulate
+    from polhode._state import State as State
     from polhode._trajectory import Certificate as Certificate
     from polhode._trajectory import Crossings as Crossings
     from polhode._trajectory import Trajectory as Trajectory
@@ -69,6 +70,10 @@ _LATER = {
     "evaluate": "_formula",
     "formula": "_formula",
     "FormulaError": "_formula_error",
+    "FlowDerivatives": "_free_motion",
+    "FreeMotion": "_free_motion",
+    "SymmetricTop": "_free_motion",
+    "describe_free": "_free_motion",
     "axial": "_geometry",
     "from_axial": "_geometry",
     "split": "_geometry",
@@ -80,13 +85,10 @@ _LATER = {
     "LinearMap": "_linear",
     "Certificate": "_trajectory",
     "Crossings": "_trajectory",
-    "FreeMotion": "_motion",
-    "State": "_motion",
-    "SymmetricTop": "_motion",
     "Trajectory": "_trajectory",
-    "describe_free": "_motion",
     "simulate": "_simulate",
     "Scene": "_scene",
+    "State": "_state",
 }
 _MODULES = ("event", "force", "torque")
 

@@ -9,8 +9,8 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, as_float, as_floats
 from polhode._bodies import Inertia
-from polhode._motion import State
 from polhode._rotor import Rotor
+from polhode._state import State
 from polhode._values import as_point, bivector
 
 

@@ -15,11 +15,15 @@ __all__ = [
     "Body",
     "Buffer",
     "DampedTop",
+    "Event",
+    "Force",
     "Formula",
+    "FreeMotion",
     "Inertia",
     "LagrangeTop",
     "LarmorSphere",
     "Law",
+    "Motion",
     "Multivector",
     "Program",
     "Rotor",
@@ -27,9 +31,7 @@ __all__ = [
     "__version__",
     "buffer",
     "canonical",
-    "describe_free",
     "diagnostic",
-    "free_motion",
     "from_pauli",
     "function",
     "g3",
@@ -241,6 +243,7 @@ class Law:
     def __reduce__(self) -> tuple[type[Law], tuple[Any, ...]]: ...
 
 def torque_at(laws: list[Law], inertia: Inertia, rotor_row: Array, omega: Array, time: float) -> Array: ...
+
 @final
 class LagrangeTop:
     def __new__(cls, inertia: Inertia, rotor_row: Array, omega: Array, c: Array) -> Self: ...
@@ -259,8 +262,22 @@ class LarmorSphere:
 
 def methods() -> list[str]: ...
 def symmetric_top(inertia: Inertia, rotor_row: Array, omega: Array, times: Array) -> tuple[Array, Array]: ...
-def free_motion(inertia: Inertia, rotor_row: Array, omega: Array, times: Array) -> tuple[Array, Array]: ...
-def describe_free(inertia: Inertia, omega: Array) -> dict[str, Any]: ...
+
+@final
+class FreeMotion:
+    @staticmethod
+    def single(inertia: Inertia, rotor: Any, omega: Any) -> FreeMotion | None: ...
+    @staticmethod
+    def batch(inertias: list[Inertia], rotors: Array, omegas: Array) -> FreeMotion: ...
+    def once(self, t: Any) -> tuple[WholeRotor, Whole] | None: ...
+    def at(self, times: Array) -> tuple[Array, Array]: ...
+    def describe(self) -> dict[str, Any]: ...
+    def polhode(self, count: int) -> Array: ...
+    def herpolhode(self, count: int, periods: float) -> Array: ...
+    def derivatives(self, times: Array) -> tuple[Array, Array, Array, Array, Array, Array, Array]: ...
+    def starts(self) -> tuple[Array, Array]: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
 
 @final
 class Force:

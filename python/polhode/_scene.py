@@ -11,9 +11,9 @@ from polhode import _native
 from polhode import torque as laws
 from polhode._arrays import Array, frozen
 from polhode._bodies import Body
-from polhode._motion import State
 from polhode._rotor import Rotor
 from polhode._simulate import simulate
+from polhode._state import State
 from polhode._trajectory import Trajectory
 from polhode.torque import Torque
 

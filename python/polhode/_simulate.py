@@ -11,7 +11,7 @@ from polhode import _native
 from polhode import force as forces
 from polhode._arrays import as_float, as_floats
 from polhode._bodies import Body, Inertia
-from polhode._motion import State, _single
+from polhode._state import State, single
 from polhode._trajectory import Certificate, Trajectory
 from polhode._values import as_point, vector
 from polhode.event import Event
@@ -83,7 +83,7 @@ def simulate(
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     if method == "exact" and (torque is not None or step is not None):
         raise ValueError('method "exact" is for free motion without a step; leave it out for others')
-    start = _single(state)
+    start = single(state)
     mass = body.mass if isinstance(body, Body) else None
     inertia = _ruling_inertia(body, torque)
     when = np.atleast_1d(as_floats(times, "times"))

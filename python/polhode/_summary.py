@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from polhode._arrays import Array
-from polhode._motion import SymmetricTop, describe_free
+from polhode._free_motion import SymmetricTop, describe_free
 from polhode._scene import Scene
 from polhode._trajectory import Trajectory
 from polhode._values import vector

@@ -13,9 +13,9 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, as_floats, frozen
 from polhode._bodies import Inertia
-from polhode._motion import State
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
+from polhode._state import State
 from polhode._values import bivector, vector
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from polhode._rotor import Rotor
 from polhode._values import as_bivectors, as_vectors, bivector
 
 if TYPE_CHECKING:
-    from polhode._motion import State
+    from polhode._state import State
 
 _FRAMES = ("body", "space")
 _KINDS = ("linear", "cubic")

@@ -56,7 +56,7 @@ impl Threads {
 }
 
 /// Calls `work` for each item, by a thread for each where they are to be had.
-pub(crate) fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: impl Fn(I) + Sync) {
+pub fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: impl Fn(I) + Sync) {
     let count = items.len();
     if count <= 1 {
         return items.for_each(work);

@@ -9,6 +9,7 @@ mod bodies;
 mod calls;
 mod closed_forms;
 mod formula;
+mod free;
 mod laws;
 mod motion;
 mod multivector;
@@ -36,9 +37,11 @@ mod _native {
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
+    use crate::free::FreeMotion;
+    #[pymodule_export]
     use crate::laws::{Event, Force};
     #[pymodule_export]
-    use crate::motion::{describe_free, free_motion, symmetric_top};
+    use crate::motion::symmetric_top;
     #[pymodule_export]
     use crate::simulation::{Motion, methods, simulate};
 

@@ -76,21 +76,25 @@
 //! Jacobi 1849; Whittaker, *Analytical Dynamics* §69; Celledoni, Fassò, Säfström, Zanna, SIAM J. Sci. Comput.
 //! 30 (2008); DLMF 20.7 (theta functions), 19.7 and 19.8 (integrals).
 
+mod derivatives;
+mod describe;
 mod flow;
 pub(crate) mod lanes;
+mod many;
 pub(crate) mod orbit;
+mod path;
 pub(crate) mod series;
+mod variation;
 
 use crate::double_double::DoubleDouble;
 use crate::elliptic::mean;
 use crate::inertia::Inertia;
-use crate::phase::Gyrostat;
-use crate::regime::{FreeDescription, Regime};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
-use crate::symmetric_top::equal;
+pub use derivatives::{Differentiated, FlowDerivatives};
 use flow::{AnyFlow, Flow};
 use lanes::Phase;
+pub use many::at_each;
 use orbit::Orbit;
 use polhode_ga::curve::{sample, value};
 use polhode_ga::threads::Threads;
@@ -105,6 +109,8 @@ pub(crate) const MOST_TURNS: f64 = 1e17;
 #[derive(Clone, Copy, Debug)]
 pub struct FreeMotion {
     moments: [f64; 3],
+    /// From principal axes to those of the body.
+    frame: Rotor,
     /// In principal axes at time 0.
     omega: Bivector,
     /// A power of two near the largest component of omega; the orbit is that of omega/scale in time
@@ -137,7 +143,7 @@ impl FreeMotion {
             Some(orbit) => tumbling(orbit, scale, rotor, frame),
             None => steady(omega, scale, rotor, frame),
         };
-        FreeMotion { moments, omega, scale, orbit, flow }
+        FreeMotion { moments, frame, omega, scale, orbit, flow }
     }
 
     /// How far in time, in s, the phase is known: to 1e17 turns.
@@ -166,42 +172,6 @@ impl FreeMotion {
         match &self.flow {
             AnyFlow::Circular(flow) => sample(flow, threads, times, rotors, omegas),
             AnyFlow::Hyperbolic(flow) => sample(flow, threads, times, rotors, omegas),
-        }
-    }
-
-    /// What the invariants tell.
-    pub fn describe(&self) -> FreeDescription {
-        let (i, w) = (self.moments, self.omega.0);
-        let body = Gyrostat::rigid(i);
-        let momentum = body.momentum(self.omega);
-        let largest = |x: &usize, y: &usize| w[*x].abs().total_cmp(&w[*y].abs());
-        let still = FreeDescription {
-            regime: if w == [0.0; 3] { Regime::Rest } else { Regime::Steady },
-            energy: body.kinetic(momentum),
-            angular_momentum: momentum.norm(),
-            modulus: 0.0,
-            axis: (0..3).max_by(largest).unwrap_or(0),
-            period: None,
-            precession_rate: None,
-        };
-        let Some(orbit) = &self.orbit else { return still };
-        let [a, b, c] = orbit.axes;
-        let regime = match orbit.mean {
-            None => Regime::Separatrix,
-            Some(_) if equal(i[a], i[b]) => Regime::Symmetric,
-            Some(_) if orbit.s > 0.0 => Regime::ShortAxis,
-            Some(_) => Regime::LongAxis,
-        };
-        let moving = FreeDescription { regime, modulus: orbit.k2.sqrt(), axis: c, ..still };
-        let Some(mean) = orbit.mean else { return moving };
-        // ν leaves out one turn in each period.
-        let turn = orbit.lambda * mean;
-        let period = 2.0 * PI / turn.value() / self.scale;
-        let rate = orbit.precession + turn * orbit.s.into();
-        FreeDescription {
-            period: Some(period).filter(|x| x.is_finite()),
-            precession_rate: Some(rate.value() * self.scale).filter(|x| x.is_finite()),
-            ..moving
         }
     }
 }

@@ -50,12 +50,26 @@ pub struct FreeDescription {
     pub period: Option<f64>,
     /// Mean rate of precession about L, in rad/s; None with the period.
     pub precession_rate: Option<f64>,
+    /// The solid angle that L sweeps in the body round the encircled axis in one period; None with the period.
+    pub solid_angle: Option<f64>,
+    /// Least and largest angle between L and the encircled axis, at most π/2; None at rest.
+    pub wobble: Option<[f64; 2]>,
+    /// Period of a small wobble about the axis of a steady rotation in s; None if that is not stable, and if the
+    /// motion is not steady.
+    pub wobble_period: Option<f64>,
 }
 
 impl FreeDescription {
     /// Period of the mean precession about L, in s.
     pub fn precession_period(&self) -> Option<f64> {
         self.precession_rate.map(|rate| 2.0 * PI / rate)
+    }
+
+    /// The angle by which the body has turned about L after one period, at the mean rate of precession. With it
+    /// `R(T) = −exp(−½ L/|L| φ) R(0)`: the turns of a rotor are counted to 4π, and one of 2π is L's own way round
+    /// the encircled axis in the body.
+    pub fn phase_per_period(&self) -> Option<f64> {
+        Some(self.precession_rate? * self.period?)
     }
 
     /// Time between reversals of the spin about the middle axis, half the period, in s.

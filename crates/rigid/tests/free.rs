@@ -2,7 +2,7 @@
 
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use polhode_rigid::free::FreeMotion;
+use polhode_rigid::free::{FreeMotion, at_each};
 use polhode_rigid::regime::Regime;
 use proptest::prelude::*;
 
@@ -165,6 +165,30 @@ proptest! {
             let (rotor, omega) = motion.at(t);
             prop_assert_eq!(rotor.components(), &rotors[4 * k..4 * k + 4]);
             prop_assert_eq!(omega.0, &omegas[3 * k..3 * k + 3]);
+        }
+    }
+}
+
+/// Many bodies at many times, from any row to any other, by any number of threads: the same bits.
+#[test]
+fn many_bodies_give_the_same_bits() {
+    let bodies: Vec<FreeMotion> = (0..90)
+        .map(|k| {
+            let x = f64::from(k) / 64.0;
+            FreeMotion::in_principal_axes([1.0, 1.0 + x, 2.0], start(), Bivector([0.25, x, 1.0 - x]))
+        })
+        .collect();
+    for count in [1, 5, 8, 70] {
+        let times: Vec<f64> = (0..count).map(|k| f64::from(k) * 12.5 - 100.0).collect();
+        let all = bodies.len() * times.len();
+        for (rows, threads) in [(0..all, 1), (0..all, 3), (all / 3..all - 1, 2), (7..7, 2)] {
+            let (mut rotors, mut omegas) = (vec![0.0; 4 * rows.len()], vec![0.0; 3 * rows.len()]);
+            at_each(Threads::new(threads), &bodies, &times, rows.clone(), &mut rotors, &mut omegas);
+            for (k, row) in rows.enumerate() {
+                let (rotor, omega) = bodies[row / times.len()].at(times[row % times.len()]);
+                assert_eq!(rotor.components(), rotors[4 * k..4 * k + 4]);
+                assert_eq!(omega.0, omegas[3 * k..3 * k + 3]);
+            }
         }
     }
 }

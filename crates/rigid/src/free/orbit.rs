@@ -18,6 +18,8 @@ pub(super) struct Orbit {
     pub amplitudes: [f64; 3],
     pub lambda: DoubleDouble,
     pub k2: f64,
+    /// k'.
+    pub kc: f64,
     /// ν, in rad/s.
     pub precession: DoubleDouble,
     /// AGM(1, k') = π/2K; None on the separatrix.
@@ -92,7 +94,8 @@ impl Orbit {
             let (precession, mean) = inv.precession(s, k2, kc, lambda);
             (precession, Some(mean))
         };
-        let start = argument(w[a] / amplitudes[0], w[b] / amplitudes[1], kc.value());
+        let kc = kc.value();
+        let start = argument(w[a] / amplitudes[0], w[b] / amplitudes[1], kc);
         let amplitudes_of_eta = inv.amplitudes_of_eta();
         Some(Orbit {
             axes: [a, b, c],
@@ -101,6 +104,7 @@ impl Orbit {
             amplitudes,
             lambda,
             k2,
+            kc,
             precession,
             mean,
             start,

@@ -1,0 +1,270 @@
+"""The free top, exact at any time: states, what its invariants tell, its curves, and derivatives."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import Array, Shape, as_float, as_floats, frozen
+from polhode._bodies import Inertia
+from polhode._coefficients import as_coefficients
+from polhode._multivector import Multivector
+from polhode._rotor import Rotor
+from polhode._state import State, angular_velocity
+from polhode._values import bivector
+
+
+class FreeMotion:
+    """The torque-free motion of any body, exact at any time; or of a batch of bodies.
+
+    Jacobi's solution: the rotor is four theta series and one uniform turn about L, the angular velocity
+    three elliptic functions. Their phases are reduced in twice the precision, so that the error is rounding
+    at t = 1e12 as at t = 1, near the separatrix as far from it. The rotor is continuous in time on the
+    double cover.
+
+    Parameters
+    ----------
+    inertia
+        An `Inertia` in kg m², or a nested sequence or array of them.
+    rotor
+        From body axes to space axes at time 0.
+    omega_body
+        Angular velocity in body axes at time 0, a bivector or an array (..., 3), in rad/s.
+
+    Batch shapes broadcast together, to `shape`. ``m[i]`` is one motion, or fewer.
+
+    Raises
+    ------
+    ValueError
+        If a moment is zero or a number is not finite; with the batch index.
+    """
+
+    _core: _native.FreeMotion
+    _inertia: Any  # an Inertia, or an array of them of the batch's shape
+
+    def __init__(self, inertia: Any, rotor: Rotor, omega_body: Any) -> None:
+        core = None
+        if isinstance(inertia, Inertia):
+            core = _native.FreeMotion.single(inertia._core, rotor, omega_body)
+        self._core, self._inertia = (core, inertia) if core else _batch(inertia, rotor, omega_body)
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the batch of bodies; ``()`` for one."""
+        return self._core.shape
+
+    def __getitem__(self, index: Any) -> FreeMotion:
+        numbers = np.arange(int(np.prod(self.shape))).reshape(self.shape)
+        try:
+            picked = numbers[index]
+        except IndexError as error:
+            raise IndexError(f"{error} (batch shape {self.shape})") from None
+        rotors, omegas = self._core.starts()
+        inertia = self._inertia if isinstance(self._inertia, Inertia) else self._inertia.ravel()[picked]
+        return type(self)(inertia, Rotor._from_rows(rotors[picked]), bivector(omegas[picked]))
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single motion has no length; only batches have")
+        return self.shape[0]
+
+    def __iter__(self) -> Iterator[FreeMotion]:
+        return (self[i] for i in range(len(self)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        rotors, omegas = self._core.starts()
+        rotor = Rotor._from_rows(rotors.reshape(*self.shape, 4))
+        return type(self), (self._inertia, rotor, bivector(omegas.reshape(*self.shape, 3)))
+
+    def __repr__(self) -> str:
+        if self.shape:
+            return f"FreeMotion(batch {self.shape})"
+        return f"FreeMotion({self.describe()['regime']}, {self._inertia!r})"
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; all at all times, of batch shape ``m.shape + t.shape``.
+
+        Each is the same to the last bit as that of one motion at one time. A ValueError for times that are
+        not finite, or so late that the phase is no longer known (1e17 turns).
+        """
+        state = self._core.once(t)
+        if state is None:
+            times = as_floats(t, "time")
+            rotors, omegas = self._core.at(np.ravel(times))
+            shape = self.shape + times.shape
+            state = Rotor._from_rows(rotors.reshape(*shape, 4)), _bivectors(omegas, shape)
+        return State._at_origin(*state)
+
+    def describe(self) -> dict[str, Any]:
+        """Say what the invariants tell.
+
+        - ``regime``, in words; ``axis``, the principal axis (1, 2, 3) that the polhode encircles; ``modulus``
+          k of the elliptic functions; ``energy`` in J; ``angular_momentum``, its size in kg m²/s.
+        - ``period`` T of the angular velocity in the body, and ``flip_time``, half of it, after which the
+          spin about the middle axis is reversed (short- and long-axis mode), in s.
+        - ``precession_rate``, the mean rate about L in rad/s, and ``precession_period``, 2π over it, in s.
+        - ``phase_per_period``, the rate times T: the angle φ by which the attitude is turned about L after a
+          period. With the rotor, which counts turns to 4π, ``R(T) = −exp(−½ L/|L| φ) R(0)``.
+        - ``solid_angle`` A in sr that L sweeps in the body round the encircled axis in a period (Montgomery's
+          geometric phase): ``φ = 2ET/|L| ± (2π − A)``, + if that axis has the largest moment, else −.
+        - ``wobble_min``, ``wobble_max``: the extremes of the angle between L and the encircled axis, in rad.
+        - ``wobble_period`` in s of a small wobble, where the rotation is steady about an axis and stable.
+
+        What has no meaning in a regime is None. For a batch all are arrays of its shape, NaN for None.
+        """
+        told = self._core.describe()
+        if not self.shape:
+            return told
+        return {name: np.asarray(column).reshape(self.shape) for name, column in told.items()}
+
+    def polhode(self, n: int) -> Multivector:
+        """Return n angular velocities in body axes along one period, bivectors (..., n).
+
+        They follow each other in equal times from the start on, and the last is the first, so that the curve
+        is closed. A steady rotation stays at its point. The separatrix is not closed: its curve goes from one
+        end of the middle axis to the other, up to 4e-9 of the way.
+        """
+        return _bivectors(self._core.polhode(_count(n)), (*self.shape, n))
+
+    def herpolhode(self, n: int, periods: float = 1.0) -> Multivector:
+        """Return n angular velocities in space axes over so many periods, bivectors (..., n).
+
+        Their tips lie in the invariable plane, ``Ω_S·L = −2E``; the curve is closed only by chance.
+        """
+        length = as_float(periods, "periods")
+        if not (length > 0 and np.isfinite(length)):
+            raise ValueError(f"periods is {length}; it must be positive and finite")
+        return _bivectors(self._core.herpolhode(_count(n), length), (*self.shape, n))
+
+    def derivatives(self, t: Any) -> FlowDerivatives:
+        """Return how the state at time t changes with the start and the body, exact at any time.
+
+        In closed form, so that the cost does not grow with t and the error is rounding. A ValueError as in
+        `at`, and where an unstable rotation has carried a change beyond floating point.
+
+        A function for JAX is `jax.custom_jvp` with `at` for its value, by `jax.pure_callback`, and with the
+        sum of the derivatives times the tangents for its tangent.
+        """
+        times = as_floats(t, "time")
+        found = self._core.derivatives(np.ravel(times))
+        shape = self.shape + times.shape
+        sizes = ((4, 3), (4, 3), (4, 3), (4,), (3, 3), (3, 3), (3,))
+        return FlowDerivatives(
+            *(frozen(x.reshape(shape + size)) for x, size in zip(found, sizes, strict=True))
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class FlowDerivatives:
+    """Derivatives of the state of a free motion at time t, for a batch of times and bodies of shape (...).
+
+    Rows are components: of the rotor ``(1, e2e3, e3e1, e1e2)``, of the angular velocity in body axes
+    ``(e2e3, e3e1, e1e2)``. Columns are components of what is changed at the start.
+
+    Attributes
+    ----------
+    d_rotor_d_attitude
+        (..., 4, 3), by a turn of the start by a small bivector ε in space axes, ``exp(−½ε) R(0)``. The
+        angular velocity in the body does not change with it.
+    d_rotor_d_omega, d_omega_d_omega
+        (..., 4, 3) in s and (..., 3, 3), by the angular velocity in body axes at the start.
+    d_rotor_d_moments, d_omega_d_moments
+        (..., 4, 3) and (..., 3, 3), by the principal moments in kg m², about principal axes that stay where
+        they are in the body, and at the same angular velocity at the start.
+    d_rotor_dt, d_omega_dt
+        (..., 4) and (..., 3), by time: ``−½ R Ω_B`` and Euler's equations.
+    """
+
+    d_rotor_d_attitude: Array
+    d_rotor_d_omega: Array
+    d_rotor_d_moments: Array
+    d_rotor_dt: Array
+    d_omega_d_omega: Array
+    d_omega_d_moments: Array
+    d_omega_dt: Array
+
+
+class SymmetricTop(FreeMotion):
+    """The free top with two equal moments, by handout eq. (4.35); a single one.
+
+    ``R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)``, ``Ω_l = L/i1``, ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` with the
+    symmetry axis e3 of the body, or whichever it is. A ValueError if all three moments differ. The rates are
+    rounded, so the error grows with the angle turned; that of `FreeMotion` does not.
+    """
+
+    def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any) -> None:
+        super().__init__(inertia, rotor, omega_body)
+        if self.shape:
+            raise ValueError(f"a SymmetricTop is a single one, got batch shape {self.shape}; use FreeMotion")
+        self.at(0.0)
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        times = as_floats(t, "time")
+        rotor, omega = (row[0] for row in self._core.starts())
+        rotors, omegas = _native.symmetric_top(self._inertia._core, rotor, omega, np.ravel(times))
+        rotors = rotors.reshape(*times.shape, 4)
+        return State._at_origin(Rotor._from_rows(rotors), _bivectors(omegas, times.shape))
+
+
+def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
+    """Say what the invariants of a free motion tell, as `FreeMotion.describe`."""
+    return FreeMotion(inertia, Rotor.identity(), omega_body).describe()
+
+
+def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotion, Any]:
+    """Return motions and inertias from what may be batches."""
+    inertias = _inertias(inertia)
+    if not isinstance(rotor, Rotor):
+        raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")
+    turns = as_coefficients(rotor._data, "the rotor", float)
+    rates = angular_velocity(omega_body)._data
+    shapes = inertias.shape, turns.shape[:-1], rates.shape[:-1]
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        raise ValueError(
+            f"the batch shapes {shapes[0]} of the inertia, {shapes[1]} of the rotor and {shapes[2]} of the "
+            "angular velocity do not broadcast together"
+        ) from None
+    one = not inertias.shape
+    if not one:
+        inertias = np.broadcast_to(inertias, shape)
+    cores = [value._core for value in inertias.flat]
+    turns, rates = (np.broadcast_to(x, (*shape, x.shape[-1])) for x in (turns, rates))
+    core = _native.FreeMotion.batch(cores, np.ascontiguousarray(turns), np.ascontiguousarray(rates))
+    return core, inertias[()] if one else inertias
+
+
+def _inertias(values: Any) -> Any:
+    """Return an array of objects, all of them inertias."""
+    array: Any = np.empty((), dtype=object)
+    if isinstance(values, Inertia):
+        array[()] = values
+    elif isinstance(values, list | tuple | np.ndarray):
+        array = np.array(values, dtype=object)
+    else:
+        raise TypeError(f"inertia must be an Inertia, got {type(values).__name__}; see Body.inertia")
+    for index, value in np.ndenumerate(array):
+        if not isinstance(value, Inertia):
+            raise TypeError(f"at index {index}: inertia must be an Inertia, got {type(value).__name__}")
+    return array
+
+
+def _bivectors(numbers: Array, shape: Shape) -> Multivector:
+    return bivector(numbers.reshape(*shape, 3), copy=False)
+
+
+def _count(n: Any) -> int:
+    try:
+        count = operator.index(n)
+    except TypeError:
+        raise TypeError(f"n must be a whole number, got {type(n).__name__}") from None
+    if count < 2:
+        raise ValueError(f"n is {count}; a curve has at least 2 points")
+    return count

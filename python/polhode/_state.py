@@ -1,0 +1,78 @@
+"""States of a body: attitude, rotation, place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from polhode._arrays import Array
+from polhode._multivector import Multivector
+from polhode._rotor import Rotor
+from polhode._values import as_bivectors, as_vectors, bivector, vector
+
+_ORIGIN = vector([0.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A body's state: attitude, rotation, place.
+
+    Attributes
+    ----------
+    rotor
+        From body axes to space axes.
+    omega_body
+        Angular velocity in body axes, a bivector in rad/s; an array (..., 3) of its components
+        ``(e2e3, e3e1, e1e2)``, which are those of the axial vector, is taken too.
+    position, velocity
+        Of the centre of mass in space, vectors in m and m/s.
+    """
+
+    rotor: Rotor
+    omega_body: Multivector
+    position: Multivector = 0  # type: ignore[assignment]
+    velocity: Multivector = 0  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.rotor, Rotor):
+            raise TypeError(
+                f"rotor must be a Rotor, got {type(self.rotor).__name__}; see Rotor.from_components"
+            )
+        object.__setattr__(self, "omega_body", angular_velocity(self.omega_body))
+        for name in ("position", "velocity"):
+            value = getattr(self, name)
+            zero = not isinstance(value, Multivector) and np.ndim(value) == 0 and value == 0
+            object.__setattr__(self, name, _ORIGIN if zero else vector(as_vectors(value, name)))
+
+    @classmethod
+    def _at_origin(cls, rotor: Rotor, omega_body: Multivector) -> State:
+        """Return the state of values that need no check, at rest in the origin."""
+        self = object.__new__(cls)
+        # A frozen instance's own dictionary: four times as fast as object.__setattr__.
+        self.__dict__.update(rotor=rotor, omega_body=omega_body, position=_ORIGIN, velocity=_ORIGIN)
+        return self
+
+
+def angular_velocity(value: Any) -> Multivector:
+    """Return bivectors from bivectors, or from an array (..., 3)."""
+    return bivector(as_bivectors(value, "the angular velocity"))
+
+
+def single(state: State) -> State:
+    """Return the state, which must be a single and finite one."""
+    if not isinstance(state, State):
+        raise TypeError(f"state must be a State, got {type(state).__name__}")
+    shapes = (state.rotor.shape, state.omega_body.shape, state.position.shape, state.velocity.shape)
+    if any(shapes):
+        raise ValueError(f"the state must be a single one, got batch shapes {shapes}")
+    for name in ("position", "velocity"):
+        _check_finite(getattr(state, name).components, f"the {name}")
+    _check_finite(state.omega_body.components, "the angular velocity")
+    return state
+
+
+def _check_finite(components: Array, what: str) -> None:
+    if not np.isfinite(components).all():
+        raise ValueError(f"{what} is {components.tolist()}; it must be finite")

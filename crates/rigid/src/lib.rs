@@ -22,6 +22,7 @@ pub mod elliptic;
 mod exact;
 pub mod free;
 pub mod inertia;
+mod kicks;
 pub mod mesh;
 pub mod method;
 pub mod phase;

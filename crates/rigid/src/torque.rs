@@ -9,7 +9,6 @@ use std::fmt;
 
 const E1: Vector = Vector([1.0, 0.0, 0.0]);
 const E2: Vector = Vector([0.0, 1.0, 0.0]);
-const E3: Vector = Vector([0.0, 0.0, 1.0]);
 
 /// What turns the body. Vectors and bivectors of the body are in body axes.
 #[derive(Clone, Debug)]
@@ -78,7 +77,7 @@ impl Torque {
     pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
         let rotor = state.rotor;
         Ok(match self {
-            Torque::Heavy(c) => rotor.reverse().apply(E3).wedge(*c),
+            Torque::Heavy(c) => state.vertical().wedge(*c),
             Torque::GravityGradient(n) => {
                 let u = rotor.reverse().apply(radial(*n, state.time));
                 u.wedge(body.stretched(u)) * (3.0 * n * n)
@@ -107,7 +106,7 @@ impl Torque {
     /// Its potential energy in J, if it has one that does not change with time and with the rate.
     pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
         match self {
-            Torque::Heavy(c) => Some(state.rotor.reverse().apply(E3).dot(*c)),
+            Torque::Heavy(c) => Some(state.vertical().dot(*c)),
             Torque::Wheel(_) => Some(0.0),
             Torque::GravityGradient(_)
             | Torque::ConstantBody(_)

@@ -119,7 +119,7 @@ impl Problem {
                 let first = if method.adapts() {
                     Pace::Tolerance(goal.max(1e3 * LEAST_TOLERANCE))
                 } else {
-                    Pace::Step(if rate > 0.0 { 1.5 / rate } else { longest.max(1.0) })
+                    Pace::Step(if rate > 0.0 { method.first_turn() / rate } else { longest.max(1.0) })
                 };
                 let (pass, error) =
                     converge(&mut run, first, (method.order(), goal, acceptable), &self.body)?;

@@ -10,11 +10,13 @@ use polhode_rigid::torque::Torque;
 
 const EPS: f64 = f64::EPSILON;
 
+type Step = Box<dyn Fn(&mut Phase, f64)>;
+
 /// A method at work: its name, its order, and one step of it.
 struct Stepper {
     name: &'static str,
     order: f64,
-    step: Box<dyn Fn(&mut Phase, f64)>,
+    step: Step,
 }
 
 fn body() -> Gyrostat {
@@ -127,7 +129,7 @@ fn orders_under_damping() {
 #[test]
 fn orders_of_bodies_with_a_wheel() {
     let (body, wheel) = with_wheel();
-    assert_orders(body, &[wheel.clone()]);
+    assert_orders(body, std::slice::from_ref(&wheel));
     assert_orders(body, &[wheel, heavy(), Torque::Damping(0.25)]);
 }
 

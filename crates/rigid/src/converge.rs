@@ -17,6 +17,9 @@ pub(crate) const WORST_UNASKED: f64 = 1e-6;
 /// How many times shorter the steps of the second pass are.
 const SECOND: f64 = 1.6;
 
+/// Passes whose steps are so many times shorter tell of each other's error.
+const TELLING: f64 = 1.1;
+
 /// The error falls as the step to the order times this at least, where passes have shown that it falls so: a margin.
 const TRUSTED: f64 = 0.75;
 
@@ -40,9 +43,12 @@ impl Pace {
 ///
 /// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
 ///
-/// With steps h and h/s the passes differ by nearly the error of the first, `e`, and the error of the second is
-/// `e s^(−q)`. Of the order q half is taken for granted; once two differences have shown an order, three quarters of
-/// that. So is the next step foretold, and few passes are needed.
+/// With steps h and h/s the passes differ by `e (s^q − 1)`, where `e` is the error of the second. Of the order q half is
+/// taken for granted; once two differences have shown an order, three quarters of that. So is the next step foretold,
+/// and few passes are needed.
+///
+/// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
+/// ratio of their numbers; where that is nearly 1 the passes tell nothing, and the sum of the tolerances has to be small.
 pub(crate) fn converge(
     run: &mut dyn FnMut(Pace) -> Result<Pass, SimulateError>,
     first: Pace,
@@ -72,12 +78,24 @@ pub(crate) fn converge(
         steps += fine.steps;
         evaluations += fine.evaluations;
         let difference = difference(body, &coarse.states, &fine.states);
+        let mut shorter = by;
+        if let Pace::Tolerance(tolerance) = pace {
+            shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
+            if shorter < TELLING {
+                let sum = fine.steps as f64 * tolerance;
+                if sum <= 0.1 * goal || tolerance == LEAST_TOLERANCE && difference <= acceptable {
+                    return Ok((Pass { steps, evaluations, ..fine }, difference.max(sum.min(goal))));
+                }
+                (coarse, by) = (fine, 2.0);
+                continue;
+            }
+        }
         let shown = last.map(|(before, by): (f64, f64)| (before / difference).ln() / by.ln());
         let (exponent, converging) = match shown {
             Some(shown) => (TRUSTED * shown.clamp(0.0, order), shown > 0.6 * order),
             None => (0.5 * order, false),
         };
-        let truncation = difference * by.powf(-exponent);
+        let truncation = difference / (shorter.powf(exponent) - 1.0).max(1.0);
         // Where rounding may rule, the difference itself tells the error.
         let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
         let stuck = error > 0.5 * previous && previous < 1e-2 || number > MOST_PASSES;
@@ -87,7 +105,7 @@ pub(crate) fn converge(
         if stuck {
             return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
         }
-        (last, previous) = (Some((difference, by)), error);
+        (last, previous) = (Some((difference, shorter)), error);
         by = if difference < 0.1 {
             let likely = difference * by.powf(-0.9 * order);
             (1.1 * (likely / goal).powf(1.0 / (TRUSTED * order))).clamp(1.3, 6.0)

@@ -103,7 +103,7 @@ CASES = [(name, method) for name, p in PROBLEMS.items() for method in METHODS if
 def test_tolerances_are_met_and_estimates_are_honest(name, method):
     """The error is at most ten times the tolerance and the estimate; near rounding it may be refused."""
     problem = PROBLEMS[name]
-    # The exact free motions of an asymmetric body between its kicks are rounded by some ulps each: 1e-12 is below
+    # The exact free motions between the kicks are rounded by some ulps each: 1e-12 is below
     # what thousands of them leave.
     coarser = method == "rkn6" and "gravity_gradient" in name
     for decade in DECADES[:-1] if coarser else DECADES:

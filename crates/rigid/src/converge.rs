@@ -84,7 +84,10 @@ pub(crate) fn converge(
             if shorter < TELLING {
                 let sum = fine.steps as f64 * tolerance;
                 if sum <= 0.1 * goal || tolerance == LEAST_TOLERANCE && difference <= acceptable {
-                    return Ok((Pass { steps, evaluations, ..fine }, difference.max(sum.min(goal))));
+                    return Ok((
+                        Pass { steps, evaluations, ..fine },
+                        difference.max(sum.min(goal)).max(f64::EPSILON),
+                    ));
                 }
                 (coarse, by) = (fine, 2.0);
                 continue;
@@ -98,6 +101,8 @@ pub(crate) fn converge(
         let truncation = difference / (shorter.powf(exponent) - 1.0).max(1.0);
         // Where rounding may rule, the difference itself tells the error.
         let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
+        // However well passes agree, what they give is rounded.
+        let error = error.max(f64::EPSILON);
         let stuck = error > 0.5 * previous && previous < 1e-2 || number > MOST_PASSES;
         if error <= goal || stuck && error <= acceptable {
             return Ok((Pass { steps, evaluations, ..fine }, error));

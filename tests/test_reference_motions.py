@@ -6,7 +6,21 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from motions import ASYMMETRIC, EPS, METHODS, REFERENCE, SLOPES, START, STEPS, apart, moments, random_walk
+from motions import (
+    ASYMMETRIC,
+    EPS,
+    METHODS,
+    REFERENCE,
+    SLOPES,
+    START,
+    STEPS,
+    SYMMETRIC,
+    apart,
+    law_of,
+    moments,
+    order_of,
+    random_walk,
+)
 
 # --- reference states
 
@@ -123,18 +137,6 @@ def test_reference_states(case):
         assert apart(exact, np.array([R]), np.array([omega])) <= 5e-15
 
 
-def law_of(case):
-    """The torque law of a case in the reference file; None for a free one, and "none" for no law of ours."""
-    given = case.get("params", case)
-    if "c" in given:
-        return ph.torque.heavy([float(x) for x in given["c"]])
-    if "n" in given and "params" in case:
-        return ph.torque.gravity_gradient(float(given["n"]))
-    if "g" in given:
-        return ph.torque.damping(float(given["g"]))
-    return None
-
-
 def reference_cases():
     if not REFERENCE.exists():
         return [pytest.param(None, None, id="none", marks=pytest.mark.skip("the reference file is not here"))]
@@ -189,14 +191,16 @@ def test_the_error_estimate_of_a_symmetric_top():
 # --- orders
 
 
-@pytest.mark.parametrize("name", SLOPES)
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("name", "method"), [(n, m) for n in SLOPES for m in METHODS if order_of(m, n) is not None]
+)
 def test_every_method_has_its_order(name, method):
     """log(error) against log(step) has the slope of the order, over the last steps before rounding."""
     inertia, state, torque, t = SLOPES[name]
-    exact = ph.simulate(inertia, state, [t], torque, step=t / 1024)
+    exact = ph.simulate(inertia, state, [t], torque, method=STEPS, step=t / 512)
     steps, errors = [], []
-    for count in (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256):
+    # The implicit equation of dmv has solutions for turns below 1 rad.
+    for count in (32, 48, 64, 96, 128, 192, 256) if method == "dmv" else (8, 12, 16, 24, 32, 48, 64, 96, 128):
         motion = ph.simulate(inertia, state, [t], torque, method=method, step=t / count)
         assert motion.certificate.method == method
         error = apart(motion, exact.rotor.components, exact.omega_body.components)
@@ -204,8 +208,29 @@ def test_every_method_has_its_order(name, method):
             steps.append(t / count)
             errors.append(error)
     slope = np.polyfit(np.log(steps[-4:]), np.log(errors[-4:]), 1)[0]
-    # What is left of the next term, two powers higher and of either sign, bends the line a little.
-    assert METHODS[method] - 0.6 < slope < METHODS[method] + 0.6, errors
+    # What is left of the next term, of either sign, bends the line a little.
+    # Of dop853 the terms of the powers 8 and 9 are of one size until both are rounding.
+    margin = 0.9 if method == "dop853" else 0.3
+    assert abs(slope - order_of(method, name)) < margin, (slope, errors)
+
+
+def test_a_method_that_is_not_fit_says_so():
+    with pytest.raises(ValueError, match=r"rkn6 .* damping; use kahan_li8"):
+        ph.simulate(ASYMMETRIC, START, [1.0], ph.torque.damping(1), method="rkn6")
+    with pytest.raises(ValueError, match=r"step of 4.* s.*shorter step"):
+        ph.simulate(ASYMMETRIC, START, [8.0], method="dmv", step=4.0)
+
+
+@pytest.mark.parametrize("method", SYMMETRIC)
+@pytest.mark.parametrize("name", ["free", "heavy", "Lagrange"])
+def test_a_run_backward_returns(name, method):
+    """In steps of the same length, to what the motion makes of two runs' rounding."""
+    inertia, state, torque, t = SLOPES[name]
+    there = ph.simulate(inertia, state, [t], torque, method=method, step=t / 64)
+    end = ph.State(there.rotor[0], there.omega_body[0])
+    back = ph.simulate(inertia, end, [-t], torque, method=method, step=t / 64)
+    start = state.rotor.components[np.newaxis], state.omega_body.components[np.newaxis]
+    assert apart(back, *start) <= 50 * random_walk(128, method)
 
 
 def test_auto_is_exact_for_a_free_body_and_else_the_highest_order():

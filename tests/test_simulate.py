@@ -111,7 +111,8 @@ def test_the_inertia_may_be_in_any_axes():
 def test_a_given_step_is_kept_and_an_estimate_is_not_claimed():
     motion = ph.simulate(ASYMMETRIC, START, [1.0, 2.05], step=0.1)
     assert motion.certificate.step == pytest.approx(0.1)
-    assert motion.certificate.step <= 0.1 * (1 + EPS)
+    # The steps' ends are rounded times near 2.
+    assert motion.certificate.step <= 0.1 + 2 * EPS
     assert motion.certificate.steps == 10 + 11
     assert motion.certificate.error_estimate is None
 

@@ -18,6 +18,9 @@ pub(crate) const WORST_UNASKED: f64 = 1e-6;
 /// How many times shorter the steps of the second pass are.
 const SECOND: f64 = 1.6;
 
+/// Passes whose steps are so many times shorter tell of each other's error.
+const TELLING: f64 = 1.1;
+
 /// The error falls as the step to the order times this at least, where passes have shown that it falls so: a margin.
 const TRUSTED: f64 = 0.75;
 
@@ -50,9 +53,12 @@ pub(crate) struct Converged {
 ///
 /// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
 ///
-/// With steps h and h/s the passes differ by nearly the error of the first, `e`, and the error of the second is
-/// `e s^(−q)`. Of the order q half is taken for granted; once two differences have shown an order, three quarters of
-/// that. So is the next step foretold, and few passes are needed.
+/// With steps h and h/s the passes differ by `e (s^q − 1)`, where `e` is the error of the second. Of the order q half is
+/// taken for granted; once two differences have shown an order, three quarters of that. So is the next step foretold,
+/// and few passes are needed.
+///
+/// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
+/// ratio of their numbers; where that is nearly 1 the passes tell nothing, and the sum of the tolerances has to be small.
 pub(crate) fn converge(
     run: &mut dyn FnMut(Pace) -> Result<Pass, SimulateError>,
     first: Pace,
@@ -65,7 +71,8 @@ pub(crate) fn converge(
     let (mut steps, mut evaluations) = (coarse.steps, coarse.evaluations);
     // The last difference, and how many times shorter its steps were.
     let mut last: Option<(f64, f64)> = None;
-    let mut previous = f64::INFINITY;
+    // The least error so far, and whether the pass before lowered it.
+    let (mut previous, mut before) = (f64::INFINITY, true);
     for number in 2.. {
         if let Pace::Step(step) = &mut pace
             && coarse.longest > 0.0
@@ -82,24 +89,39 @@ pub(crate) fn converge(
         steps += fine.steps;
         evaluations += fine.evaluations;
         let difference = difference(body, &coarse.states, &fine.states);
+        let mut shorter = by;
+        if let Pace::Tolerance(tolerance) = pace {
+            shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
+            if shorter < TELLING {
+                let sum = fine.steps as f64 * tolerance;
+                if sum <= 0.1 * goal || tolerance == LEAST_TOLERANCE && difference <= acceptable {
+                    let error = difference.max(sum.min(goal)).max(f64::EPSILON);
+                    return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });
+                }
+                (coarse, by) = (fine, 2.0);
+                continue;
+            }
+        }
         let shown = last.map(|(before, by): (f64, f64)| (before / difference).ln() / by.ln());
         let (exponent, converging) = match shown {
             Some(shown) => (TRUSTED * shown.clamp(0.0, order), shown > 0.6 * order),
             None => (0.5 * order, false),
         };
-        let truncation = difference * by.powf(-exponent);
+        let truncation = difference / (shorter.powf(exponent) - 1.0).max(1.0);
         // Where rounding may rule, the difference itself tells the error.
         let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
         // Each step rounds, at random.
         let error = error.max(f64::EPSILON * (fine.steps as f64).sqrt());
-        let stuck = error > 0.5 * previous && previous < 1e-2 || number > MOST_PASSES;
+        // One pass may be lucky; two that gain nothing are ruled by rounding.
+        let gained = error <= 0.5 * previous || previous >= 1e-2;
+        let stuck = !gained && !before || number > MOST_PASSES;
         if error <= goal || stuck && error <= acceptable {
             return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });
         }
         if stuck {
             return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
         }
-        (last, previous) = (Some((difference, by)), error);
+        (last, previous, before) = (Some((difference, shorter)), error.min(previous), gained);
         by = if difference < 0.1 {
             let likely = difference * by.powf(-0.9 * order);
             (1.1 * (likely / goal).powf(1.0 / (TRUSTED * order))).clamp(1.3, 6.0)

@@ -1,7 +1,9 @@
 //! Methods by name, and what each is fit for.
 
 use crate::closed_form::ClosedForm;
+use crate::dmv::MoserVeselov;
 use crate::force::Translation;
+use crate::midpoint::Midpoint;
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::{Carried, DOP853, RK4, RungeKutta, Tableau};
 use crate::simulate_error::SimulateError;
@@ -16,13 +18,22 @@ pub enum Method {
     Splitting(Sequence),
     /// Runge–Kutta on the group of rotors.
     RungeKutta(&'static Tableau),
+    /// The implicit midpoint rule.
+    Midpoint,
+    /// Discrete Moser–Veselov.
+    MoserVeselov,
 }
 
 /// Every method, splittings first, each kind by rising order.
 pub fn methods() -> impl Iterator<Item = Method> {
     let compositions = COMPOSITIONS.iter().map(|c| Method::Splitting(Sequence::Composition(c)));
-    let others =
-        [Method::Splitting(Sequence::Nystrom(&RKN6)), Method::RungeKutta(&RK4), Method::RungeKutta(&DOP853)];
+    let others = [
+        Method::Splitting(Sequence::Nystrom(&RKN6)),
+        Method::RungeKutta(&RK4),
+        Method::RungeKutta(&DOP853),
+        Method::Midpoint,
+        Method::MoserVeselov,
+    ];
     compositions.chain(others)
 }
 
@@ -38,6 +49,8 @@ impl Method {
             Method::Splitting(Sequence::Composition(composition)) => composition.name,
             Method::Splitting(Sequence::Nystrom(nystrom)) => nystrom.name,
             Method::RungeKutta(tableau) => tableau.name,
+            Method::Midpoint => "midpoint",
+            Method::MoserVeselov => "dmv",
         }
     }
 
@@ -47,12 +60,19 @@ impl Method {
             Method::Splitting(Sequence::Composition(composition)) => composition.order,
             Method::Splitting(Sequence::Nystrom(nystrom)) => nystrom.order,
             Method::RungeKutta(tableau) => tableau.order,
+            Method::Midpoint | Method::MoserVeselov => 2,
         }
     }
 
     /// Whether it estimates the error of each step, and chooses the next by it.
     pub fn adapts(self) -> bool {
         matches!(self, Method::RungeKutta(tableau) if !tableau.fifth.is_empty())
+    }
+
+    /// How far the fastest turn may go in the first step that is tried, in rad: an implicit equation has a solution for
+    /// short steps alone.
+    pub(crate) fn first_turn(self) -> f64 {
+        if matches!(self, Method::Midpoint | Method::MoserVeselov) { 0.4 } else { 1.5 }
     }
 
     /// The method for these laws: a splitting where they depend on attitude and time alone and are smooth, for it
@@ -73,20 +93,29 @@ impl Method {
 
     /// Why it is not fit for this body and these laws, and what is.
     fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
-        let Method::Splitting(sequence) = self else { return None };
+        if matches!(self, Method::RungeKutta(_) | Method::Midpoint) {
+            return None;
+        }
         if torques.iter().any(|t| t.dependence() == Dependence::Rate) {
             return Some(
-                "kicks at fixed attitude, but a torque depends on the rate of turning; use auto or dop853",
+                "kicks at fixed attitude, but a torque depends on the rate of turning; use auto, dop853 or midpoint",
             );
         }
-        let Sequence::Nystrom(_) = sequence else { return None };
-        if torques.iter().any(|t| t.damping_rate() != 0.0) {
-            return Some(
-                "is of its order for torques that depend on the attitude alone, not with damping; use kahan_li8",
-            );
+        let wheel = body.wheel != Default::default();
+        match self {
+            Method::Splitting(Sequence::Nystrom(_)) if torques.iter().any(|t| t.damping_rate() != 0.0) => {
+                Some(
+                    "is of its order for torques that depend on the attitude alone, not with damping; use kahan_li8",
+                )
+            }
+            Method::Splitting(Sequence::Nystrom(_)) if wheel => {
+                Some("needs the exact free motion, which a wheel has not; use kahan_li8")
+            }
+            Method::MoserVeselov if wheel => Some(
+                "has no form for a body with a wheel; use midpoint, which conserves as much, or kahan_li8",
+            ),
+            _ => None,
         }
-        (body.wheel != Default::default())
-            .then_some("needs the exact free motion, which a wheel has not; use kahan_li8")
     }
 }
 
@@ -100,6 +129,8 @@ fn symmetric(body: &Gyrostat) -> bool {
 pub(crate) enum Engine {
     Splitting(Splitting),
     RungeKutta(RungeKutta),
+    Midpoint(Midpoint),
+    MoserVeselov(MoserVeselov),
     /// The closed form, looked at in steps.
     ClosedForm(ClosedForm),
 }
@@ -126,21 +157,23 @@ impl Engine {
             Method::RungeKutta(tableau) => {
                 Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation, tableau))
             }
+            Method::Midpoint => Engine::Midpoint(Midpoint::new(body, torques.to_vec(), start)),
+            Method::MoserVeselov => Engine::MoserVeselov(MoserVeselov::new(body, torques.to_vec(), start)),
         })
     }
 
     /// One step of length `h`, and an estimate of its error where the method has one, relative to the angular velocity
     /// `fastest` in rad/s, else 0.
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
+        let mut to = *from;
         match self {
-            Engine::Splitting(splitting) => {
-                let mut to = *from;
-                splitting.step(&mut to.phase, h)?;
-                Ok((to, 0.0))
-            }
-            Engine::RungeKutta(runge_kutta) => runge_kutta.step(from, h, fastest),
-            Engine::ClosedForm(motion) => Ok((motion.at(from.phase.time + h), 0.0)),
+            Engine::Splitting(splitting) => splitting.step(&mut to.phase, h)?,
+            Engine::RungeKutta(runge_kutta) => return runge_kutta.step(from, h, fastest),
+            Engine::ClosedForm(motion) => to = motion.at(from.phase.time + h),
+            Engine::Midpoint(midpoint) => midpoint.step(&mut to.phase, h)?,
+            Engine::MoserVeselov(moser_veselov) => moser_veselov.step(&mut to.phase, h)?,
         }
+        Ok((to, 0.0))
     }
 
     /// Evaluations of the torque in a step.
@@ -149,6 +182,9 @@ impl Engine {
             Engine::Splitting(splitting) => splitting.evaluations(),
             Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
             Engine::ClosedForm(_) => 0,
+            // One in each iteration, of which there are about as many.
+            Engine::Midpoint(_) => 5,
+            Engine::MoserVeselov(_) => 2,
         }
     }
 }

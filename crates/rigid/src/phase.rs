@@ -23,6 +23,15 @@ pub struct Phase {
     pub time: f64,
 }
 
+impl Phase {
+    /// `γ = ~R e3 R`: what is vertical in space, seen from the body.
+    #[inline]
+    pub fn vertical(&self) -> Vector {
+        let [s, x, y, z] = self.rotor.components();
+        Vector([2.0 * (x * z + s * y), 2.0 * (y * z - s * x), s * s + z * z - (x * x + y * y)])
+    }
+}
+
 impl Gyrostat {
     /// A body without a wheel.
     pub fn rigid(moments: [f64; 3]) -> Gyrostat {

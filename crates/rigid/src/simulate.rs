@@ -163,7 +163,7 @@ impl Problem {
                 let goal = options.rtol.unwrap_or(DEFAULT_RTOL);
                 let acceptable = options.rtol.unwrap_or(WORST_UNASKED);
                 let adapted = Pace::Tolerance(goal.max(1e3 * LEAST_TOLERANCE));
-                let first = if method.adapts() { adapted } else { long(1.5) };
+                let first = if method.adapts() { adapted } else { long(method.first_turn()) };
                 let mut number = 0;
                 let mut run = |pace: Pace| {
                     number += 1;

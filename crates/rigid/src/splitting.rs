@@ -28,13 +28,16 @@
 //! of m is left alone: on an unstable axis a component that is zero stays zero.
 
 mod sequences;
+mod turn;
 
 use crate::free::FreeMotion;
+use crate::kicks::{Kicks, fixed_momentum, restore_momentum};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
-use crate::torque::{Torque, exerted};
+use crate::torque::Torque;
 use polhode_ga::{Bivector, Rotor};
 pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
+use turn::cosine_and_sinc;
 
 /// How kicks and free motion follow each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,9 +52,12 @@ pub enum Sequence {
 #[derive(Clone, Debug)]
 pub struct Splitting {
     body: Gyrostat,
-    torques: Vec<Torque>,
-    damping: f64,
-    sequence: Sequence,
+    kicks: Kicks,
+    /// Kicks and drifts in turn, as fractions of the step, and the kick after the last.
+    stages: Vec<(f64, f64)>,
+    last_kick: f64,
+    /// Whether drifts are the exact free motion of any body.
+    exact_drift: bool,
     /// Axes a and b, and κ_a, κ_b; i_p.
     axes: [usize; 2],
     kappa: [f64; 2],
@@ -73,80 +79,72 @@ impl Splitting {
         let kappa = |k: usize| (moments[p] - moments[k]) / (moments[p] * moments[k]);
         // Of a symmetric body one turn is none: that of the second axis.
         let [a, b] = if kappa(a) == 0.0 { [b, a] } else { [a, b] };
-        let damping = torques.iter().map(|t| t.damping_rate()).sum();
-        let free = torques.iter().all(|t| matches!(t, Torque::Wheel(_)));
+        let fixed = fixed_momentum(&torques, start);
+        let (stages, last_kick) = match sequence {
+            Sequence::Composition(composition) => composition.kicks_and_drifts(),
+            Sequence::Nystrom(nystrom) => (nystrom.stages().collect(), nystrom.last()),
+        };
         Splitting {
             body,
-            torques,
-            damping,
-            sequence,
+            kicks: Kicks::new(body, torques),
+            stages,
+            last_kick,
+            exact_drift: matches!(sequence, Sequence::Nystrom(_)),
             axes: [a, b],
             kappa: [kappa(a), kappa(b)],
             middle: moments[p],
             wheel: (body.wheel != Bivector::default()).then(|| body.omega(Bivector::default())),
-            fixed: free.then(|| start.rotor.apply_bivector(start.momentum)),
+            fixed,
         }
     }
 
     /// One step of length `h`, which may be negative.
     pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
         let start = state.time;
-        match (self.fixed, self.sequence) {
-            (Some(fixed), Sequence::Composition(composition)) => {
-                for gamma in composition.stages() {
-                    self.turn_about_axes(state, gamma * h);
-                }
-                self.turn_about_momentum(state, h);
-                restore_momentum(state, fixed);
+        if self.fixed.is_some() && !self.exact_drift {
+            self.turn_about_momentum(state, h);
+            for &(_, drift) in &self.stages {
+                self.turn_about_axes(state, drift * h);
             }
-            (None, Sequence::Composition(composition)) => {
-                let mut kick = 0.0;
-                for gamma in composition.stages() {
-                    self.kick(state, (kick + 0.5 * gamma) * h)?;
-                    self.turn_about_axes(state, gamma * h);
-                    self.turn_about_momentum(state, gamma * h);
-                    state.time += gamma * h;
-                    kick = 0.5 * gamma;
-                }
-                self.kick(state, kick * h)?;
+        } else {
+            for &(kick, drift) in &self.stages {
+                self.kicks.kick(state, kick * h)?;
+                self.drift(state, drift * h);
+                state.time += drift * h;
             }
-            (_, Sequence::Nystrom(nystrom)) => {
-                for (kick, drift) in nystrom.stages() {
-                    self.kick(state, kick * h)?;
-                    self.drift(state, drift * h);
-                    state.time += drift * h;
-                }
-                self.kick(state, nystrom.last() * h)?;
-            }
+            self.kicks.kick(state, self.last_kick * h)?;
         }
-        state.rotor = state.rotor.renormalized();
         state.time = start + h;
+        state.rotor = state.rotor.renormalized();
+        if let Some(fixed) = self.fixed {
+            restore_momentum(state, fixed);
+        }
         Ok(())
     }
 
     /// Evaluations of the torque in a step.
     pub fn evaluations(&self) -> u64 {
-        let kicks = match self.sequence {
-            Sequence::Composition(composition) => composition.stages().count(),
-            Sequence::Nystrom(nystrom) => nystrom.stages().count(),
-        };
-        kicks as u64 + 1
+        self.stages.len() as u64 + 1
     }
 
-    /// The free motion, exactly.
+    /// The free motion: of a symmetric body without a wheel exactly, of others where asked for.
     fn drift(&self, state: &mut Phase, h: f64) {
-        if self.kappa[1] == 0.0 {
-            self.turn_about_axes(state, h);
-            self.turn_about_momentum(state, h);
-        } else {
+        if self.exact_drift && self.kappa[1] != 0.0 {
             let omega = self.body.omega(state.momentum);
             let (rotor, omega) = FreeMotion::in_principal_axes(self.body.moments, state.rotor, omega).at(h);
             (state.rotor, state.momentum) = (rotor, self.body.momentum(omega));
+        } else {
+            self.turn_about_momentum(state, h);
+            self.turn_about_axes(state, h);
         }
     }
 
+    /// It commutes with the other turns: before them m is the one that they turn.
     fn turn_about_momentum(&self, state: &mut Phase, h: f64) {
-        state.rotor = state.rotor * Rotor::exp_fast(state.momentum * (-0.5 * h / self.middle));
+        let half = 0.5 * h / self.middle;
+        let (cos, sinc) = cosine_and_sinc(half * half * state.momentum.norm_squared());
+        let [x, y, z] = (state.momentum * (-half * sinc)).0;
+        state.rotor = state.rotor * Rotor::from_unit_components([cos, x, y, z]);
     }
 
     fn turn_about_axes(&self, state: &mut Phase, h: f64) {
@@ -170,45 +168,31 @@ impl Splitting {
     }
 
     fn turn_about_axis(&self, state: &mut Phase, which: usize, h: f64) {
-        let k = self.axes[which];
-        let half = 0.5 * self.kappa[which] * state.momentum.0[k] * h;
-        let mut plane = Bivector::default();
-        plane.0[k] = -half;
-        state.rotor = state.rotor * Rotor::exp_fast(plane);
-        // ~q m q turns the other two components by −2 half; written out, the one about k is exact. The turn is
-        // added to m: rounded cosines and sines would stretch it by the same at every step of a steady motion.
-        let (sin, cos) = half.sin_cos();
-        let (versine, sine) = (2.0 * sin * sin, 2.0 * sin * cos);
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let (x, y) = (state.momentum.0[i], state.momentum.0[j]);
-        state.momentum.0[i] = x + (sine * y - versine * x);
-        state.momentum.0[j] = y - (sine * x + versine * y);
-    }
-
-    /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
-    fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
-        let torque = exerted(&self.torques, &self.body, state)?;
-        let decay = -self.damping * h;
-        let impulse = if decay == 0.0 { h } else { h * decay.exp_m1() / decay };
-        if decay != 0.0 {
-            let wheel = self.body.wheel;
-            state.momentum = (state.momentum - wheel) * decay.exp() + wheel;
+        // The axes k, i, j are cyclic; a match lets the compiler see them.
+        match self.axes[which] {
+            0 => turn_about::<0, 1, 2>(state, 0.5 * self.kappa[which] * state.momentum.0[0] * h),
+            1 => turn_about::<1, 2, 0>(state, 0.5 * self.kappa[which] * state.momentum.0[1] * h),
+            _ => turn_about::<2, 0, 1>(state, 0.5 * self.kappa[which] * state.momentum.0[2] * h),
         }
-        state.momentum += torque * impulse;
-        Ok(())
     }
 }
 
-/// Takes the rounding of one free step out of |m| and the direction of `R m ~R`, to first order.
-fn restore_momentum(state: &mut Phase, fixed: Bivector) {
-    let size = fixed.norm_squared();
-    if size > 0.0 {
-        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
-        let missing = 0.5 * (size - state.momentum.norm_squared()) / size;
-        state.momentum += state.momentum * missing;
-        let wandered = state.rotor.apply_bivector(state.momentum);
-        // exp(−½ a∧b/|a||b|) turns the axial vector a into b.
-        let back = wandered.dual().wedge(fixed.dual()) * (-0.5 / size);
-        state.rotor = Rotor::exp(back) * state.rotor;
-    }
+/// `R ← R q`, `m ← ~q m q` with `q = exp(−half I e_k)`, written out.
+#[inline]
+fn turn_about<const K: usize, const I: usize, const J: usize>(state: &mut Phase, half: f64) {
+    let (cos, sinc) = cosine_and_sinc(half * half);
+    let sin = half * sinc;
+    let [s, b @ ..] = state.rotor.components();
+    let mut turned = [0.0; 4];
+    turned[0] = s * cos + b[K] * sin;
+    turned[K + 1] = b[K] * cos - s * sin;
+    turned[I + 1] = b[I] * cos + b[J] * sin;
+    turned[J + 1] = b[J] * cos - b[I] * sin;
+    state.rotor = Rotor::from_unit_components(turned);
+    // ~q m q turns the other two components by −2 half; the one about k is exact. The turn is added to m: rounded
+    // cosines and sines would stretch it by the same at every step of a steady motion.
+    let (versine, sine) = (2.0 * sin * sin, 2.0 * sin * cos);
+    let (x, y) = (state.momentum.0[I], state.momentum.0[J]);
+    state.momentum.0[I] = x + (sine * y - versine * x);
+    state.momentum.0[J] = y - (sine * x + versine * y);
 }

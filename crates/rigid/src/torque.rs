@@ -170,7 +170,7 @@ impl Torque {
     pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
         let rotor = state.rotor;
         Ok(match self {
-            Torque::Heavy(c) => rotor.reverse().apply(E3).wedge(*c),
+            Torque::Heavy(c) => state.vertical().wedge(*c),
             Torque::GravityGradient(orbit) => {
                 let (u, nearness) = orbit.place(state.time);
                 let u = rotor.reverse().apply(u);
@@ -241,7 +241,7 @@ impl Torque {
     pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
         let back = state.rotor.reverse();
         match self {
-            Torque::Heavy(c) => Some(back.apply(E3).dot(*c)),
+            Torque::Heavy(c) => Some(state.vertical().dot(*c)),
             Torque::Magnetic { dipole, field } => Some(-dipole.dot(back.apply(*field))),
             Torque::TorsionSpring { stiffness, rest } => {
                 Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())

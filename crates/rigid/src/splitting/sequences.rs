@@ -70,23 +70,24 @@ pub static COMPOSITIONS: [Composition; 5] = [
     },
 ];
 
-/// S. Blanes & P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, SRKN with 11 stages.
+/// S. Blanes & P. C. Moan, J. Comput. Appl. Math. 142 (2002) 313, SRKN with 11 stages: their 15 digits, moved by less than
+/// 1e-15 to the nearest solution of the order conditions.
 pub static RKN6: Nystrom = Nystrom {
     name: "rkn6",
     order: 6,
     kicks: &[
-        0.041_464_998_518_262_4,
-        0.198_128_671_918_067,
-        -0.040_006_192_104_153_3,
-        0.075_253_984_301_580_7,
-        -0.011_511_387_420_687_9,
+        0.041_464_998_518_262_84,
+        0.198_128_671_918_066_55,
+        -0.040_006_192_104_152_69,
+        0.075_253_984_301_580_34,
+        -0.011_511_387_420_687_77,
     ],
     drifts: &[
-        0.123_229_775_946_271,
-        0.290_553_797_799_558,
-        -0.127_049_212_625_417,
-        -0.246_331_761_062_075,
-        0.357_208_872_795_928,
+        0.123_229_775_946_271_14,
+        0.290_553_797_799_558_26,
+        -0.127_049_212_625_416_9,
+        -0.246_331_761_062_075_4,
+        0.357_208_872_795_927_7,
     ],
 };
 
@@ -95,6 +96,14 @@ impl Composition {
     pub fn stages(&self) -> impl Iterator<Item = f64> + '_ {
         let mirrored = self.half.iter().rev().skip(1);
         self.half.iter().chain(mirrored).copied()
+    }
+
+    /// As kicks and drifts in turn, and the last kick: two half kicks that meet are one.
+    pub fn kicks_and_drifts(&self) -> (Vec<(f64, f64)>, f64) {
+        let mut half = 0.0;
+        let stage = |gamma: f64| (std::mem::replace(&mut half, 0.5 * gamma) + 0.5 * gamma, gamma);
+        let stages = self.stages().map(stage).collect();
+        (stages, half)
     }
 }
 

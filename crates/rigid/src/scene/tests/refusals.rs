@@ -24,7 +24,7 @@ fn a_misspelt_field_is_shown_with_its_correction() {
 #[test]
 fn everything_wrong_with_a_file_is_reported_in_its_order() {
     let text = "title = 3\ntilte = 1\n[body]\nsolid = 'bx'\n[initial]\nspin = { rate = '5 m' }\n[gravty]\n\
-                [run]\nduration = -1\nsamples = 1\nmethod = 'rk4'\nrtol = 2\n";
+                [run]\nduration = -1\nsamples = 1\nmethod = 'euler'\nrtol = 2\n";
     assert_eq!(
         errors(text),
         [
@@ -38,7 +38,8 @@ fn everything_wrong_with_a_file_is_reported_in_its_order() {
             "7:2: unknown table `gravty`, expected `gravity`",
             "9:12: must be more than 0, found -1",
             "10:11: must be from 2 to 10000000, found 1",
-            "11:10: unknown method `rk4`, expected one of `auto`, `strang`, `yoshida4`, `kahan_li6`, `kahan_li8`",
+            "11:10: unknown method `euler`, expected one of `auto`, `strang`, `yoshida4`, `yoshida6`, `kahan_li6`, \
+             `kahan_li8`, `rkn6`, `rk4`, `dop853`, `midpoint`, `dmv`",
             "12:8: must be between 0 and 1, such as `1e-10`, found 2",
         ]
     );

@@ -116,6 +116,8 @@ def test_tolerances_are_met_and_estimates_are_honest(name, method):
             continue
         error = problem.error(motion)
         assert error <= 10 * rtol, (rtol, error)
+        if motion.certificate.method == "exact":
+            continue
         assert motion.certificate.error_estimate <= rtol
         # Below 1e-11 both runs are led by the same rounding, which their difference does not show.
         floor = 0 if decade < 11 else 1e-11

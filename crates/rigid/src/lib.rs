@@ -45,6 +45,7 @@ pub mod splitting;
 mod sum;
 pub mod symmetric_top;
 pub mod torque;
+mod turn;
 pub mod units;
 mod walk;
 

@@ -22,6 +22,7 @@ use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use crate::torque::{Torque, TorqueError, exerted};
+use crate::turn::cosine_and_sinc;
 use polhode_ga::{Bivector, Rotor, Vector};
 pub use tableau::{DOP853, RK4, Tableau};
 
@@ -48,14 +49,8 @@ impl Carried {
     }
 }
 
-/// σ, the change of L, and those of place and velocity.
-#[derive(Clone, Copy, Debug, Default)]
-struct Change {
-    turn: Axial,
-    momentum: Axial,
-    position: Axial,
-    velocity: Axial,
-}
+/// σ and the change of L, of six numbers; of twelve with those of place and velocity.
+type Change<const N: usize> = [f64; N];
 
 /// A body, what turns it, and how it is stepped.
 #[derive(Clone, Debug)]
@@ -87,121 +82,149 @@ impl RungeKutta {
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
     /// angular velocity relative to `fastest` (rad/s), whichever is larger; NaN where the step is too long to tell.
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
+        match self.translation {
+            None => self.step_of::<6>(from, h, fastest),
+            Some(_) => self.step_of::<12>(from, h, fastest),
+        }
+    }
+
+    fn step_of<const N: usize>(
+        &self,
+        from: &Carried,
+        h: f64,
+        fastest: f64,
+    ) -> Result<(Carried, f64), SimulateError> {
         let tableau = self.tableau;
-        let mut slopes = [Change::default(); 12];
+        let mut slopes = [[0.0; N]; 12];
         for (stage, (row, node)) in tableau.rows.iter().zip(tableau.nodes).enumerate() {
-            let change = self.combined(row, &slopes, h);
-            if norm(&change.turn) > LARGEST_TURN {
+            let change = combined(row, &slopes, h);
+            if norm(&part(&change, 0)) > LARGEST_TURN {
                 return Ok((*from, f64::NAN));
             }
             slopes[stage] = self.slope(from, &change, node * h)?;
         }
-        let change = self.combined(tableau.weights, &slopes, h);
-        let rotor = (exponential(&change.turn).0 * from.phase.rotor).renormalized();
-        let momentum_space = from.momentum_space + Bivector(change.momentum);
+        let change = combined(tableau.weights, &slopes, h);
+        let rotor = (exponential(&part(&change, 0)).0 * from.phase.rotor).renormalized();
+        let momentum_space = from.momentum_space + Bivector(part(&change, 3));
         let momentum = rotor.reverse().apply_bivector(momentum_space);
         let phase = Phase { rotor, momentum, time: from.phase.time + h };
         let error = if tableau.fifth.is_empty() {
             0.0
         } else {
-            let size = |row| self.size(from, &self.combined(row, &slopes, h), h, fastest);
+            let size = |row| self.size(from, &combined(row, &slopes, h), h, fastest);
             let (fifth, third) = (size(tableau.fifth), size(tableau.third));
             // As Hairer's code weighs the two: of order 8 where both are small.
             if fifth == 0.0 { 0.0 } else { fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt() }
         };
-        Ok((Carried { phase, momentum_space, center: self.moved(&from.center, &change, h) }, error))
+        Ok((Carried { phase, momentum_space, center: moved(&from.center, &change, h) }, error))
     }
 
     /// σ' and L' at `from` changed by σ and ΔL.
-    fn slope(&self, from: &Carried, change: &Change, dt: f64) -> Result<Change, SimulateError> {
-        let (turn, cotangent) = exponential(&change.turn);
+    #[inline]
+    fn slope<const N: usize>(
+        &self,
+        from: &Carried,
+        change: &Change<N>,
+        dt: f64,
+    ) -> Result<Change<N>, SimulateError> {
+        let turned = part(change, 0);
+        let (turn, cotangent) = exponential(&turned);
         let rotor = turn * from.phase.rotor;
-        let momentum = from.momentum_space + Bivector(change.momentum);
-        let axes = rotor.to_matrix();
-        let into_space =
-            |b: &Axial| [0, 1, 2].map(|i| axes[i][0] * b[0] + axes[i][1] * b[1] + axes[i][2] * b[2]);
-        let into_body =
-            |b: &Axial| [0, 1, 2].map(|i| axes[0][i] * b[0] + axes[1][i] * b[1] + axes[2][i] * b[2]);
-        let state = Phase { rotor, momentum: Bivector(into_body(&momentum.0)), time: from.phase.time + dt };
+        let momentum = from.momentum_space + Bivector(part(change, 3));
+        let momentum = rotor.reverse().apply_bivector(momentum);
+        let state = Phase { rotor, momentum, time: from.phase.time + dt };
         let omega = self.body.omega(state.momentum);
         let mut torque = exerted(&self.torques, &self.body, &state)?;
         if self.damping != 0.0 {
             torque += self.body.carried(omega) * -self.damping;
         }
-        let omega = into_space(&omega.0);
-        let first = cross(&change.turn, &omega);
-        let second = cross(&change.turn, &first);
-        let turn = [0, 1, 2].map(|k| omega[k] - 0.5 * first[k] + cotangent * second[k]);
-        let momentum = if self.torques.is_empty() { [0.0; 3] } else { into_space(&torque.0) };
-        let Some(translation) = &self.translation else {
-            return Ok(Change { turn, momentum, ..Change::default() });
-        };
-        let center = self.moved(&from.center, change, dt);
-        let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
-        let acceleration = translation.acceleration(&state, &center).map_err(failed)?;
-        // The place beside that of the uniform motion from the start of the step.
-        Ok(Change { turn, momentum, position: change.velocity, velocity: acceleration.0 })
-    }
-
-    /// The centre of mass a time dt after `from`.
-    fn moved(&self, from: &Center, change: &Change, dt: f64) -> Center {
-        if self.translation.is_none() {
-            return *from;
+        let omega = rotor.apply_bivector(omega).0;
+        let first = cross(&turned, &omega);
+        let second = cross(&turned, &first);
+        let mut slope = [0.0; N];
+        for k in 0..3 {
+            slope[k] = omega[k] - 0.5 * first[k] + cotangent * second[k];
         }
-        let position = from.position + (from.velocity * dt + Vector(change.position));
-        Center { position, velocity: from.velocity + Vector(change.velocity) }
+        if !self.torques.is_empty() {
+            slope[3..6].copy_from_slice(&rotor.apply_bivector(torque).0);
+        }
+        if let Some(translation) = &self.translation {
+            let center = moved(&from.center, change, dt);
+            let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
+            let acceleration = translation.acceleration(&state, &center).map_err(failed)?;
+            // The place beside that of the uniform motion from the start of the step.
+            slope[6..9].copy_from_slice(&part(change, 9));
+            slope[9..12].copy_from_slice(&acceleration.0);
+        }
+        Ok(slope)
     }
 
     /// How large a change is: in attitude, in angular velocity relative to `fastest`, in velocity relative to the
     /// velocity, in place relative to the distance or the way of the step.
-    fn size(&self, at: &Carried, change: &Change, h: f64, fastest: f64) -> f64 {
-        let momentum = at.phase.rotor.reverse().apply_bivector(Bivector(change.momentum)).0;
+    fn size<const N: usize>(&self, at: &Carried, change: &Change<N>, h: f64, fastest: f64) -> f64 {
+        let momentum = at.phase.rotor.reverse().apply_bivector(Bivector(part(change, 3))).0;
         let omega = [0, 1, 2].map(|k| momentum[k] / self.body.moments[k]);
         let relative = if fastest > 0.0 { norm(&omega) / fastest } else { 0.0 };
-        let turn = 0.5 * norm(&change.turn);
+        let turn = 0.5 * norm(&part(change, 0));
+        // f64::max would lose a NaN.
+        let larger = |a: f64, b: f64| if a >= b { a } else { b };
+        let rotation = larger(turn, relative);
+        if self.translation.is_none() {
+            return rotation;
+        }
         let (speed, distance) = (at.center.velocity.norm(), at.center.position.norm());
         let way = distance.max(speed * h.abs());
         let of = |change: &Axial, whole: f64| if whole > 0.0 { norm(change) / whole } else { 0.0 };
-        let moved = of(&change.position, way).max(of(&change.velocity, speed.max(way / h.abs())));
-        // f64::max would lose a NaN.
-        [relative, moved].into_iter().fold(turn, |a, b| if a >= b { a } else { b })
-    }
-
-    /// `h Σ a_j k_j`.
-    fn combined(&self, row: &[(usize, f64)], slopes: &[Change; 12], h: f64) -> Change {
-        let sum = |part: fn(&Change) -> &Axial| {
-            let mut sum = [0.0; 3];
-            for &(stage, a) in row {
-                let slope = part(&slopes[stage]);
-                (0..3).for_each(|k| sum[k] += a * slope[k]);
-            }
-            sum.map(|x| h * x)
-        };
-        let rotation = Change { turn: sum(|c| &c.turn), momentum: sum(|c| &c.momentum), ..Change::default() };
-        match self.translation {
-            None => rotation,
-            Some(_) => Change { position: sum(|c| &c.position), velocity: sum(|c| &c.velocity), ..rotation },
-        }
+        let place = of(&part(change, 6), way);
+        larger(rotation, larger(place, of(&part(change, 9), speed.max(way / h.abs()))))
     }
 }
 
+/// Three of the numbers.
+#[inline]
+fn part<const N: usize>(change: &Change<N>, from: usize) -> Axial {
+    [change[from], change[from + 1], change[from + 2]]
+}
+
+/// The centre of mass a time dt after `from`.
+fn moved<const N: usize>(from: &Center, change: &Change<N>, dt: f64) -> Center {
+    if N < 12 {
+        return *from;
+    }
+    let position = from.position + (from.velocity * dt + Vector(part(change, 6)));
+    Center { position, velocity: from.velocity + Vector(part(change, 9)) }
+}
+
+/// `h Σ a_j k_j`.
+#[inline]
+fn combined<const N: usize>(row: &[(usize, f64)], slopes: &[Change<N>; 12], h: f64) -> Change<N> {
+    let mut sum = [0.0; N];
+    for &(stage, a) in row {
+        let slope = &slopes[stage];
+        for k in 0..N {
+            sum[k] += a * slope[k];
+        }
+    }
+    sum.map(|x| h * x)
+}
+
 /// `exp(−½σ)` and `c(θ)`.
+#[inline]
 fn exponential(turn: &Axial) -> (Rotor, f64) {
     let square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
-    // sin ½θ/θ, cos ½θ, c(θ).
-    let (sinc, cos, cotangent) = if square < 1e-3 {
-        // The next terms are below rounding.
-        let sinc = 0.5 - square * (1.0 / 48.0 - square * (1.0 / 3840.0 - square / 645_120.0));
-        let cos = 1.0
-            - square
-                * (1.0 / 8.0 - square * (1.0 / 384.0 - square * (1.0 / 46_080.0 - square / 10_321_920.0)));
-        (sinc, cos, 1.0 / 12.0 + square * (1.0 / 720.0 + square * (1.0 / 30_240.0 + square / 1_209_600.0)))
+    // Of x = ½θ.
+    let z = 0.25 * square;
+    let (cos, sinc) = cosine_and_sinc(z);
+    let cotangent = if z < 0.0625 {
+        // (1 − x cot x)/4x²; the next term is below rounding beside the 1 that it is added to.
+        1.0 / 12.0
+            + z * (1.0 / 180.0
+                + z * (1.0 / 1890.0
+                    + z * (1.0 / 18_900.0 + z * (1.0 / 187_110.0 + z * (691.0 / 1_277_025_750.0)))))
     } else {
-        let angle = square.sqrt();
-        let (sin, cos) = (0.5 * angle).sin_cos();
-        (sin / angle, cos, (1.0 - 0.5 * angle * cos / sin) / square)
+        (1.0 - cos / sinc) / square
     };
-    let [x, y, z] = turn.map(|b| -sinc * b);
+    let [x, y, z] = turn.map(|b| -0.5 * sinc * b);
     (Rotor::from_unit_components([cos, x, y, z]), cotangent)
 }
 

@@ -28,16 +28,15 @@
 //! of m is left alone: on an unstable axis a component that is zero stays zero.
 
 mod sequences;
-mod turn;
 
 use crate::free::FreeMotion;
 use crate::kicks::{Kicks, fixed_momentum, restore_momentum};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
+use crate::turn::cosine_and_sinc;
 use polhode_ga::{Bivector, Rotor};
 pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
-use turn::cosine_and_sinc;
 
 /// How kicks and free motion follow each other.
 #[derive(Clone, Copy, Debug, PartialEq)]

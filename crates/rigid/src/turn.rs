@@ -1,11 +1,11 @@
-//! The cosine and sine of the many small turns of a splitting.
+//! The cosine and sine of the many small turns of steps.
 
 /// `cos x` and `sin x/x` of `x² = square`, to a rounding or two.
 ///
 /// Up to `x = ½` by their series in x², which need no root; the first term left out is `2⁻¹⁶/16!`, below 1e-18. Adjacent
 /// terms are added first, so that many multiplications run at once.
 #[inline]
-pub(super) fn cosine_and_sinc(square: f64) -> (f64, f64) {
+pub(crate) fn cosine_and_sinc(square: f64) -> (f64, f64) {
     if square > 0.25 {
         let x = square.sqrt();
         let (sin, cos) = x.sin_cos();

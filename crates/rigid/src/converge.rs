@@ -88,7 +88,7 @@ pub(crate) fn converge(
         let fine = run(pace)?;
         steps += fine.steps;
         evaluations += fine.evaluations;
-        let difference = difference(body, &coarse.states, &fine.states);
+        let difference = difference(body, &coarse, &fine);
         let mut shorter = by;
         if let Pace::Tolerance(tolerance) = pace {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
@@ -109,7 +109,8 @@ pub(crate) fn converge(
         };
         let truncation = difference / (shorter.powf(exponent) - 1.0).max(1.0);
         // Where rounding may rule, the difference itself tells the error.
-        let error = if converging { truncation } else { truncation.max(difference.min(ROUNDING_OF_RUNS)) };
+        let rounding = if converging { 0.1 * ROUNDING_OF_RUNS } else { ROUNDING_OF_RUNS };
+        let error = truncation.max(difference.min(rounding));
         // Each step rounds, at random.
         let error = error.max(f64::EPSILON * (fine.steps as f64).sqrt());
         // One pass may be lucky; two that gain nothing are ruled by rounding.
@@ -133,13 +134,10 @@ pub(crate) fn converge(
     unreachable!("the loop returns")
 }
 
-/// Largest difference of two runs: in the rotor, and in angular velocity, place and velocity relative to the largest.
-fn difference(body: &Gyrostat, coarse: &[Carried], fine: &[Carried]) -> f64 {
-    let omega = |s: &Carried| body.omega(s.phase.momentum).norm();
-    let largest = |size: &dyn Fn(&Carried) -> f64| fine.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
-    let fastest = largest(&omega);
-    let (farthest, swiftest) =
-        (largest(&|s| s.center.position.norm()), largest(&|s| s.center.velocity.norm()));
+/// Largest difference of two passes at the output times: in the rotor, and in angular velocity, place and velocity
+/// relative to the largest on the way.
+fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass) -> f64 {
+    let [fastest, farthest, swiftest] = fine.largest.map(|x| x.max(f64::MIN_POSITIVE));
     let apart = |(a, b): (&Carried, &Carried)| {
         let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
         let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
@@ -148,5 +146,5 @@ fn difference(body: &Gyrostat, coarse: &[Carried], fine: &[Carried]) -> f64 {
         let velocity = (a.center.velocity - b.center.velocity).norm() / swiftest;
         turn.max(spin).max(place).max(velocity)
     };
-    coarse.iter().zip(fine).map(apart).fold(0.0, f64::max)
+    coarse.states.iter().zip(&fine.states).map(apart).fold(0.0, f64::max)
 }

@@ -75,11 +75,13 @@ impl Method {
         if matches!(self, Method::Midpoint | Method::MoserVeselov) { 0.4 } else { 1.5 }
     }
 
-    /// The method for these laws: a splitting where they depend on attitude and time alone and are smooth, for it
-    /// keeps the energy of long runs; Runge–Kutta for others.
+    /// The method for these laws: a splitting with equal steps where the torque depends on the attitude alone, or turns
+    /// with a circular orbit, for it keeps the energy of long runs; Runge–Kutta with steps of their own for others.
     pub fn best(body: &Gyrostat, torques: &[Torque], translated: bool) -> Method {
-        let kicks = !translated
-            && torques.iter().all(|t| t.dependence() == Dependence::Attitude && t.breaks().is_empty());
+        let steady =
+            |t: &Torque| t.is_autonomous() || matches!(t, Torque::GravityGradient(o) if o.is_circular());
+        let kicks =
+            !translated && torques.iter().all(|t| t.dependence() == Dependence::Attitude && steady(t));
         if !kicks {
             Method::RungeKutta(&DOP853)
         } else if Method::unfit(Method::Splitting(Sequence::Nystrom(&RKN6)), body, torques).is_none()
@@ -192,7 +194,7 @@ impl Engine {
 /// The rate of the fastest turn, in rad/s, a scale for steps: what the momentum and the energy allow, and the swing in
 /// the torque.
 pub(crate) fn fastest_rate(body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
-    let torque: f64 = torques.iter().map(|t| t.size(body)).sum();
+    let torque: f64 = torques.iter().map(|t| t.size_at(body, start)).sum();
     let damping: f64 = torques.iter().map(Torque::damping_rate).sum();
     let smallest = body.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
     let omega = body.omega(start.momentum).norm().max(body.wheel.norm() / smallest);

@@ -162,7 +162,8 @@ impl Problem {
             (_, None) => {
                 let goal = options.rtol.unwrap_or(DEFAULT_RTOL);
                 let acceptable = options.rtol.unwrap_or(WORST_UNASKED);
-                let adapted = Pace::Tolerance(goal.max(1e3 * LEAST_TOLERANCE));
+                // The errors of all steps add up.
+                let adapted = Pace::Tolerance((0.1 * goal).max(1e3 * LEAST_TOLERANCE));
                 let first = if method.adapts() { adapted } else { long(method.first_turn()) };
                 let mut number = 0;
                 let mut run = |pace: Pace| {

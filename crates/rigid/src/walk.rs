@@ -46,10 +46,19 @@ pub(crate) struct Pass {
     pub events: Vec<Happened>,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
+    /// The largest angular velocity (rad/s), distance (m) and velocity (m/s) on the way.
+    pub largest: [f64; 3],
     /// The longest step.
     pub longest: f64,
     pub steps: u64,
     pub evaluations: u64,
+}
+
+impl Pass {
+    fn meet(&mut self, omega: f64, center: &Center) {
+        let sizes = [omega, center.position.norm(), center.velocity.norm()];
+        self.largest = [0, 1, 2].map(|k| self.largest[k].max(sizes[k]));
+    }
 }
 
 /// A pass under way.
@@ -117,6 +126,7 @@ impl Walker<'_> {
         done: Done,
     ) -> Result<Vec<Carried>, SimulateError> {
         let fastest = self.body.omega(start.phase.momentum).norm();
+        pass.meet(fastest, &start.center);
         let values = self.values(&start)?;
         let mut walk = Walk { at: start, next: self.first, fastest, values, ended: false };
         let mut states = Vec::new();
@@ -251,6 +261,7 @@ impl Walker<'_> {
         walk.at = next;
         self.watch.look(&walk.at.phase);
         walk.fastest = walk.fastest.max(self.body.omega(walk.at.phase.momentum).norm());
+        pass.meet(walk.fastest, &walk.at.center);
         if pass.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
             let fraction = done(time).min(1.0);
             if !(self.progress)(Progress { pass: self.number, fraction }) {

@@ -1,9 +1,10 @@
 //! Passes with ever shorter steps, until two of them agree.
 
-use crate::phase::Gyrostat;
+use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::Carried;
 use crate::simulate_error::SimulateError;
 use crate::walk::{Pace, Pass};
+use polhode_ga::{Bivector, Rotor};
 
 /// Below this two passes may differ by rounding, which the motion magnifies and a shorter step does not reduce.
 const ROUNDING_OF_RUNS: f64 = 1e-10;
@@ -40,6 +41,15 @@ impl Pace {
     }
 }
 
+/// What is to be reached, and how.
+pub(crate) struct Aim {
+    /// Of the method.
+    pub order: i32,
+    pub goal: f64,
+    /// What will do where passes differ by rounding alone.
+    pub acceptable: f64,
+}
+
 /// A pass that is good enough.
 pub(crate) struct Converged {
     pub pace: Pace,
@@ -51,7 +61,8 @@ pub(crate) struct Converged {
 
 /// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
 ///
-/// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
+/// What the motion magnifies, it magnifies in all passes alike, and their agreement would not show it: every other pass
+/// starts a few roundings away.
 ///
 /// With steps h and h/s the passes differ by `e (s^q − 1)`, where `e` is the error of the second. Of the order q half is
 /// taken for granted; once two differences have shown an order, three quarters of that. So is the next step foretold,
@@ -60,14 +71,16 @@ pub(crate) struct Converged {
 /// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
 /// ratio of their numbers; where that is nearly 1 the passes tell nothing, and the sum of the tolerances has to be small.
 pub(crate) fn converge(
-    run: &mut dyn FnMut(Pace) -> Result<Pass, SimulateError>,
+    run: &mut dyn FnMut(Pace, Carried) -> Result<Pass, SimulateError>,
+    start: Carried,
     first: Pace,
-    (order, goal, acceptable): (i32, f64, f64),
+    aim: Aim,
     body: &Gyrostat,
 ) -> Result<Converged, SimulateError> {
-    let order = f64::from(order);
+    let Aim { goal, acceptable, .. } = aim;
+    let order = f64::from(aim.order);
     let (mut pace, mut by) = (first, SECOND);
-    let mut coarse = run(pace)?;
+    let mut coarse = run(pace, moved(start, 0))?;
     let (mut steps, mut evaluations) = (coarse.steps, coarse.evaluations);
     // The last difference, and how many times shorter its steps were.
     let mut last: Option<(f64, f64)> = None;
@@ -85,7 +98,9 @@ pub(crate) fn converge(
             return Err(SimulateError::NotConverged { rtol: goal, reached: previous, step: coarse.longest });
         }
         pace = finer;
-        let fine = run(pace)?;
+        let begin = if number % 2 == 0 { start } else { moved(start, coarse.steps) };
+        let mut fine = run(pace, begin)?;
+        fine.states.iter_mut().filter(|s| s.phase.time == start.phase.time).for_each(|s| *s = start);
         steps += fine.steps;
         evaluations += fine.evaluations;
         let difference = difference(body, &coarse, &fine);
@@ -111,7 +126,6 @@ pub(crate) fn converge(
         // Where rounding may rule, the difference itself tells the error.
         let rounding = if converging { 0.1 * ROUNDING_OF_RUNS } else { ROUNDING_OF_RUNS };
         let error = truncation.max(difference.min(rounding));
-        // Each step rounds, at random.
         let error = error.max(f64::EPSILON * (fine.steps as f64).sqrt());
         // One pass may be lucky; two that gain nothing are ruled by rounding.
         let gained = error <= 0.5 * previous || previous >= 1e-2;
@@ -132,6 +146,15 @@ pub(crate) fn converge(
         coarse = fine;
     }
     unreachable!("the loop returns")
+}
+
+/// The start moved by what so many steps round; what is zero stays zero.
+fn moved(start: Carried, steps: u64) -> Carried {
+    let by = f64::EPSILON * (0.3 * (steps as f64).sqrt()).max(4.0);
+    let [x, y, z] = start.phase.momentum.0;
+    let momentum = Bivector([x * (1.0 + by), y * (1.0 - 0.7 * by), z * (1.0 + 0.4 * by)]);
+    let turn = Rotor::exp(Bivector([0.3 * by, -0.6 * by, 0.4 * by]));
+    Carried::new(Phase { rotor: turn * start.phase.rotor, momentum, ..start.phase }, start.center)
 }
 
 /// Largest difference of two passes at the output times: in the rotor, and in angular velocity, place and velocity

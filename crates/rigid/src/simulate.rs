@@ -4,7 +4,7 @@
 use crate::certificate::{Certificate, Watch};
 use crate::closed_form::{ClosedForm, uniformly_accelerated};
 use crate::conserved::energy;
-use crate::converge::{DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
+use crate::converge::{Aim, DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
 use crate::event::{Event, Happened};
 use crate::force::{Center, Force, Translation};
 use crate::inertia::Inertia;
@@ -166,11 +166,12 @@ impl Problem {
                 let adapted = Pace::Tolerance((0.1 * goal).max(1e3 * LEAST_TOLERANCE));
                 let first = if method.adapts() { adapted } else { long(method.first_turn()) };
                 let mut number = 0;
-                let mut run = |pace: Pace| {
+                let mut run = |pace: Pace, start: Carried| {
                     number += 1;
-                    self.pass(&engine, times, (pace, number), &events, progress)
+                    self.pass_from(start, &engine, times, (pace, number), &events, progress)
                 };
-                let found = converge(&mut run, first, (method.order(), goal, acceptable), &self.body)?;
+                let aim = Aim { order: method.order(), goal, acceptable };
+                let found = converge(&mut run, self.start(), first, aim, &self.body)?;
                 (found.pace, found.pass, Some(found.error))
             }
         };
@@ -204,13 +205,25 @@ impl Problem {
         &self,
         engine: &Engine,
         times: &[f64],
+        rules: (Pace, u32),
+        events: &[Event],
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Pass, SimulateError> {
+        self.pass_from(self.start(), engine, times, rules, events, progress)
+    }
+
+    fn pass_from(
+        &self,
+        start: Carried,
+        engine: &Engine,
+        times: &[f64],
         (pace, number): (Pace, u32),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Pass, SimulateError> {
         let mut breaks: Vec<f64> = self.torques.iter().flat_map(|t| t.breaks()).copied().collect();
         breaks.sort_by(f64::total_cmp);
-        self.walker(engine, pace, &breaks, events, number, progress).pass(self.start(), times)
+        self.walker(engine, pace, &breaks, events, number, progress).pass(start, times)
     }
 
     fn walker<'a>(

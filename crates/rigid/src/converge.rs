@@ -51,6 +51,8 @@ pub(crate) struct Converged {
 
 /// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
 ///
+/// Where an event ended both, what they differ by is told at one time: `follow` leads a point a little way to another.
+///
 /// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
 ///
 /// With steps h and h/s the passes differ by `e (s^q − 1)`, where `e` is the error of the second. Of the order q half is
@@ -64,6 +66,7 @@ pub(crate) fn converge(
     first: Pace,
     (order, goal, acceptable): (i32, f64, f64),
     body: &Gyrostat,
+    follow: &dyn Fn(&Carried, f64) -> Carried,
 ) -> Result<Converged, SimulateError> {
     let order = f64::from(order);
     let (mut pace, mut by) = (first, SECOND);
@@ -88,7 +91,7 @@ pub(crate) fn converge(
         let fine = run(pace)?;
         steps += fine.steps;
         evaluations += fine.evaluations;
-        let difference = difference(body, &coarse.states, &fine.states);
+        let difference = difference(body, &coarse, &fine, follow);
         let mut shorter = by;
         if let Pace::Tolerance(tolerance) = pace {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
@@ -134,13 +137,19 @@ pub(crate) fn converge(
 }
 
 /// Largest difference of two runs: in the rotor, and in angular velocity, place and velocity relative to the largest.
-fn difference(body: &Gyrostat, coarse: &[Carried], fine: &[Carried]) -> f64 {
+fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carried, f64) -> Carried) -> f64 {
+    // One of them met an event that the other did not.
+    if coarse.ends.len() != fine.ends.len() {
+        return 1.0;
+    }
     let omega = |s: &Carried| body.omega(s.phase.momentum).norm();
-    let largest = |size: &dyn Fn(&Carried) -> f64| fine.iter().map(size).fold(f64::MIN_POSITIVE, f64::max);
+    let largest = |size: &dyn Fn(&Carried) -> f64| {
+        fine.states.iter().chain(&fine.ends).map(size).fold(f64::MIN_POSITIVE, f64::max)
+    };
     let fastest = largest(&omega);
     let (farthest, swiftest) =
         (largest(&|s| s.center.position.norm()), largest(&|s| s.center.velocity.norm()));
-    let apart = |(a, b): (&Carried, &Carried)| {
+    let apart = |a: &Carried, b: &Carried| {
         let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
         let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
         let spin = (body.omega(a.phase.momentum) - body.omega(b.phase.momentum)).norm() / fastest;
@@ -148,5 +157,7 @@ fn difference(body: &Gyrostat, coarse: &[Carried], fine: &[Carried]) -> f64 {
         let velocity = (a.center.velocity - b.center.velocity).norm() / swiftest;
         turn.max(spin).max(place).max(velocity)
     };
-    coarse.iter().zip(fine).map(apart).fold(0.0, f64::max)
+    let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
+    let ends = coarse.ends.iter().zip(&fine.ends).map(|(a, b)| apart(&follow(a, b.phase.time), b));
+    outputs.chain(ends).fold(0.0, f64::max)
 }

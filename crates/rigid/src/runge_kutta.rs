@@ -138,7 +138,7 @@ impl RungeKutta {
         };
         let center = self.moved(&from.center, change, dt);
         let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
-        let acceleration = translation.acceleration(&state, &center).map_err(failed)?;
+        let acceleration = translation.acceleration(&self.body, &state, &center).map_err(failed)?;
         // The place beside that of the uniform motion from the start of the step.
         Ok(Change { turn, momentum, position: change.velocity, velocity: acceleration.0 })
     }

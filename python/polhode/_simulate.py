@@ -55,8 +55,9 @@ def simulate(
         What moves the centre of mass: a law of `polhode.force`, a sum of them, a vector or (3,) in N for a
         constant force in space, or a function as for `polhode.force.function`. It needs a `Body`.
     method
-        ``"auto"``: ``"exact"`` where the motion has a closed form (free bodies among others) and no `step` is
-        given; for torques that depend on attitude and time, symmetric splittings, which keep the energy of
+        ``"auto"``: ``"exact"`` where the motion has a closed form and no `step` is given (free bodies,
+        symmetric ones under `heavy` along their axis, damping alone, spheres under `larmor`, and constant
+        forces); for torques that depend on attitude and time, symmetric splittings, which keep the energy of
         long runs: ``rkn6`` for symmetric bodies and ``kahan_li8`` for others; for torques that depend on the
         rate of turning, and for forces, ``dop853``, a Runge–Kutta method of order 8 on the group of rotors
         that adapts its steps. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,

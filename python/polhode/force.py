@@ -74,13 +74,13 @@ def central(mu: float) -> Force:
 
 
 def formula(text: str, /, **values: Any) -> Force:
-    """Return the force that a formula in the handout's notation gives: ``formula("q v·(I B)", q=q, B=B)``.
+    """Return the force that a formula in the handout's notation gives: ``formula("q cross(v, B)", q=q, B=B)``.
 
     The formula is read and checked at once: its value must be a vector, the force in space in N. The motion
     gives
 
-    - ``x`` and ``v``, the position and the velocity of the centre of mass, vectors in space in m and m/s,
-      and ``m``, the mass in kg,
+    - ``x`` and ``v``, the position and the velocity of the centre of mass, vectors in space in m and m/s
+      (a cross product is ``cross(a, b)``), and ``m``, the mass in kg,
     - ``R``, the rotor from body axes to space, and ``t``, the time in s,
     - ``Ω_B`` and ``Ω_S`` (or ``Omega_B``, ``Omega_S``), the angular velocity in body axes and in space,
       bivectors in rad/s, ``L`` and ``L_B``, the angular momentum in space and in body axes, and ``I(…)``,

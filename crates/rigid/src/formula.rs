@@ -126,6 +126,9 @@ impl Purpose {
             (Purpose::Force, Grades::BIVECTOR) => {
                 "this is a bivector; the axial vector of a bivector B is `-I B`".to_owned()
             }
+            (Purpose::Force, Grades(0b1010)) => {
+                "`x` is the position, a cross product `cross(a, b)`; the vector part is `⟨…⟩_1`".to_owned()
+            }
             _ if grades.contains(grade) => format!("its {wanted} part is `⟨…⟩_{grade}`"),
             (Purpose::Torque(_), _) => "such as `a∧b`, or `I v` for an axial vector v".to_owned(),
             (Purpose::Force, _) => "such as `-k v`".to_owned(),

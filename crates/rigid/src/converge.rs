@@ -51,7 +51,7 @@ pub(crate) struct Converged {
 
 /// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
 ///
-/// Where an event ended both, what they differ by is told at one time: `follow` leads a point a little way to another.
+/// At events, too, what they differ by is told at one time: `follow` leads a point a little way to another time.
 ///
 /// `goal` is to be reached; where passes differ by rounding alone, `acceptable` will do.
 ///
@@ -138,13 +138,17 @@ pub(crate) fn converge(
 
 /// Largest difference of two runs: in the rotor, and in angular velocity, place and velocity relative to the largest.
 fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carried, f64) -> Carried) -> f64 {
-    // One of them met an event that the other did not.
-    if coarse.ends.len() != fine.ends.len() {
+    // An event ended one of them and not the other.
+    if coarse.ends != fine.ends {
         return 1.0;
     }
     let omega = |s: &Carried| body.omega(s.phase.momentum).norm();
     let largest = |size: &dyn Fn(&Carried) -> f64| {
-        fine.states.iter().chain(&fine.ends).map(size).fold(f64::MIN_POSITIVE, f64::max)
+        fine.states
+            .iter()
+            .chain(fine.events.iter().map(|happened| &happened.at))
+            .map(size)
+            .fold(f64::MIN_POSITIVE, f64::max)
     };
     let fastest = largest(&omega);
     let (farthest, swiftest) =
@@ -158,6 +162,9 @@ fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carr
         turn.max(spin).max(place).max(velocity)
     };
     let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
-    let ends = coarse.ends.iter().zip(&fine.ends).map(|(a, b)| apart(&follow(a, b.phase.time), b));
-    outputs.chain(ends).fold(0.0, f64::max)
+    // An event that is barely one may be none in the other.
+    let same = coarse.events.len() == fine.events.len();
+    let events = coarse.events.iter().zip(&fine.events).filter(|(a, b)| same && a.event == b.event);
+    let events = events.map(|(a, b)| apart(&follow(&a.at, b.at.phase.time), &b.at));
+    outputs.chain(events).fold(0.0, f64::max)
 }

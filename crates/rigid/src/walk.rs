@@ -17,6 +17,9 @@ type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 /// How far the body, or the way of its centre of mass, may turn in rad between looks for events.
 const LOOK: f64 = 0.2;
 
+/// An event that comes sooner after the start, relative to the time to the next look, is one at the start.
+const ROUNDING_OF_START: f64 = 16.0 * f64::EPSILON;
+
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
 
@@ -44,8 +47,8 @@ pub(crate) struct Pass {
     pub states: Vec<Carried>,
     /// The events, in the order in which they were met.
     pub events: Vec<Happened>,
-    /// Where events ended the motion, at most once on either side of the start.
-    pub ends: Vec<Carried>,
+    /// On how many sides of the start an event ended the motion.
+    pub ends: u32,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// The longest step.
@@ -121,6 +124,10 @@ impl Walker<'_> {
         done: Done,
     ) -> Result<Vec<Carried>, SimulateError> {
         let fastest = self.body.omega(start.phase.momentum).norm();
+        let mut times = times.peekable();
+        if times.peek().is_none() {
+            return Ok(Vec::new());
+        }
         let values = self.values(&start)?;
         let mut walk = Walk { at: start, next: self.first, fastest, values, ended: false };
         let mut states = Vec::new();
@@ -130,7 +137,7 @@ impl Walker<'_> {
                 states.push(walk.at);
             }
             if walk.ended {
-                pass.ends.push(walk.at);
+                pass.ends += 1;
                 break;
             }
         }
@@ -349,9 +356,14 @@ impl Walker<'_> {
         for pair in looks.windows(2) {
             let ((low, at_low), (high, at_high)) = (pair[0], pair[1]);
             let Some(direction) = crossing(at_low, at_high) else { continue };
-            if wanted.is_none_or(|wanted| wanted == direction) {
-                let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
-                times.push((direction, root((low, high), (at_low, at_high), least, &mut value)?));
+            if wanted.is_some_and(|wanted| wanted != direction) {
+                continue;
+            }
+            let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
+            let time = root((low, high), (at_low, at_high), least, &mut value)?;
+            // A zero at the start that rounding has moved off it.
+            if walk.at.phase.time != 0.0 || time.abs() > ROUNDING_OF_START * (high - low).abs() {
+                times.push((direction, time));
             }
         }
         for (direction, time) in times {

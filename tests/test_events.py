@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from motions import ASYMMETRIC, EPS, METHODS, R0, START, moments
+from motions import ASYMMETRIC, EPS, METHODS, R0, START, moments, random_walk
 
 E = ph.event
 IDENTITY = ph.Rotor.identity()
@@ -65,19 +65,19 @@ def test_a_t_handle_flips_every_half_period(method):
     rate = np.array([0.01, 1.0, 0.01])
     state = ph.State(IDENTITY, rate)
     half = ph.FreeMotion(ASYMMETRIC, state.rotor, state.omega_body).describe()["flip_time"]
-    motion = ph.simulate(
-        ASYMMETRIC, state, [-150.0, 200.0], method=method, events=E.spin(ph.e3 ^ ph.e1), rtol=1e-9
-    )
+    event = E.spin(ph.e3 ^ ph.e1)
+    motion = ph.simulate(ASYMMETRIC, state, [-150.0, 200.0], method=method, events=event, rtol=1e-8)
     (flips,) = motion.events
     times = np.sort(flips.time)
     assert len(times) == 18
-    # The rate there is the derivative of the time by the middle component; near the separatrix errors of ω
-    # along the unstable axis grow a hundredfold between flips.
-    estimate = motion.certificate.error_estimate or 0.0
-    tolerance = 4 * EPS * 200 + 200 * estimate
+    # λ times the time is log(4/k') and k' is 0.01: errors of energy and momentum count 10⁴ times, roundings of steps
+    # among them.
+    steps = motion.certificate.steps
+    estimate = (motion.certificate.error_estimate or 0.0) + random_walk(steps)
+    tolerance = 4 * EPS * 200 + 1e4 * (estimate if steps else 0.0)
     np.testing.assert_allclose(np.diff(times), half, rtol=0, atol=tolerance)
     assert np.all(np.diff(flips.rising[flips.time > 0].astype(int)) != 0)
-    assert np.abs(flips.omega_body.components[:, 1]).max() <= 4 * EPS * 200 + 20 * estimate
+    assert np.abs(flips.omega_body.components[:, 1]).max() <= tolerance
 
 
 def test_a_pendulum_passes_its_lowest_point_at_quarters_of_its_period():
@@ -143,7 +143,9 @@ def test_a_top_that_barely_reaches_an_angle_is_seen_twice():
                 E.angle(ph.e3, ph.e3, top["tilt_max"] - depth),
                 E.angle(ph.e3, ph.e3, top["tilt_max"] + depth),
             ]
-            motion = ph.simulate(inertia, state, [10 * whole], ph.torque.heavy(c), method=method, events=events)
+            motion = ph.simulate(
+                inertia, state, [10 * whole], ph.torque.heavy(c), method=method, events=events
+            )
             assert [len(event) for event in motion.events] == [10, 20, 0, 20, 0]
 
 
@@ -199,31 +201,28 @@ def test_a_planet_passes_its_apsides_and_nodes():
 # --- none missed, none invented
 
 
-FORMULAS = ["(R e1 ~R)·e3 - 0.3", "Ω_B·(e2e3) + 0.2", "(R e1 ~R)·e2 (R e2 ~R)·e3", "norm(Ω_S) - 1.1"]
+FORMULAS = ["(R e1 ~R)·e3 - 0.3", "Ω_B·(e2e3) + 0.2", "(R e1 ~R)·e2 (R e2 ~R)·e3", "norm(Ω_S) - 1.16"]
 
 
 @pytest.mark.parametrize(
     ("method", "torque", "step"),
     [
         ("auto", None, None),
-        *[(method, None, 0.05 if METHODS[method] < 4 else 0.5) for method in METHODS],
+        *[(method, None, {2: 0.05, 4: 0.125}.get(METHODS[method], 0.5)) for method in METHODS],
         ("auto", ph.torque.heavy([0.5, 0.25, 1.0]), None),
         ("dop853", ph.torque.heavy([0.5, 0.25, 1.0]), None),
     ],
 )
 def test_events_are_those_that_a_dense_look_sees(method, torque, step):
-    """Each change of sign between 4,000 looks is an event there, and each event is one."""
+    """Each change of sign between 40,000 looks is an event there, and each event is one."""
     times = [-15.0, 25.0]
     events = [E.formula(text) for text in FORMULAS]
     motion = ph.simulate(ASYMMETRIC, START, times, torque, method=method, step=step, events=events)
-    t = np.linspace(*times, 4001)
-    # As they are looked at: steps of one motion, whatever the method's own error.
+    t = np.linspace(*times, 40001)
     seen = ph.simulate(ASYMMETRIC, START, t, torque, method="dop853" if torque else "auto")
+    R, B = seen.rotor, seen.omega_body
     for text, event in zip(FORMULAS, motion.events, strict=True):
-        values = np.array([
-            float(ph.evaluate(text, R=R, Ω_B=B, Ω_S=R(B)).components[0])
-            for R, B in zip(seen.rotor, seen.omega_body, strict=True)
-        ])
+        values = ph.evaluate(text, R=R, Ω_B=B, Ω_S=R(B)).components[:, 0]
         changes = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))
         found = np.sort(event.time)
         assert len(found) == len(changes) > 3
@@ -242,9 +241,9 @@ def test_the_axes_of_the_body_do_not_matter():
             E.plane(axes(ph.e1), ph.e3),
             E.angle(axes(ph.e2), ph.e1, 1.0),
             E.spin(axes(ph.e2 ^ ph.e3), -0.2),
-            E.formula("(R a ~R)·e3 + Ω_B·B", a=axes(ph.e1), B=axes(ph.e1 ^ ph.e2)),
+            E.formula("(R a ~R)·e3 + Ω_B·B + 1", a=axes(ph.e1), B=axes(ph.e1 ^ ph.e2)),
             E.formula("L·(e1e2) + Ω_B·I(Ω_B) L_B·B + 2.5", B=axes(ph.e1 ^ ph.e2)),
-            E.function(lambda t, R, B, x, v: (R(axes(ph.e1)) | ph.e3) + (B | axes(ph.e1 ^ ph.e2))),
+            E.function(lambda t, R, B, x, v: (R(axes(ph.e1)) | ph.e3) + (B | axes(ph.e1 ^ ph.e2)) + 1),
         ]
 
     one = ph.simulate(body, START, [20.0], events=events(lambda a: a))
@@ -403,7 +402,11 @@ def failing(t, *state):
         (E.function(lambda *state: "x"), TypeError, ["t = 0 s", "number", "str"]),
         (E.function(lambda *state: ph.e1), TypeError, ["t = 0 s", "number"]),
         (E.function(lambda *state: np.ones(2)), TypeError, ["t = 0 s", "number"]),
-        ([E.plane(ph.e1, ph.e3), E.function(lambda *state: np.nan)], ValueError, ["t = 0 s", "events[1]", "NaN"]),
+        (
+            [E.plane(ph.e1, ph.e3), E.function(lambda *state: np.nan)],
+            ValueError,
+            ["t = 0 s", "events[1]", "NaN"],
+        ),
         (E.formula("norm(v)/t - 1"), ValueError, ["t = 0 s", "events[0]", "norm(v)/t", "division"]),
         (E.formula("m - t"), ValueError, ["`m`", "Body", "Inertia"]),
         (3, TypeError, ["polhode.event", "3"]),
@@ -448,6 +451,11 @@ def test_arguments_that_make_no_event():
     ):
         with pytest.raises(ValueError):
             make()
-    for make in (lambda: E.spin(ph.e1), lambda: E.function(3), lambda: E.formula(3), lambda: E.plane("x", ph.e3)):
+    for make in (
+        lambda: E.spin(ph.e1),
+        lambda: E.function(3),
+        lambda: E.formula(3),
+        lambda: E.plane("x", ph.e3),
+    ):
         with pytest.raises(TypeError):
             make()

@@ -109,7 +109,9 @@ def test_a_spring_swings(method):
         anchor + (x - anchor) * np.cos(w * t) + v / w * np.sin(w * t),
         v * np.cos(w * t) - (x - anchor) * w * np.sin(w * t),
     )
-    energy = 0.5 * M * motion.velocity.norm() ** 2 + 0.5 * k * (motion.position - ph.vector(anchor)).norm() ** 2
+    energy = (
+        0.5 * M * motion.velocity.norm() ** 2 + 0.5 * k * (motion.position - ph.vector(anchor)).norm() ** 2
+    )
     assert np.ptp(energy) <= 4e-9 * energy[0]
 
 
@@ -143,7 +145,9 @@ def test_an_orbit_closes_and_keeps_energy_and_angular_momentum(eccentricity):
     np.testing.assert_allclose(energy, -0.5 * mu, rtol=20 * estimate / (1 - eccentricity) ** 2)
     momentum = (motion.position ^ motion.velocity).components
     size = np.sqrt(mu * (1 - eccentricity**2))
-    np.testing.assert_allclose(momentum, np.tile([0, -0.8 * size, 0.6 * size], (5, 1)), atol=20 * estimate * v)
+    np.testing.assert_allclose(
+        momentum, np.tile([0, -0.8 * size, 0.6 * size], (5, 1)), atol=20 * estimate * v
+    )
 
 
 def test_a_charge_circles_in_a_magnetic_field():

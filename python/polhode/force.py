@@ -74,7 +74,7 @@ def central(mu: float) -> Force:
 
 
 def formula(text: str, /, **values: Any) -> Force:
-    """Return the force that a formula in the handout's notation gives: ``formula("q cross(v, B)", q=q, B=B)``.
+    """Return the force that a formula in the handout's notation gives: ``formula("-k v", k=0.5)``.
 
     The formula is read and checked at once: its value must be a vector, the force in space in N. The motion
     gives

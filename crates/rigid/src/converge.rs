@@ -76,6 +76,8 @@ pub(crate) fn converge(
     let mut last: Option<(f64, f64)> = None;
     // The least error so far, and whether the pass before lowered it.
     let (mut previous, mut before) = (f64::INFINITY, true);
+    // The error of the last pass.
+    let mut reached = f64::INFINITY;
     for number in 2.. {
         if let Pace::Step(step) = &mut pace
             && coarse.longest > 0.0
@@ -85,6 +87,9 @@ pub(crate) fn converge(
         }
         let finer = pace.refined(by);
         if finer == pace {
+            if reached <= acceptable {
+                return Ok(Converged { pace, pass: Pass { steps, evaluations, ..coarse }, error: reached });
+            }
             return Err(SimulateError::NotConverged { rtol: goal, reached: previous, step: coarse.longest });
         }
         pace = finer;
@@ -124,7 +129,7 @@ pub(crate) fn converge(
         if stuck {
             return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
         }
-        (last, previous, before) = (Some((difference, shorter)), error.min(previous), gained);
+        (last, previous, before, reached) = (Some((difference, shorter)), error.min(previous), gained, error);
         by = if difference < 0.1 {
             let likely = difference * by.powf(-0.9 * order);
             (1.1 * (likely / goal).powf(1.0 / (TRUSTED * order))).clamp(1.3, 6.0)

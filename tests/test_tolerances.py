@@ -93,7 +93,7 @@ PROBLEMS = {
 
 
 def is_fit(method, torque):
-    return method != "rkn6" or all(law.name != "damping" for law in torque.laws)
+    return method != "rkn6" or all(name != "damping" for name, _ in torque.laws)
 
 
 CASES = [(name, method) for name, p in PROBLEMS.items() for method in METHODS if is_fit(method, p.torque)]

@@ -18,7 +18,7 @@ type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 const LOOK: f64 = 0.2;
 
 /// An event that comes sooner after the start, relative to the time to the next look, is one at the start.
-const ROUNDING_OF_START: f64 = 16.0 * f64::EPSILON;
+const ROUNDING_OF_START: f64 = 1e-12;
 
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;

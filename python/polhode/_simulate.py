@@ -65,8 +65,9 @@ def simulate(
     rtol, atol
         Without a `step`, runs with ever shorter steps until the estimated error of the last is less than the
         larger of the two: in the rotor, in the angular velocity relative to its largest size, and so for the
-        centre of mass, where forces move it; at output times and events. With neither given the aim is 1e-10; where rounding, magnified
-        by the motion, allows only up to 1e-6, that is accepted and the certificate tells the estimate.
+        centre of mass, where forces move it; at output times and events. With neither given the aim is
+        1e-10; where rounding, magnified by the motion, allows only up to 1e-6, that is accepted and the
+        certificate tells the estimate.
     step
         A fixed step in s; shortened a little so that steps end on the output times.
     events

@@ -53,3 +53,12 @@ def test_grades_and_steps_without_values():
             ph.formula("a").grades(**kinds_)
     with pytest.raises(TypeError, match="expected grades"):
         ph.formula("a").grades(a=None)
+
+
+def test_values_that_it_does_not_use_change_nothing():
+    """Neither the first time nor when the call is known."""
+    f = ph.formula("a + 1")
+    for _ in range(3):
+        assert f(a=1.0, b=5.0) == 2
+        assert f(b=ph.e1, a=1.0, c=ph.e1 ^ ph.e2) == 2
+        assert ph.evaluate("a b", a=ph.e1, c=ph.e3, b=ph.e2) == ph.e1 * ph.e2

@@ -155,7 +155,10 @@ BOX = ph.Body.box([1, 2, 3], mass=1.0)
         ({"rtol": 1e-17, "method": STEPS}, ["rtol = 1.0e-17", "not reached", "rtol >="]),
         ({"body": ph.Body.rod(1.0, mass=1.0)}, ["0 kg m²", "thickness"]),
         ({"state": ph.State(R0, [0, np.nan, 1])}, ["angular velocity", "nan"]),
-        ({"state": ph.State(R0, [[0, 0, 1], [0, 1, 0]])}, ["single", "(2,)"]),
+        ({"state": ph.State(R0, [[0, 0, 1], [0, 1, 0]])}, ["single", "(2,)", "FreeMotion"]),
+        ({"times": [-np.inf, 0.0]}, ["times[0]", "-inf"]),
+        ({"method": "exact", "step": 0.1}, ["exact", "closed form"]),
+        ({"method": "exact", "torque": ph.torque.gravity_gradient(1.0)}, ["exact", "closed form"]),
         ({"state": ph.State(R0, [0, 0, 1], velocity=[np.nan, 0, 0])}, ["velocity"]),
         ({"force": [0, np.nan, 0]}, ["force"]),
     ],
@@ -181,6 +184,9 @@ def test_unusable_values_are_refused(change, parts):
         {"force": ph.e1 ^ ph.e2},
         {"force": "down"},
         {"progress": 3},
+        {"events": 3},
+        {"events": [ph.event.plane]},
+        {"body": BOX.inertia, "force": [0, 0, 1]},
     ],
     ids=lambda change: "-".join(change),
 )
@@ -233,7 +239,7 @@ def test_progress_rises_from_pass_to_pass():
 
 def test_progress_rises_over_both_signs_of_time():
     seen = []
-    ph.simulate(ASYMMETRIC, START, [-3000.0, 3000.0], step=0.02, progress=lambda *at: seen.append(at[1]))
+    ph.simulate(ASYMMETRIC, START, [-3000.0, 3000.0], step=0.005, progress=lambda *at: seen.append(at[1]))
     assert seen == sorted(seen)
     assert seen[-1] > 0.6
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from polhode._extras import optional
 if TYPE_CHECKING:
     import xarray
 
-    from polhode._trajectory import Trajectory
+    from polhode._trajectory import Crossings, Trajectory
 
 CONVENTIONS = (
     "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, "
@@ -60,8 +61,35 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         "axis": ["x", "y", "z"],
         "axis_": ["x", "y", "z"],
     }
+    if trajectory.events:
+        variables |= _events(trajectory, variable)
     dataset: xarray.Dataset = xr.Dataset(variables, coordinates, _attributes(trajectory))
     return dataset
+
+
+def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
+    """Return what happened, one event after the other."""
+    events, along, axes = trajectory.events, ("event",), ("event", "axis")
+
+    def joined(part: Callable[[Crossings], Any]) -> Any:
+        return np.concatenate([part(event) for event in events])
+
+    names = np.array([event.name for event in events for _ in event.time], dtype=object)
+    attitude = joined(lambda event: event.rotor.to_quaternion(order="wxyz"))
+    omega = joined(lambda event: event.omega_body.components)
+    return {
+        "event_name": (along, names, {"long_name": "what passed zero"}),
+        "event_time": variable(along, joined(lambda event: event.time), "s", "time of the event"),
+        "event_rising": variable(along, joined(lambda event: event.rising), "1", "whether it rose"),
+        "event_attitude": variable(("event", "quaternion"), attitude, "1", "attitude, body to space"),
+        "event_omega_body": variable(axes, omega, "rad/s", "angular velocity in body axes"),
+        "event_position": variable(
+            axes, joined(lambda event: event.position.components), "m", "centre of mass in space"
+        ),
+        "event_velocity": variable(
+            axes, joined(lambda event: event.velocity.components), "m/s", "velocity of the centre of mass"
+        ),
+    }
 
 
 def require_libraries() -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from polhode import _native
 from polhode import force as forces
 from polhode._arrays import as_float, as_floats
 from polhode._bodies import Body, Inertia
+from polhode._multivector import Multivector
 from polhode._state import State, single
 from polhode._trajectory import Certificate, Trajectory
 from polhode._values import as_point, vector
@@ -32,7 +34,7 @@ def simulate(
     atol: float | None = None,
     step: float | None = None,
     *,
-    events: Sequence[Event] = (),
+    events: Event | Sequence[Event] = (),
     progress: Callable[[int, float], object] | None = None,
 ) -> Trajectory:
     """Return the motion of a body at given times: exact where it is known, else by steps that keep |R|.
@@ -50,11 +52,12 @@ def simulate(
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
         free motion.
     force
-        What moves the centre of mass: a law of `polhode.force`, a sum of them, or a vector or (3,) in N for a
-        constant force in space. It needs a `Body`.
+        What moves the centre of mass: a law of `polhode.force`, a sum of them, a vector or (3,) in N for a
+        constant force in space, or a function as for `polhode.force.function`. It needs a `Body`.
     method
-        ``"auto"``: ``"exact"`` where the motion has a closed form (free bodies among others) and no `step` is
-        given; for torques that depend on attitude and time, symmetric splittings, which keep the energy of
+        ``"auto"``: ``"exact"`` where the motion has a closed form and no `step` is given (free bodies,
+        symmetric ones under `heavy` along their axis, damping alone, spheres under `larmor`, and constant
+        forces); for torques that depend on attitude and time, symmetric splittings, which keep the energy of
         long runs: ``rkn6`` for symmetric bodies and ``kahan_li8`` for others; for torques that depend on the
         rate of turning, and for forces, ``dop853``, a Runge–Kutta method of order 8 on the group of rotors
         that adapts its steps. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,
@@ -62,12 +65,13 @@ def simulate(
     rtol, atol
         Without a `step`, runs with ever shorter steps until the estimated error of the last is less than the
         larger of the two: in the rotor, in the angular velocity relative to its largest size, and so for the
-        centre of mass, where forces move it. With neither given the aim is 1e-10; where rounding, magnified
-        by the motion, allows only up to 1e-6, that is accepted and the certificate tells the estimate.
+        centre of mass, where forces move it; at output times and events. With neither given the aim is
+        1e-10; where rounding, magnified by the motion, allows only up to 1e-6, that is accepted and the
+        certificate tells the estimate.
     step
         A fixed step in s; shortened a little so that steps end on the output times.
     events
-        What to look for on the way, from `polhode.event`; found in ``trajectory.events``.
+        What to look for on the way, from `polhode.event`: one or several; found in ``trajectory.events``.
     progress
         Called now and then with the pass (from 1) and the fraction of it done. Ctrl-C stops the run.
 
@@ -81,8 +85,6 @@ def simulate(
         raise TypeError(f"progress must be callable, got {type(progress).__name__}")
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
-    if method == "exact" and (torque is not None or step is not None):
-        raise ValueError('method "exact" is for free motion without a step; leave it out for others')
     start = single(state)
     mass = body.mass if isinstance(body, Body) else None
     inertia = _ruling_inertia(body, torque)
@@ -101,13 +103,13 @@ def simulate(
         start.omega_body._data,
         list(torque.laws) if torque else [],
         np.concatenate([start.position.components, start.velocity.components]),
-        1.0 if mass is None else mass,
+        math.nan if mass is None else mass,
         pushes,
         np.ascontiguousarray(when),
-        "auto" if method == "exact" else method,
+        method,
         None if step is None else as_float(step, "step"),
         _tolerance(rtol, atol),
-        [event._core for event in looked_for],
+        [event.law for event in looked_for],
         progress,
     )
     certificate = Certificate(**motion.certificate())
@@ -151,14 +153,28 @@ def _forces(force: Any, body: Body | Inertia) -> tuple[list[_native.Force], Torq
         return [], None
     if not isinstance(body, Body):
         raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
-    law = force if isinstance(force, Force) else forces.constant(as_point(force, "the force"))
-    torques = [constant_body((vector(at) - body.center_of_mass) ^ vector(F)) for F, at in law._thrusts]
-    return list(law._laws), sum(torques[1:], torques[0]) if torques else None
+    law = _force(force)
+    thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
+    torques = [constant_body((vector(at) - body.center_of_mass) ^ vector(F)) for F, at in thrusts]
+    return list(law.laws), sum(torques[1:], torques[0]) if torques else None
 
 
-def _events(events: Sequence[Event]) -> list[Event]:
+def _force(force: Any) -> Force:
+    if isinstance(force, Force):
+        return force
+    # A maker of forces, given without its arguments, is callable too.
+    if callable(force) and not isinstance(force, Multivector):
+        if getattr(force, "__module__", None) == forces.__name__:
+            raise TypeError(f"force must be a law of polhode.force, such as drag(k), got {force.__name__}")
+        return forces.function(force)
+    return forces.constant(as_point(force, "the force"))
+
+
+def _events(events: Event | Sequence[Event]) -> list[Event]:
     if isinstance(events, Event):
         return [events]
+    if not isinstance(events, Iterable):
+        raise TypeError(f"events must be made by polhode.event, one or several, got {events!r}")
     found = list(events)
     for k, event in enumerate(found):
         if not isinstance(event, Event):

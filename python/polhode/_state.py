@@ -66,7 +66,10 @@ def single(state: State) -> State:
         raise TypeError(f"state must be a State, got {type(state).__name__}")
     shapes = (state.rotor.shape, state.omega_body.shape, state.position.shape, state.velocity.shape)
     if any(shapes):
-        raise ValueError(f"the state must be a single one, got batch shapes {shapes}")
+        raise ValueError(
+            f"the state must be a single one, got batch shapes {shapes}; FreeMotion moves batches, "
+            "simulate one body at a time"
+        )
     for name in ("position", "velocity"):
         _check_finite(getattr(state, name).components, f"the {name}")
     _check_finite(state.omega_body.components, "the angular velocity")

@@ -93,6 +93,8 @@ class Trajectory:
     def at(self, t: Any) -> State:
         """Return the state at any time t in s between the first and the last; an array gives a batch.
 
+        The first and the last are those of the output times, of the start at time 0 and of the events.
+
         In closed form where the motion has one, else by the same method and the same steps from the nearest
         output time before, so that it is as accurate as the states at the output times. A ValueError outside.
         """

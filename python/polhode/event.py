@@ -1,27 +1,46 @@
-"""Events for `polhode.simulate` to look for: moments at which a quantity of the motion passes a level.
+"""Events for `polhode.simulate` to look for: moments at which a quantity of the motion passes zero.
 
-Each is found to rounding by root finding along the motion. Two that are closer in time than the body needs to
-turn by 0.2 rad may be missed.
+Each is found to rounding by root finding along the motion, which is looked at every 0.2 rad that the body
+turns, at every step and in its middle, and where the values hint at a short visit to the other side. A
+quantity that only touches zero does not pass it, and one that is zero at time 0 has not passed it there. What
+changes much faster than the body turns, as a formula may, can pass zero unseen: a shorter `step` sees it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import as_float
-from polhode._values import as_bivectors, as_point
+from polhode._made import bivector_of, function_of, made_of_formula, number, shown, three
+from polhode._multivector import Multivector
+from polhode._rotor import Rotor
+from polhode._values import as_point
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Event:
-    """What to look for; made by the functions of this module."""
+    """What to look for; made by the functions of this module.
 
-    name: str
-    _core: _native.Event
+    Events are values: equal where their arguments are, and pickled by them.
+    """
+
+    law: _native.Event
+
+    @property
+    def name(self) -> str:
+        """What it looks for, without the direction."""
+        return _shown(self.law.name, self.law.arguments[2:], {})
+
+    def __repr__(self) -> str:
+        direction, terminal, *arguments = self.law.arguments
+        named: dict[str, Any] = {"direction": direction} if direction else {}
+        if terminal:
+            named["terminal"] = terminal
+        return _shown(self.law.name, arguments, named)
 
 
 def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: bool = False) -> Event:
@@ -35,18 +54,14 @@ def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: 
         From 0 to π. The angle of an axis that only touches it, as at 0 and π, does not pass it.
     direction
         1: only where the axis comes nearer to `space` (the cosine rises), −1: only where it goes away, 0:
-        both.
+        both. Of a motion that is followed back in time from 0, as it is followed.
     terminal
         Whether the motion ends there: later output times are left out.
     """
-    value = as_float(angle, "angle")
+    value = number(angle, "angle")
     if not 0 <= value <= np.pi:
         raise ValueError(f"angle is {value}; it must be from 0 to π")
-    a, n = _direction(body, "body"), _direction(space, "space")
-    # The cosine of ½π is 0, not its rounding.
-    level = 0.0 if value == 0.5 * np.pi else float(np.cos(value))
-    core = _native.Event.axis(a, n, level, _way(direction), bool(terminal))
-    return Event(f"angle({_text(a)}, {_text(n)}, {value:g})", core)
+    return _event("angle", direction, terminal, _direction(body, "body"), _direction(space, "space"), value)
 
 
 def plane(body: Any, normal: Any, *, direction: int = 0, terminal: bool = False) -> Event:
@@ -55,9 +70,7 @@ def plane(body: Any, normal: Any, *, direction: int = 0, terminal: bool = False)
     `body` and `normal` are vectors or (3,); `direction` is 1 for crossings to the side of the normal; the
     rest as `angle`.
     """
-    a, n = _direction(body, "body"), _direction(normal, "normal")
-    core = _native.Event.axis(a, n, 0.0, _way(direction), bool(terminal))
-    return Event(f"plane({_text(a)}, {_text(n)})", core)
+    return _event("plane", direction, terminal, _direction(body, "body"), _direction(normal, "normal"))
 
 
 def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
@@ -65,44 +78,62 @@ def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = 
 
     The component of ω along the plane's axis, so that ``spin(e3*e1)`` finds the flips of a T-handle about e2.
     """
-    components = np.ascontiguousarray(as_bivectors(plane, "the plane"), float)
-    size = np.linalg.norm(components)
-    if components.shape != (3,) or not (np.isfinite(size) and size > 0):
-        raise ValueError(f"the plane is {components.tolist()}; it must be a single bivector that is not zero")
-    components = components / size
-    level = _level(rate, "rate")
-    core = _native.Event.spin(components, level, _way(direction), bool(terminal))
-    return Event(f"spin({_text(components)}, {level:g})", core)
+    components = np.array(bivector_of(plane, "the plane"))
+    return _event("spin", direction, terminal, _unit(components, "the plane"), number(rate, "rate"))
 
 
 def position(normal: Any, distance: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
     """Look for the centre of mass to cross the plane ``x·n = distance`` of space, n the unit normal, in m."""
-    n = _direction(normal, "normal")
-    level = _level(distance, "distance")
-    core = _native.Event.position(n, level, _way(direction), bool(terminal))
-    return Event(f"position({_text(n)}, {level:g})", core)
+    along, level = _direction(normal, "normal"), number(distance, "distance")
+    return _event("position", direction, terminal, along, level)
 
 
-def _direction(value: Any, name: str) -> Any:
-    components = as_point(value, name)
+def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **values: Any) -> Event:
+    """Look for a formula in the handout's notation to pass zero: ``formula("x·e3 - h", h=2)``.
+
+    The formula is read and checked at once: its value must be a scalar. The motion gives the names of
+    `polhode.force.formula`: ``R``, ``t``, ``x``, ``v``, ``Ω_B``, ``Ω_S``, ``m`` and others; `values` are
+    single multivectors, rotors, linear maps and numbers for other names. `direction` is 1 where the value
+    rises; the rest as `angle`. A FormulaError tells what is no formula, or no scalar, and where.
+    """
+    return made_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
+
+
+def function(
+    f: Callable[[float, Rotor, Multivector, Multivector, Multivector], Any],
+    *,
+    direction: int = 0,
+    terminal: bool = False,
+) -> Event:
+    """Look for the value of a Python function to pass zero: ``f(t, rotor, omega_body, position, velocity)``.
+
+    It is called with the time in s, the rotor from body axes to space, the angular velocity in body axes, a
+    bivector, and the position and the velocity of the centre of mass, vectors in space, and returns a number.
+    What it raises, `simulate` raises. The rest as `angle`.
+    """
+    given = function_of(f, "t, rotor, omega_body, position and velocity")
+    return _event("function", direction, terminal, given)
+
+
+def _event(name: str, direction: int, terminal: bool, *arguments: Any) -> Event:
+    if direction not in (-1, 0, 1):
+        raise ValueError(f"direction is {direction!r}; it must be 1 (rising), -1 (falling) or 0 (both)")
+    return Event(_native.Event(name, int(direction), bool(terminal), *arguments))
+
+
+def _direction(value: Any, name: str) -> tuple[float, ...]:
+    return _unit(np.array(three(as_point(value, name), name)), name)
+
+
+def _unit(components: Any, name: str) -> tuple[float, ...]:
     size = np.linalg.norm(components)
     if not (np.isfinite(size) and size > 0):
         raise ValueError(f"{name} is {components.tolist()}; it must be finite and not zero")
-    return components / size
+    return tuple((components / size).tolist())
 
 
-def _level(x: Any, name: str) -> float:
-    value = as_float(x, name)
-    if not np.isfinite(value):
-        raise ValueError(f"{name} is {value}; it must be finite")
-    return value
-
-
-def _way(direction: int) -> int:
-    if direction not in (-1, 0, 1):
-        raise ValueError(f"direction is {direction!r}; it must be 1 (rising), -1 (falling) or 0 (both)")
-    return int(direction)
-
-
-def _text(components: Any) -> str:
-    return "[" + ", ".join(f"{x:g}" for x in components) + "]"
+def _shown(name: str, arguments: Iterable[Any], named: Mapping[str, Any]) -> str:
+    if name == "formula":
+        text, values = arguments
+        return shown(name, [text], {**named, **dict(values)})
+    return shown(name, arguments, named, "g")

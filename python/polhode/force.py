@@ -5,40 +5,42 @@ Forces add up: ``ph.force.constant([0, 0, -9.81]) + ph.force.drag(0.1)``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from polhode import _native
-from polhode._arrays import Array, as_float
+from polhode._made import function_of, made_of_formula, number, shown, three
+from polhode._multivector import Multivector
+from polhode._rotor import Rotor
 from polhode._values import as_point
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Force:
-    """A sum of forces; made by the functions of this module."""
+    """A sum of forces; made by the functions of this module.
 
-    _laws: tuple[_native.Force, ...]
-    _named: tuple[str, ...]
-    # Body forces with the points at which they act, for their torque.
-    _thrusts: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...] = ()
+    Forces are values: equal where their arguments are, and pickled by them.
+    """
+
+    laws: tuple[_native.Force, ...]
 
     def __add__(self, other: Force) -> Force:
         if not isinstance(other, Force):
             return NotImplemented
-        return Force(self._laws + other._laws, self._named + other._named, self._thrusts + other._thrusts)
+        return Force(self.laws + other.laws)
 
     def __radd__(self, other: object) -> Force:
         """``0 + force``, so that ``sum(forces)`` works."""
         return self if other == 0 else NotImplemented
 
     def __repr__(self) -> str:
-        return " + ".join(self._named)
+        return " + ".join(map(_shown, self.laws)) or "Force(())"
 
 
 def constant(F: Any) -> Force:
     """Return a force constant in space, a vector or (3,) in N."""
-    components = _three(F, "F")
-    return Force((_native.Force.constant(components),), (f"constant({components.tolist()})",))
+    return _force("constant", _point(F, "F"))
 
 
 def thrust(F: Any, at: Any = None) -> Force:
@@ -47,45 +49,83 @@ def thrust(F: Any, at: Any = None) -> Force:
     With `at`, the point of the body where it acts (in body axes, m), it exerts the torque ``(at − c)∧F``
     about the centre of mass c too; without, it acts at the centre of mass.
     """
-    components = _three(F, "F")
-    law = _native.Force.body(components)
-    if at is None:
-        return Force((law,), (f"thrust({components.tolist()})",))
-    place = _three(at, "at")
-    name = f"thrust({components.tolist()}, at={place.tolist()})"
-    return Force((law,), (name,), ((tuple(components.tolist()), tuple(place.tolist())),))
+    place = () if at is None else (_point(at, "at"),)
+    return _force("thrust", _point(F, "F"), *place)
 
 
 def drag(k: float) -> Force:
     """Return ``−k v``, k in N s/m."""
-    k = _finite(k, "k")
-    return Force((_native.Force.drag(k),), (f"drag({k})",))
+    return _force("drag", number(k, "k"))
 
 
 def quadratic_drag(k: float) -> Force:
     """Return ``−k |v| v``, k in N s²/m²."""
-    k = _finite(k, "k")
-    return Force((_native.Force.quadratic_drag(k),), (f"quadratic_drag({k})",))
+    return _force("quadratic_drag", number(k, "k"))
 
 
 def spring(k: float, anchor: Any = 0) -> Force:
     """Return ``−k (x − anchor)``, k in N/m, the anchor a point in space in m."""
-    k, place = _finite(k, "k"), _three(anchor, "anchor")
-    return Force((_native.Force.spring(k, place),), (f"spring({k}, {place.tolist()})",))
+    return _force("spring", number(k, "k"), _point(anchor, "anchor"))
 
 
 def central(mu: float) -> Force:
     """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M in m³/s²."""
-    mu = _finite(mu, "mu")
-    return Force((_native.Force.central(mu),), (f"central({mu})",))
+    return _force("central", number(mu, "mu"))
 
 
-def _three(value: Any, name: str) -> Array:
-    return as_point(value, f"the force's {name}")
+def formula(text: str, /, **values: Any) -> Force:
+    """Return the force that a formula in the handout's notation gives: ``formula("-k v", k=0.5)``.
+
+    The formula is read and checked at once: its value must be a vector, the force in space in N. The motion
+    gives
+
+    - ``x`` and ``v``, the position and the velocity of the centre of mass, vectors in space in m and m/s
+      (a cross product is ``cross(a, b)``), and ``m``, the mass in kg,
+    - ``R``, the rotor from body axes to space, and ``t``, the time in s,
+    - ``Ω_B`` and ``Ω_S`` (or ``Omega_B``, ``Omega_S``), the angular velocity in body axes and in space,
+      bivectors in rad/s, ``L`` and ``L_B``, the angular momentum in space and in body axes, and ``I(…)``,
+      the inertia map of the body.
+
+    Parameters
+    ----------
+    text
+        The formula.
+    values
+        What the other names stand for: single multivectors, rotors, linear maps, numbers.
+
+    Raises
+    ------
+    FormulaError
+        For a text that is no formula, or whose value is no vector; with the place. Where a run comes to a
+        point at which the formula has no value, `simulate` tells which part of it.
+    """
+    return made_of_formula(lambda given: _force("formula", text, given), text, values)
 
 
-def _finite(x: float, name: str) -> float:
-    value = as_float(x, name)
-    if value - value != 0:
-        raise ValueError(f"{name} is {value}; it must be finite")
-    return value
+def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Force:
+    """Return the force that a Python function gives: ``f(t, position, velocity, rotor)``.
+
+    It is called with the time in s, the position and the velocity of the centre of mass, vectors in space,
+    and the rotor from body axes to space, and returns the force in space in N, a vector or (3,). What it
+    raises, `simulate` raises. It is slower than a `formula`, and a force that is one pickles if its function
+    does.
+    """
+    return _force("function", function_of(f, "t, position, velocity and rotor"))
+
+
+def _force(name: str, *arguments: Any) -> Force:
+    return Force((_native.Force(name, *arguments),))
+
+
+def _point(value: Any, name: str) -> tuple[float, ...]:
+    return three(as_point(value, f"the force's {name}"), name)
+
+
+def _shown(law: _native.Force) -> str:
+    if law.name == "formula":
+        text, values = law.arguments
+        return shown("formula", [text], dict(values))
+    if law.name == "thrust" and len(law.arguments) == 2:
+        F, at = law.arguments
+        return shown("thrust", [F], {"at": at})
+    return shown(law.name, law.arguments, {})

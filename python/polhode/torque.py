@@ -14,14 +14,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_float, as_floats
+from polhode._arrays import as_float, as_floats
 from polhode._bodies import Body, Inertia
 from polhode._coefficients import as_coefficients
-from polhode._formula_error import FormulaError
-from polhode._linear import LinearMap
+from polhode._made import (
+    bivector_of,
+    finite,
+    function_of,
+    made_of_formula,
+    number,
+    shown,
+    three,
+    vector_of,
+)
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
-from polhode._values import as_bivectors, as_vectors, bivector
+from polhode._values import as_bivectors, bivector
 
 if TYPE_CHECKING:
     from polhode._state import State
@@ -72,7 +80,7 @@ class Torque:
             raise ValueError(
                 f"the state must be a single one, got batch {np.broadcast_shapes(*_batches(state))}"
             )
-        time = _finite(as_float(t, "t"), "t")
+        time = finite(as_float(t, "t"), "t")
         return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
 
 
@@ -86,7 +94,7 @@ def heavy(c: Any) -> Torque:
     axes, a vector or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is
     taken as such, a `Body` is taken about the origin of its axes.
     """
-    return _law("heavy", _vector(c, "c"))
+    return _law("heavy", vector_of(c, "c"))
 
 
 def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 0.0) -> Torque:
@@ -107,7 +115,7 @@ def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 
         M0 in rad, that at time 0; the periapsis lies on e1.
     """
     arguments = {"n": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
-    return _law("gravity_gradient", *(_number(value, name) for name, value in arguments.items()))
+    return _law("gravity_gradient", *(number(value, name) for name, value in arguments.items()))
 
 
 def magnetic(dipole: Any, field: Any) -> Torque:
@@ -116,7 +124,7 @@ def magnetic(dipole: Any, field: Any) -> Torque:
     ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
     in body axes in A m², the field B one in space in T.
     """
-    return _law("magnetic", _vector(dipole, "the dipole"), _vector(field, "the field"))
+    return _law("magnetic", vector_of(dipole, "the dipole"), vector_of(field, "the field"))
 
 
 def larmor(b: Any) -> Torque:
@@ -124,7 +132,7 @@ def larmor(b: Any) -> Torque:
 
     L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
     """
-    return _law("larmor", _vector(b, "b"))
+    return _law("larmor", vector_of(b, "b"))
 
 
 # --- springs, dampers, control
@@ -132,7 +140,7 @@ def larmor(b: Any) -> Torque:
 
 def damping(g: float) -> Torque:
     """Return the torque ``−g I(Ω_B)``, g in 1/s: without another, spin dies away as ``exp(−g t)``."""
-    return _law("damping", _number(g, "g"))
+    return _law("damping", number(g, "g"))
 
 
 def viscous_damping(d: Any) -> Torque:
@@ -142,7 +150,7 @@ def viscous_damping(d: Any) -> Torque:
 
 def quadratic_damping(k: float) -> Torque:
     """Return the torque ``−k |Ω_B| Ω_B``, as of a fast turn in air; k in N m s², not negative."""
-    return _law("quadratic_damping", _not_negative(_number(k, "k"), "k"))
+    return _law("quadratic_damping", _not_negative(number(k, "k"), "k"))
 
 
 def torsion_spring(k: float, rest: Rotor | None = None) -> Torque:
@@ -159,7 +167,7 @@ def torsion_spring(k: float, rest: Rotor | None = None) -> Torque:
     rest
         A single rotor from body axes to space; None for the identity.
     """
-    return _law("torsion_spring", _number(k, "k"), _rotor(rest, "rest"))
+    return _law("torsion_spring", number(k, "k"), _rotor(rest, "rest"))
 
 
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
@@ -184,7 +192,7 @@ def gyrostat(h: Any) -> Torque:
     body is that with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the
     wheel resists being turned.
     """
-    return _law("gyrostat", _bivector(h, "h"))
+    return _law("gyrostat", bivector_of(h, "h"))
 
 
 # --- given torques
@@ -192,12 +200,12 @@ def gyrostat(h: Any) -> Torque:
 
 def constant_body(N: Any) -> Torque:
     """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
-    return _law("constant_body", _bivector(N, "N"))
+    return _law("constant_body", bivector_of(N, "N"))
 
 
 def constant_space(N: Any) -> Torque:
     """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
-    return _law("constant_space", _bivector(N, "N"))
+    return _law("constant_space", bivector_of(N, "N"))
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
@@ -257,16 +265,8 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
         For a text that is no formula, or whose value is no bivector; with the place. Where a run comes to a
         point at which the formula has no value, `simulate` tells which part of it.
     """
-    if not isinstance(text, str):
-        raise TypeError(f"a formula is a text, got {type(text).__name__}")
     axes = _one_of(_FRAMES, frame, "frame")
-    given = {name: _value(value, name) for name, value in values.items()}
-    try:
-        return _law("formula", text, axes, tuple(given.items()))
-    except FormulaError:
-        # As in formulas elsewhere, a single value without a scalar part, such as e1*e2, counts as a bivector.
-        given = {name: _narrowed(value) for name, value in given.items()}
-    return _law("formula", text, axes, tuple(given.items()))
+    return made_of_formula(lambda given: _law("formula", text, axes, given), text, values)
 
 
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
@@ -277,9 +277,7 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     `simulate` raises. It is some ten times slower than a `formula`, and a law that is one pickles if its
     function does.
     """
-    if not callable(f):
-        raise TypeError(f"a function of t, rotor and omega_body is needed, got {type(f).__name__}")
-    return _law("function", f)
+    return _law("function", function_of(f, "t, rotor and omega_body"))
 
 
 # --- what laws are given
@@ -289,36 +287,10 @@ def _law(name: str, *arguments: Any) -> Torque:
     return Torque((_native.Law(name, *arguments),))
 
 
-def _finite(value: float, name: str) -> float:
-    if not np.isfinite(value):
-        raise ValueError(f"{name} is {value}; it must be finite")
-    return value
-
-
-def _number(value: Any, name: str) -> float:
-    return _finite(as_float(value, name), name)
-
-
 def _not_negative(value: float, name: str) -> float:
     if value < 0:
         raise ValueError(f"{name} is {value}; a damper takes energy away, so it must not be negative")
     return value
-
-
-def _three(components: Array, name: str) -> tuple[float, ...]:
-    if components.shape != (3,):
-        raise ValueError(f"{name} must be a single value, got shape {components.shape}")
-    if not np.isfinite(components).all():
-        raise ValueError(f"{name} is {components.tolist()}; it must be finite")
-    return tuple(components.tolist())
-
-
-def _vector(value: Any, name: str) -> tuple[float, ...]:
-    return _three(as_vectors(value, name), name)
-
-
-def _bivector(value: Any, name: str) -> tuple[float, ...]:
-    return _three(as_bivectors(value, name), name)
 
 
 def _gains(value: Any, name: str) -> tuple[float, ...]:
@@ -326,7 +298,7 @@ def _gains(value: Any, name: str) -> tuple[float, ...]:
     array = as_floats(value, name)
     if array.shape not in ((), (3,)):
         raise ValueError(f"{name} must be a number or three along the body axes, got shape {array.shape}")
-    along = _three(np.broadcast_to(array, (3,)), name)
+    along = three(np.broadcast_to(array, (3,)), name)
     if min(along) < 0:
         raise ValueError(f"{name} is {array.tolist()}; it must not be negative")
     return along
@@ -349,32 +321,6 @@ def _one_of(words: tuple[str, ...], value: str, name: str) -> str:
     return value
 
 
-def _value(value: Any, name: str) -> Any:
-    """Return a value for a formula: a single finite multivector over float64, a linear map or a number."""
-    if isinstance(value, LinearMap):
-        return value
-    if not isinstance(value, Multivector):
-        number = as_floats(value, name)
-        if number.ndim:
-            raise TypeError(
-                f"{name} is an array of shape {number.shape}; wrap components with ph.vector or ph.bivector"
-            )
-        return _finite(float(number), name)
-    if value.shape:
-        raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
-    data = as_coefficients(value._data, name, float)
-    if not np.isfinite(data).all():
-        raise ValueError(f"{name} is {value}; it must be finite")
-    return Rotor._from_rows(data) if isinstance(value, Rotor) else Multivector._of(data, value._mask)
-
-
-def _narrowed(value: Any) -> Any:
-    if not isinstance(value, Multivector) or isinstance(value, Rotor):
-        return value
-    held = value._held()
-    return value if held in (0, value._mask) else value._part(held)
-
-
 def _batches(state: State) -> tuple[tuple[int, ...], ...]:
     return state.rotor.shape, state.omega_body.shape
 
@@ -383,16 +329,11 @@ def _batches(state: State) -> tuple[tuple[int, ...], ...]:
 
 
 def _shown(law: _native.Law) -> str:
-    arguments: list[str] = []
     if law.name == "tabulated":
         times, _, frame, kind = law.arguments
-        arguments = [f"{len(times)} rows, {times[0]:.6g} s to {times[-1]:.6g} s", f"{frame=}, {kind=}"]
-    elif law.name == "formula":
+        return f"tabulated({len(times)} rows, {times[0]:.6g} s to {times[-1]:.6g} s, {frame=}, {kind=})"
+    if law.name == "formula":
         text, frame, values = law.arguments
-        arguments = [repr(text), *([f"{frame=}"] if frame != "body" else [])]
-        arguments += [f"{name}={value}" for name, value in values]
-    elif law.name == "function":
-        arguments = [getattr(law.arguments[0], "__name__", repr(law.arguments[0]))]
-    else:
-        arguments = [str(list(x) if isinstance(x, tuple) else x) for x in law.arguments]
-    return f"{law.name}({', '.join(arguments)})"
+        named = {"frame": frame} if frame != "body" else {}
+        return shown("formula", [text], {**named, **dict(values)})
+    return shown(law.name, law.arguments, {})

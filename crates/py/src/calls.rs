@@ -30,8 +30,8 @@ struct Call {
 
 /// What a name stands for.
 pub(crate) enum Argument {
-    /// A value or number, and its place among the inputs.
-    Value(Type, usize),
+    /// A value or number, and its place among the inputs, if the formula uses it.
+    Value(Type, Option<usize>),
     /// A linear map of vectors or bivectors, whose inputs are there.
     Map(Py<PyAny>, u16),
 }
@@ -66,7 +66,7 @@ impl Calls {
             let Some(mut argument) = Argument::of(&value)? else { return Ok(()) };
             for (place, input) in steps.inputs.iter().enumerate().filter(|(place, _)| order[*place] == i) {
                 match &mut argument {
-                    Argument::Value(_, own) => *own = place,
+                    Argument::Value(_, own) => *own = Some(place),
                     Argument::Map(..) => inputs[place] = of_map(&value, input.kind)?,
                 }
             }
@@ -94,10 +94,10 @@ impl Call {
                 (Argument::Value(ty, place), Operand::Value(value, unit))
                     if value.grades() == ty.grades && unit == ty.unit =>
                 {
-                    self.inputs[*place] = Given::Value(*value);
+                    place.iter().for_each(|&place| self.inputs[place] = Given::Value(*value));
                 }
                 (Argument::Value(Type::SCALAR, place), Operand::Number(x)) => {
-                    self.inputs[*place] = Given::Value(scalar(x));
+                    place.iter().for_each(|&place| self.inputs[place] = Given::Value(scalar(x)));
                 }
                 (Argument::Map(map, _), Operand::Other) if value.is(map) => {}
                 _ => return None,
@@ -113,9 +113,9 @@ impl Argument {
         let py = value.py();
         match operand(value) {
             Operand::Value(value, unit) => {
-                Ok(Some(Argument::Value(Type { grades: value.grades(), unit }, 0)))
+                Ok(Some(Argument::Value(Type { grades: value.grades(), unit }, None)))
             }
-            Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, 0))),
+            Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
                 static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
                 let one = value.is_instance(CLASS.import(py, "polhode._linear", "LinearMap")?)?

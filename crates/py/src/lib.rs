@@ -11,6 +11,7 @@ mod closed_forms;
 mod formula;
 mod free;
 mod laws;
+mod made;
 mod motion;
 mod multivector;
 mod operators;
@@ -40,6 +41,8 @@ mod _native {
     use crate::free::FreeMotion;
     #[pymodule_export]
     use crate::laws::{Event, Force};
+    #[pymodule_export]
+    use crate::made::Made;
     #[pymodule_export]
     use crate::motion::symmetric_top;
     #[pymodule_export]

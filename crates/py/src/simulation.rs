@@ -3,8 +3,9 @@
 use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use crate::laws::{Event, Force};
+use crate::made::{Made, failed};
 use crate::motion::check_times;
-use crate::torque::{Law, failed};
+use crate::torque::Law;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::event::Direction;
@@ -66,7 +67,8 @@ fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Motion {
     motion: rigid::Motion,
-    laws: Vec<Py<Law>>,
+    /// The laws and events, which keep what their functions raise.
+    made: Vec<Py<Made>>,
 }
 
 #[pymethods]
@@ -79,8 +81,7 @@ impl Motion {
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> Points<'py> {
         let times = numbers(&times)?;
         check_times(times)?;
-        let laws: Vec<_> = self.laws.iter().map(|law| law.bind(py).clone()).collect();
-        let states = run(py, &laws, None, |progress| self.motion.at(times, progress))?;
+        let states = run(py, &self.made, None, |progress| self.motion.at(times, progress))?;
         points(py, states)
     }
 
@@ -116,7 +117,7 @@ impl Motion {
 /// Runs without the GIL, with progress and Ctrl-C.
 fn run<T: Send>(
     py: Python<'_>,
-    laws: &[Bound<'_, Law>],
+    made: &[Py<Made>],
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<T, SimulateError> + Send,
 ) -> PyResult<T> {
@@ -128,12 +129,14 @@ fn run<T: Send>(
     match (result, error) {
         (Ok(found), _) => Ok(found),
         (Err(SimulateError::Interrupted), Some(error)) => Err(error),
-        (Err(error @ SimulateError::Torque { .. }), _) => Err(failed(laws, error)),
+        (Err(error @ SimulateError::Torque { .. }), _) => {
+            Err(failed(made.iter().map(|one| one.bind(py)), error))
+        }
         (Err(error), _) => Err(bad(error)),
     }
 }
 
-/// Simulates. `center` is the place and velocity of the centre of mass, the mass is of use with forces alone.
+/// Simulates. `center` is the place and velocity of the centre of mass, the mass NaN where it is not known.
 #[pyfunction]
 #[pyo3(signature = (inertia, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, events, progress))]
 #[allow(clippy::too_many_arguments)]
@@ -145,27 +148,34 @@ pub(crate) fn simulate<'py>(
     laws: Vec<Bound<'py, Law>>,
     center: Rows<'py>,
     mass: f64,
-    forces: Vec<PyRef<'py, Force>>,
+    forces: Vec<Bound<'py, Force>>,
     times: Rows<'py>,
     method: &str,
     step: Option<f64>,
     rtol: Option<f64>,
-    events: Vec<PyRef<'py, Event>>,
+    events: Vec<Bound<'py, Event>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Motion> {
+    let exact = method == "exact";
     let method = match method {
-        "auto" => None,
+        "auto" | "exact" => None,
         name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
     };
+    let made: Vec<Py<Made>> = laws
+        .iter()
+        .map(|law| law.as_super().clone().unbind())
+        .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
+        .chain(events.iter().map(|event| event.as_super().clone().unbind()))
+        .collect();
     let torques: Vec<_> = laws.iter().map(|law| law.get().torque.clone()).collect();
-    let forces: Vec<_> = forces.iter().map(|force| force.0.clone()).collect();
-    let events = events.iter().map(|event| event.0.clone()).collect();
+    let forces: Vec<_> = forces.iter().map(|force| force.get().force.clone()).collect();
+    let events = events.iter().map(|event| event.get().event.clone()).collect();
     let [x, y, z, u, v, w] = one(&center)?;
     let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques)
         .with_center(center, mass, &forces);
     let times = numbers(&times)?;
-    let options = Options { method, step, rtol, events };
-    let motion = run(py, &laws, progress.as_ref(), |progress| problem.simulate(times, options, progress))?;
-    Ok(Motion { motion, laws: laws.into_iter().map(Bound::unbind).collect() })
+    let options = Options { method, step, rtol, exact, events };
+    let motion = run(py, &made, progress.as_ref(), |progress| problem.simulate(times, options, progress))?;
+    Ok(Motion { motion, made })
 }

@@ -25,8 +25,7 @@ pub(crate) enum Rotation {
 pub(crate) struct ClosedForm {
     body: Gyrostat,
     rotation: Rotation,
-    center: Center,
-    acceleration: Vector,
+    fall: Fall,
 }
 
 impl ClosedForm {
@@ -36,11 +35,10 @@ impl ClosedForm {
         rotor: Rotor,
         omega: Bivector,
         torques: &[Torque],
-        center: Center,
-        acceleration: Vector,
+        fall: Fall,
     ) -> Option<ClosedForm> {
         let rotation = rotation(body.moments, rotor, omega, torques)?;
-        Some(ClosedForm { body, rotation, center, acceleration })
+        Some(ClosedForm { body, rotation, fall })
     }
 
     /// How far in time, in s, the phase is known.
@@ -62,7 +60,7 @@ impl ClosedForm {
             Rotation::Larmor(motion) => motion.at(time),
         };
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
-        Carried::new(phase, uniformly_accelerated(self.center, self.acceleration, time))
+        Carried::new(phase, self.fall.at(time))
     }
 }
 
@@ -93,13 +91,24 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
     }
 }
 
-/// The centre of mass under a constant force.
-pub(crate) fn uniformly_accelerated(start: Center, acceleration: Vector, time: f64) -> Center {
-    // t² may overflow where no force needs it.
-    let fallen = |a: f64| if a == 0.0 { 0.0 } else { 0.5 * a * time * time };
-    let fallen = Vector(acceleration.0.map(fallen));
-    Center {
-        position: start.position + start.velocity * time + fallen,
-        velocity: start.velocity + acceleration * time,
+/// A centre of mass under a constant force.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fall {
+    /// At time 0.
+    pub start: Center,
+    /// In m/s².
+    pub acceleration: Vector,
+}
+
+impl Fall {
+    /// Where it is at a time in s.
+    pub fn at(&self, time: f64) -> Center {
+        let Fall { start, acceleration } = *self;
+        // t² may overflow where no force needs it.
+        let fallen = |a: f64| if a == 0.0 { 0.0 } else { 0.5 * a * time * time };
+        Center {
+            position: start.position + start.velocity * time + Vector(acceleration.0.map(fallen)),
+            velocity: start.velocity + acceleration * time,
+        }
     }
 }

@@ -61,6 +61,8 @@ pub(crate) struct Converged {
 
 /// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
 ///
+/// At events, too, what they differ by is told at one time: `follow` leads a point a little way to another time.
+///
 /// What the motion magnifies, it magnifies in all passes alike, and their agreement would not show it: every other pass
 /// starts a few roundings away.
 ///
@@ -76,6 +78,7 @@ pub(crate) fn converge(
     first: Pace,
     aim: Aim,
     body: &Gyrostat,
+    follow: &dyn Fn(&Carried, f64) -> Carried,
 ) -> Result<Converged, SimulateError> {
     let Aim { goal, acceptable, .. } = aim;
     let order = f64::from(aim.order);
@@ -86,6 +89,8 @@ pub(crate) fn converge(
     let mut last: Option<(f64, f64)> = None;
     // The least error so far, and whether the pass before lowered it.
     let (mut previous, mut before) = (f64::INFINITY, true);
+    // The error of the last pass.
+    let mut reached = f64::INFINITY;
     for number in 2.. {
         if let Pace::Step(step) = &mut pace
             && coarse.longest > 0.0
@@ -95,6 +100,9 @@ pub(crate) fn converge(
         }
         let finer = pace.refined(by);
         if finer == pace {
+            if reached <= acceptable {
+                return Ok(Converged { pace, pass: Pass { steps, evaluations, ..coarse }, error: reached });
+            }
             return Err(SimulateError::NotConverged { rtol: goal, reached: previous, step: coarse.longest });
         }
         pace = finer;
@@ -103,7 +111,7 @@ pub(crate) fn converge(
         fine.states.iter_mut().filter(|s| s.phase.time == start.phase.time).for_each(|s| *s = start);
         steps += fine.steps;
         evaluations += fine.evaluations;
-        let difference = difference(body, &coarse, &fine);
+        let difference = difference(body, &coarse, &fine, follow);
         let mut shorter = by;
         if let Pace::Tolerance(tolerance) = pace {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
@@ -136,7 +144,7 @@ pub(crate) fn converge(
         if stuck {
             return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
         }
-        (last, previous, before) = (Some((difference, shorter)), error.min(previous), gained);
+        (last, previous, before, reached) = (Some((difference, shorter)), error.min(previous), gained, error);
         by = if difference < 0.1 {
             let likely = difference * by.powf(-0.9 * order);
             (1.1 * (likely / goal).powf(1.0 / (TRUSTED * order))).clamp(1.3, 6.0)
@@ -157,11 +165,15 @@ fn moved(start: Carried, steps: u64) -> Carried {
     Carried::new(Phase { rotor: turn * start.phase.rotor, momentum, ..start.phase }, start.center)
 }
 
-/// Largest difference of two passes at the output times: in the rotor, and in angular velocity, place and velocity
-/// relative to the largest on the way.
-fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass) -> f64 {
+/// Largest difference of two passes at the output times and at events: in the rotor, and in angular velocity, place and
+/// velocity relative to the largest on the way.
+fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carried, f64) -> Carried) -> f64 {
+    // An event ended one of them and not the other.
+    if coarse.ends != fine.ends {
+        return 1.0;
+    }
     let [fastest, farthest, swiftest] = fine.largest.map(|x| x.max(f64::MIN_POSITIVE));
-    let apart = |(a, b): (&Carried, &Carried)| {
+    let apart = |a: &Carried, b: &Carried| {
         let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
         let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();
         let spin = (body.omega(a.phase.momentum) - body.omega(b.phase.momentum)).norm() / fastest;
@@ -169,5 +181,10 @@ fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass) -> f64 {
         let velocity = (a.center.velocity - b.center.velocity).norm() / swiftest;
         turn.max(spin).max(place).max(velocity)
     };
-    coarse.states.iter().zip(&fine.states).map(apart).fold(0.0, f64::max)
+    let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
+    // An event that is barely one may be none in the other.
+    let same = coarse.events.len() == fine.events.len();
+    let events = coarse.events.iter().zip(&fine.events).filter(|(a, b)| same && a.event == b.event);
+    let events = events.map(|(a, b)| apart(&follow(&a.at, b.at.phase.time), &b.at));
+    outputs.chain(events).fold(0.0, f64::max)
 }

@@ -1,32 +1,13 @@
 //! Events along a motion: when a quantity passes zero.
 
+use crate::formula::Formula;
+use crate::point::{Function, Point};
 use crate::runge_kutta::Carried;
 use crate::torque::TorqueError;
 use polhode_ga::{Bivector, Rotor, Vector};
-use std::fmt;
-use std::sync::Arc;
 
-/// A quantity of a point of the motion by a function: of time, rotor (body axes to space), angular velocity in body
-/// axes, position and velocity.
-pub type Function = dyn Fn(&Seen) -> Result<f64, TorqueError> + Send + Sync;
-
-/// A point of the motion as an event sees it, in the body axes of the user.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// In s.
-    pub time: f64,
-    /// Body axes to space.
-    pub rotor: Rotor,
-    /// In body axes, rad/s.
-    pub omega: Bivector,
-    /// In m.
-    pub position: Vector,
-    /// In m/s.
-    pub velocity: Vector,
-}
-
-/// What passes zero.
-#[derive(Clone)]
+/// What passes zero. Vectors and bivectors of the body are in body axes.
+#[derive(Clone, Debug)]
 pub enum Quantity {
     /// `(R a ~R)·n − level`, with a direction a of the body and n of space: an axis of the body crosses a plane or
     /// reaches an angle.
@@ -52,19 +33,10 @@ pub enum Quantity {
         /// In m for a unit vector.
         level: f64,
     },
-    /// Any other.
-    Function(Arc<Function>),
-}
-
-impl fmt::Debug for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Quantity::Axis { body, space, level } => write!(f, "Axis({body:?}, {space:?}, {level})"),
-            Quantity::Spin { plane, level } => write!(f, "Spin({plane:?}, {level})"),
-            Quantity::Position { normal, level } => write!(f, "Position({normal:?}, {level})"),
-            Quantity::Function(_) => f.write_str("Function"),
-        }
-    }
+    /// A formula.
+    Formula(Formula),
+    /// What a function of the caller's returns.
+    Function(Function<f64>),
 }
 
 /// What to look for along a motion.
@@ -99,17 +71,42 @@ pub struct Happened {
 }
 
 impl Quantity {
+    fn in_axes(self, frame: Rotor) -> Quantity {
+        let back = frame.reverse();
+        match self {
+            Quantity::Axis { body, space, level } => Quantity::Axis { body: back.apply(body), space, level },
+            Quantity::Spin { plane, level } => Quantity::Spin { plane: back.apply_bivector(plane), level },
+            Quantity::Position { .. } => self,
+            Quantity::Formula(formula) => Quantity::Formula(formula.in_axes(frame)),
+            Quantity::Function(function) => Quantity::Function(function.in_axes(frame)),
+        }
+    }
+
     /// Its value.
-    pub fn value(&self, seen: &Seen) -> Result<f64, TorqueError> {
-        Ok(match self {
-            Quantity::Axis { body, space, level } => seen.rotor.apply(*body).dot(*space) - level,
+    pub fn value(&self, at: &Point) -> Result<f64, TorqueError> {
+        let value = match self {
+            Quantity::Axis { body, space, level } => at.phase.rotor.apply(*body).dot(*space) - level,
             Quantity::Spin { plane, level } => {
-                let (w, b) = (seen.omega.0, plane.0);
+                let (w, b) = (at.body.omega(at.phase.momentum).0, plane.0);
                 w[0] * b[0] + w[1] * b[1] + w[2] * b[2] - level
             }
-            Quantity::Position { normal, level } => seen.position.dot(*normal) - level,
-            Quantity::Function(function) => function(seen)?,
-        })
+            Quantity::Position { normal, level } => at.center.position.dot(*normal) - level,
+            Quantity::Formula(formula) => {
+                formula.value(at)?.components().first().copied().unwrap_or(f64::NAN)
+            }
+            Quantity::Function(function) => function.value(at)?,
+        };
+        if value.is_nan() {
+            return Err(TorqueError("its value is NaN".into()));
+        }
+        Ok(value)
+    }
+}
+
+impl Event {
+    /// The same event with its body components seen from other body axes: `x' = ~F x F`.
+    pub fn in_axes(self, frame: Rotor) -> Event {
+        Event { quantity: self.quantity.in_axes(frame), ..self }
     }
 }
 
@@ -122,6 +119,64 @@ pub(crate) fn crossing(before: f64, after: f64) -> Option<Direction> {
     } else {
         None
     }
+}
+
+/// How far above zero, relative to how far it falls, a parabola through three values may turn where the quantity itself
+/// may yet reach zero.
+const DOUBT: f64 = 0.1;
+
+/// Where a quantity that has one sign at three successive times has the other between them, and its value there: near
+/// the vertex of the parabola through the three, and of the narrower ones that follow.
+pub(crate) fn dip<E>(
+    mut points: [(f64, f64); 3],
+    mut function: impl FnMut(f64) -> Result<f64, E>,
+) -> Result<Option<(f64, f64)>, E> {
+    let sign = points[1].1.signum();
+    if points.iter().any(|p| p.1 * sign <= 0.0) {
+        return Ok(None);
+    }
+    for narrower in 0..40 {
+        let [(t0, y0), (t1, y1), (t2, y2)] = points.map(|(t, y)| (t, y * sign));
+        // y1 + b (t − t1) + a (t − t1)².
+        let (left, right) = ((y1 - y0) / (t1 - t0), (y2 - y1) / (t2 - t1));
+        let a = (right - left) / (t2 - t0);
+        let b = left + a * (t1 - t0);
+        let way = -0.5 * b / a;
+        let lowest = y1 + 0.5 * b * way;
+        // Where time runs backwards, too, the parabola that opens upwards has a > 0; NaN is none. A vertex that lies
+        // just outside may yet be one inside; the next three times find the others.
+        let near = (t1 + way - 0.5 * (t0 + t2)).abs() <= 0.6 * (t2 - t0).abs();
+        if !(a > 0.0 && near) || narrower == 0 && lowest > DOUBT * (y0.max(y2) - lowest) {
+            return Ok(None);
+        }
+        let margin = 1e-3 * (t2 - t0);
+        let at = if t2 > t0 {
+            (t1 + way).clamp(t0 + margin, t2 - margin)
+        } else {
+            (t1 + way).clamp(t2 - margin, t0 + margin)
+        };
+        if at == t1 {
+            return Ok(None);
+        }
+        let value = function(at)?;
+        let y = value * sign;
+        if y < 0.0 {
+            return Ok(Some((at, value)));
+        }
+        // It has settled above zero.
+        if y.is_nan() || (y - y1).abs() <= 0.25 * y {
+            return Ok(None);
+        }
+        let [first, middle, last] = points;
+        let beyond = (at - t1) * (t2 - t1) > 0.0;
+        points = match (y < y1, beyond) {
+            (true, true) => [middle, (at, value), last],
+            (true, false) => [first, (at, value), middle],
+            (false, true) => [first, middle, (at, value)],
+            (false, false) => [(at, value), middle, last],
+        };
+    }
+    Ok(None)
 }
 
 /// Where in (low, high) a function passes zero, to the spacing `least`: false position with the Illinois rule, guarded by
@@ -183,6 +238,36 @@ mod tests {
         assert!((x - 0.3).abs() < 1e-5);
         let (x, _) = find(&|x| if x < 0.7 { -1e-9 } else { 1e3 }, 0.0, 1.0);
         assert!((x - 0.7).abs() < 1e-14);
+    }
+
+    /// Two crossings between three looks.
+    #[test]
+    fn a_dip_below_zero_is_found() {
+        let find = |f: &dyn Fn(f64) -> f64, times: [f64; 3]| {
+            let mut calls = 0;
+            let found = dip::<()>(times.map(|t| (t, f(t))), |t| {
+                calls += 1;
+                Ok(f(t))
+            });
+            (found.unwrap(), calls)
+        };
+        for (times, sign) in [([0.0, 0.2, 0.4], 1.0), ([0.4, 0.2, 0.0], -1.0)] {
+            for lowest in [0.05, 0.11, 0.2, 0.3, 0.37] {
+                for depth in [1e-3, 1e-6, 1e-9, 1e-12] {
+                    let below = |t: f64| sign * (1.0 - (t - lowest).cos() - depth);
+                    let (found, calls) = find(&below, times);
+                    let seen = times.iter().any(|&t| below(t) * sign < 0.0);
+                    assert!(seen || found.is_some_and(|(_, value)| value * sign < 0.0), "{lowest} {depth}");
+                    assert!(calls <= 12, "{calls}");
+                    let above = |t: f64| sign * (1.0 - (t - lowest).cos() + depth);
+                    let (found, calls) = find(&above, times);
+                    assert!(found.is_none() && calls <= 12, "{found:?} {calls}");
+                }
+            }
+        }
+        // Far from zero nothing is asked.
+        assert_eq!(find(&|t| 2.0 + t.cos(), [0.0, 0.2, 0.4]), (None, 0));
+        assert_eq!(find(&|t| 2.0 - t.cos(), [-0.2, 0.0, 0.2]), (None, 0));
     }
 
     #[test]

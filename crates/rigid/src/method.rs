@@ -146,9 +146,8 @@ impl Engine {
         translation: Option<Translation>,
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
-        let moving =
-            "leaves the centre of mass to its closed form, which these forces have not; use auto or dop853";
-        let moving = (translation.is_some() && matches!(method, Method::Splitting(_))).then_some(moving);
+        let moving = "leaves the centre of mass to its closed form, which these forces have not; use auto, dop853 or rk4";
+        let moving = (translation.is_some() && !matches!(method, Method::RungeKutta(_))).then_some(moving);
         if let Some(reason) = method.unfit(&body, torques).or(moving) {
             return Err(SimulateError::Unfit { method: method.name(), reason });
         }

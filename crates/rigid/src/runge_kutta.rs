@@ -151,7 +151,7 @@ impl RungeKutta {
         if let Some(translation) = &self.translation {
             let center = moved(&from.center, change, dt);
             let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
-            let acceleration = translation.acceleration(&state, &center).map_err(failed)?;
+            let acceleration = translation.acceleration(&self.body, &state, &center).map_err(failed)?;
             // The place beside that of the uniform motion from the start of the step.
             slope[6..9].copy_from_slice(&part(change, 9));
             slope[9..12].copy_from_slice(&acceleration.0);

@@ -2,7 +2,7 @@
 //! what was conserved.
 
 use crate::certificate::{Certificate, Watch};
-use crate::closed_form::{ClosedForm, uniformly_accelerated};
+use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::energy;
 use crate::converge::{Aim, DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
 use crate::event::{Event, Happened};
@@ -26,6 +26,8 @@ pub struct Problem {
     omega: Bivector,
     torques: Vec<Torque>,
     center: Center,
+    /// NaN where nobody said it.
+    mass: f64,
     translation: Option<Translation>,
 }
 
@@ -39,9 +41,15 @@ pub struct Options {
     /// The relative error to reach where it chooses the step; `None` aims at 1e-10 and takes what rounding
     /// leaves of it.
     pub rtol: Option<f64>,
-    /// What to look for on the way.
+    /// Whether nothing but the closed form will do.
+    pub exact: bool,
+    /// What to look for on the way, with body components in body axes.
     pub events: Vec<Event>,
 }
+
+const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
+                              their axis, damping alone, spheres under larmor, and constant forces; leave the method \
+                              out for others";
 
 /// A motion at its output times, which may be asked for any other between them.
 #[derive(Clone, Debug)]
@@ -103,15 +111,17 @@ impl Problem {
             omega: frame.reverse().apply_bivector(omega),
             torques,
             center: Center::default(),
+            mass: f64::NAN,
             translation: None,
         }
     }
 
     /// The same with the centre of mass at a place in space, and forces, with body components in body axes, on a mass
-    /// in kg.
+    /// in kg, which is NaN where nobody knows it.
     pub fn with_center(mut self, center: Center, mass: f64, forces: &[Force]) -> Problem {
         let forces: Vec<Force> = forces.iter().map(|f| f.clone().in_axes(self.frame)).collect();
         self.center = center;
+        self.mass = mass;
         self.translation = (!forces.is_empty()).then_some(Translation { mass, forces });
         self
     }
@@ -129,10 +139,13 @@ impl Problem {
     ) -> Result<Motion, SimulateError> {
         self.check(times, &options)?;
         let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
-        let acceleration = self.constant_acceleration();
+        if options.exact && closed.is_none() {
+            return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
+        }
+        let fall = self.fall();
         let method =
-            options.method.unwrap_or_else(|| Method::best(&self.body, &self.torques, acceleration.is_none()));
-        let translation = self.translation.clone().filter(|_| acceleration.is_none());
+            options.method.unwrap_or_else(|| Method::best(&self.body, &self.torques, fall.is_none()));
+        let translation = self.translation.clone().filter(|_| fall.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
                 check_horizon(times, closed.horizon())?;
@@ -143,10 +156,10 @@ impl Problem {
                 method.name(),
             ),
         };
-        let rate = fastest_rate(&self.body, &self.torques, &self.start().phase);
+        let rate = self.rate();
         let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
         let long = |turn: f64| Pace::Step(if rate > 0.0 { turn / rate } else { longest.max(1.0) });
-        let events = options.events;
+        let events: Vec<Event> = options.events.into_iter().map(|event| event.in_axes(self.frame)).collect();
         let (pace, pass, error) = match (&engine, options.step) {
             (Engine::ClosedForm(closed), _) if events.is_empty() => {
                 (long(1.0), self.sampled(closed, times), None)
@@ -170,8 +183,13 @@ impl Problem {
                     number += 1;
                     self.pass_from(start, &engine, times, (pace, number), &events, progress)
                 };
+                let follow = |from: &Carried, time: f64| {
+                    let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
+                    fall.iter().for_each(|fall| to.center = fall.at(time));
+                    to
+                };
                 let aim = Aim { order: method.order(), goal, acceptable };
-                let found = converge(&mut run, self.start(), first, aim, &self.body)?;
+                let found = converge(&mut run, self.start(), first, aim, &self.body, &follow)?;
                 (found.pace, found.pass, Some(found.error))
             }
         };
@@ -236,8 +254,7 @@ impl Problem {
         progress: &'a mut dyn FnMut(Progress) -> bool,
     ) -> Walker<'a> {
         let watch = Watch::new(self.body, &self.torques, self.start().phase);
-        let rate = fastest_rate(&self.body, &self.torques, &self.start().phase);
-        let first = 0.1 / rate.max(f64::MIN_POSITIVE);
+        let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
         Walker {
             body: self.body,
             engine,
@@ -246,7 +263,8 @@ impl Problem {
             first,
             breaks,
             events,
-            frame: self.frame,
+            fall: self.fall(),
+            mass: self.mass,
             number,
             progress,
         }
@@ -261,19 +279,28 @@ impl Problem {
     }
 
     fn closed_form(&self) -> Option<ClosedForm> {
-        let acceleration = self.constant_acceleration()?;
-        ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.center, acceleration)
+        ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.fall()?)
     }
 
-    /// What the forces give, if they are constant.
-    fn constant_acceleration(&self) -> Option<Vector> {
-        let Some(translation) = &self.translation else { return Some(Vector::default()) };
+    /// The rate of the fastest turn and of the fastest change of way, in 1/s: a scale for steps.
+    fn rate(&self) -> f64 {
+        let translation = self.translation.as_ref().map_or(0.0, |t| t.rate(&self.center));
+        fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)
+    }
+
+    /// The motion of the centre of mass, if the forces are constant.
+    fn fall(&self) -> Option<Fall> {
+        let start = self.center;
+        let Some(translation) = &self.translation else {
+            return Some(Fall { start, acceleration: Vector::default() });
+        };
         let constant = translation.forces.iter().map(|force| match force {
             Force::Constant(force) => Some(*force),
             _ => None,
         });
         let sum: Option<Vec<Vector>> = constant.collect();
-        Some(sum?.into_iter().fold(Vector::default(), |sum, force| sum + force) / translation.mass)
+        let sum = sum?.into_iter().fold(Vector::default(), |sum, force| sum + force);
+        Some(Fall { start, acceleration: sum / translation.mass })
     }
 
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
@@ -310,9 +337,8 @@ impl Problem {
         Carried::new(phase, self.center)
     }
 
-    /// In body axes. Under constant forces the centre of mass is in closed form.
+    /// In body axes.
     fn states(&self, states: &[Carried]) -> States {
-        let acceleration = self.constant_acceleration();
         let mut all = States::default();
         for Carried { phase, center, .. } in states {
             all.times.push(phase.time);
@@ -320,10 +346,7 @@ impl Problem {
             all.omegas.push(self.frame.apply_bivector(self.body.omega(phase.momentum)));
             all.momenta_space.push(phase.rotor.apply_bivector(phase.momentum));
             all.energies.push(energy(&self.body, &self.torques, phase));
-            all.centers.push(match acceleration {
-                Some(acceleration) => uniformly_accelerated(self.center, acceleration, phase.time),
-                None => *center,
-            });
+            all.centers.push(*center);
         }
         all
     }
@@ -341,16 +364,17 @@ impl Motion {
         self.problem.states(&states)
     }
 
-    /// The motion at any times between the first and the last, 0 included: by the same method and the same steps from the
+    /// The motion at any times between the first and the last, 0 and the events included: by the same method and the same steps from the
     /// nearest output time before.
     pub fn at(
         &self,
         times: &[f64],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<States, SimulateError> {
-        let known = |state: &Carried| state.phase.time;
-        let first = self.states.first().map_or(0.0, known).min(0.0);
-        let last = self.states.last().map_or(0.0, known).max(0.0);
+        // A motion that an event ends is known up to there.
+        let known = self.states.iter().chain(self.events.iter().map(|happened| &happened.at));
+        let (first, last) =
+            known.fold((0.0, 0.0), |(a, b): (f64, f64), s| (a.min(s.phase.time), b.max(s.phase.time)));
         if let Some(index) = times.iter().position(|t| !(first..=last).contains(t)) {
             return Err(SimulateError::OutsideMotion { index, time: times[index], first, last });
         }

@@ -9,7 +9,7 @@ mod gains;
 mod orbit;
 mod table;
 
-pub use formula::{Axes, FormulaTorque};
+pub use formula::FormulaTorque;
 pub use function::FunctionTorque;
 pub use gains::Gains;
 pub use orbit::Orbit;
@@ -79,6 +79,15 @@ pub enum Torque {
     Formula(FormulaTorque),
     /// What a function of the caller's returns.
     Function(FunctionTorque),
+}
+
+/// The axes of a torque that is given by its components, or by a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the body.
+    Body,
+    /// Those of space.
+    Space,
 }
 
 /// What a law's torque depends on besides time.

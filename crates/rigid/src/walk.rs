@@ -1,21 +1,25 @@
 //! One pass over the output times, by fixed steps or by steps that keep to a tolerance.
 
 use crate::certificate::Watch;
+use crate::closed_form::Fall;
 use crate::conserved::Conserved;
-use crate::event::{Event, Happened, Seen, crossing, root};
+use crate::event::{Event, Happened, crossing, dip, root};
 use crate::force::Center;
 use crate::method::Engine;
-use crate::phase::{Gyrostat, Phase};
+use crate::phase::Gyrostat;
+use crate::point::Point;
 use crate::runge_kutta::Carried;
 use crate::simulate_error::{MAX_STEPS, SimulateError};
 use crate::torque::TorqueError;
-use polhode_ga::Rotor;
 
 /// The fraction of the work done at some time.
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 
-/// How far the body may turn, in rad, between looks for events: two of them closer than this may be missed.
+/// How far the body, or the way of its centre of mass, may turn in rad between looks for events.
 const LOOK: f64 = 0.2;
+
+/// An event that comes sooner after the start, relative to the time to the next look, is one at the start.
+const ROUNDING_OF_START: f64 = 1e-12;
 
 /// How often, in steps, a run asks whether to go on.
 const STEPS_BETWEEN_CALLS: u64 = 256;
@@ -44,6 +48,8 @@ pub(crate) struct Pass {
     pub states: Vec<Carried>,
     /// The events, in the order in which they were met.
     pub events: Vec<Happened>,
+    /// On how many sides of the start an event ended the motion.
+    pub ends: u32,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// The largest angular velocity (rad/s), distance (m) and velocity (m/s) on the way.
@@ -72,8 +78,10 @@ pub(crate) struct Walker<'a> {
     /// Times at which the laws are not smooth, rising.
     pub breaks: &'a [f64],
     pub events: &'a [Event],
-    /// From principal axes to those of the body, for events.
-    pub frame: Rotor,
+    /// The motion of the centre of mass, where its acceleration is constant.
+    pub fall: Option<Fall>,
+    /// In kg; NaN where nobody said it.
+    pub mass: f64,
     pub number: u32,
     pub progress: &'a mut dyn FnMut(Progress) -> bool,
 }
@@ -127,15 +135,22 @@ impl Walker<'_> {
     ) -> Result<Vec<Carried>, SimulateError> {
         let fastest = self.body.omega(start.phase.momentum).norm();
         pass.meet(fastest, &start.center);
+        let mut times = times.peekable();
+        if times.peek().is_none() {
+            return Ok(Vec::new());
+        }
         let values = self.values(&start)?;
         let mut walk = Walk { at: start, next: self.first, fastest, values, ended: false };
         let mut states = Vec::new();
         for &time in times {
             self.walk(&mut walk, time, pass, done)?;
+            if !walk.ended || walk.at.phase.time == time {
+                states.push(walk.at);
+            }
             if walk.ended {
+                pass.ends += 1;
                 break;
             }
-            states.push(walk.at);
         }
         Ok(states)
     }
@@ -179,8 +194,8 @@ impl Walker<'_> {
             let last = i + 1 == count as u64;
             let to = if last { time } else { from + span * ((i + 1) as f64 / count) };
             // The difference of the rounded times, so that the steps add up to the time.
-            let (next, _) = self.step(&walk.at, to - walk.at.phase.time, walk.fastest, pass)?;
-            self.arrive(walk, next, to, pass, done)?;
+            let (next, _) = self.step(&walk.at, to, walk.fastest, pass)?;
+            self.arrive(walk, next, pass, done)?;
             if walk.ended {
                 break;
             }
@@ -208,7 +223,7 @@ impl Walker<'_> {
             if h == 0.0 || cut < 1e-14 * walk.at.phase.time.abs() {
                 return Err(SimulateError::StepTooSmall { time: walk.at.phase.time, step: cut });
             }
-            let (next, error) = self.step(&walk.at, h, walk.fastest, pass)?;
+            let (next, error) = self.step(&walk.at, to, walk.fastest, pass)?;
             let error = error / tolerance;
             // NaN too.
             if error.is_nan() || error > 1.0 {
@@ -222,7 +237,7 @@ impl Walker<'_> {
             walk.next = if cut < walk.next { walk.next.max(h.abs() * growth) } else { h.abs() * growth };
             refused = false;
             pass.longest = pass.longest.max(h.abs());
-            self.arrive(walk, next, to, pass, done)?;
+            self.arrive(walk, next, pass, done)?;
             if pass.steps as f64 > MAX_STEPS {
                 return Err(SimulateError::TooManySteps { steps: pass.steps as f64, step: cut });
             }
@@ -230,15 +245,21 @@ impl Walker<'_> {
         Ok(())
     }
 
+    /// One step to a time.
     fn step(
         &self,
         at: &Carried,
-        h: f64,
+        time: f64,
         fastest: f64,
         pass: &mut Pass,
     ) -> Result<(Carried, f64), SimulateError> {
         pass.evaluations += self.engine.evaluations();
-        self.engine.step(at, h, fastest)
+        let (mut next, error) = self.engine.step(at, time - at.phase.time, fastest)?;
+        next.phase.time = time;
+        if let Some(fall) = &self.fall {
+            next.center = fall.at(time);
+        }
+        Ok((next, error))
     }
 
     /// Takes a step, up to an event that ends the motion.
@@ -246,12 +267,11 @@ impl Walker<'_> {
         &mut self,
         walk: &mut Walk,
         mut next: Carried,
-        time: f64,
         pass: &mut Pass,
         done: Done,
     ) -> Result<(), SimulateError> {
         pass.steps += 1;
-        next.phase.time = time;
+        let time = next.phase.time;
         if !is_finite(&next) {
             return Err(SimulateError::Diverged { time });
         }
@@ -274,36 +294,29 @@ impl Walker<'_> {
     /// The events between the point of the walk and the next, and where it ends: there, or at an event.
     ///
     /// A point within a step is a shorter step from its start. A step may be a good part of a turn long: it is looked at
-    /// in pieces of less than [`LOOK`] rad.
+    /// in pairs of pieces of less than [`LOOK`] rad, and where three values in a row hint at a dip to zero, there too.
     fn look_for_events(
         &self,
         walk: &mut Walk,
         next: Carried,
         pass: &mut Pass,
     ) -> Result<Carried, SimulateError> {
-        let (start, h) = (walk.at, next.phase.time - walk.at.phase.time);
-        let pieces = (self.body.omega(next.phase.momentum).norm().max(walk.fastest) * h.abs() / LOOK)
-            .ceil()
-            .clamp(1.0, 1e4);
-        let mut before = start;
-        for piece in 1..=pieces as u64 {
-            let after = if piece as f64 == pieces {
-                next
+        let start = walk.at;
+        let (from, h) = (start.phase.time, next.phase.time - start.phase.time);
+        let halves = 2 * self.pairs(walk, &next);
+        let mut before = (from, std::mem::take(&mut walk.values));
+        for half in (2..=halves).step_by(2) {
+            let [middle, after] = [half - 1, half].map(|k| from + h * (k as f64 / halves as f64));
+            let middle = (middle, self.values(&self.within(&start, middle, walk, pass)?)?);
+            let after = if half == halves {
+                (next.phase.time, self.values(&next)?)
             } else {
-                self.within(&start, h * (piece as f64 / pieces), walk, pass)?
+                (after, self.values(&self.within(&start, after, walk, pass)?)?)
             };
-            let values = self.values(&after)?;
             let mut found = Vec::new();
-            for (k, event) in self.events.iter().enumerate() {
-                let Some(direction) = crossing(walk.values[k], values[k]) else { continue };
-                if event.direction.is_some_and(|wanted| wanted != direction) {
-                    continue;
-                }
-                let span = (before.phase.time - start.phase.time, after.phase.time - start.phase.time);
-                let least = 2.0 * f64::EPSILON * after.phase.time.abs().max(h.abs());
-                let mut value = |s: f64| self.value(k, &self.within(&start, s, walk, pass)?);
-                let at = root(span, (walk.values[k], values[k]), least, &mut value)?;
-                found.push(Happened { event: k, direction, at: self.within(&start, at, walk, pass)? });
+            for k in 0..self.events.len() {
+                let looks = [&before, &middle, &after].map(|(time, values)| (*time, values[k]));
+                self.crossings(k, looks, walk, pass, &mut found)?;
             }
             found.sort_by(|a, b| (a.at.phase.time * h.signum()).total_cmp(&(b.at.phase.time * h.signum())));
             for happened in found {
@@ -313,21 +326,73 @@ impl Walker<'_> {
                     return Ok(happened.at);
                 }
             }
-            walk.values = values;
             before = after;
         }
+        walk.values = before.1;
         Ok(next)
     }
 
-    /// The point a time s after the start of a step.
+    /// How many pairs of pieces a step is looked at in.
+    fn pairs(&self, walk: &Walk, next: &Carried) -> u64 {
+        let h = next.phase.time - walk.at.phase.time;
+        let turn = self.body.omega(next.phase.momentum).norm().max(walk.fastest) * h.abs();
+        // By how much the velocity turns, and how far the way leaves the tangent. A parabola shows in three looks.
+        let (a, b) = (walk.at.center, next.center);
+        let speed = a.velocity.norm().max(b.velocity.norm());
+        let bend = if self.fall.is_some() || speed == 0.0 {
+            0.0
+        } else {
+            let leaves = (b.position - a.position) / h - a.velocity;
+            (b.velocity - a.velocity).norm().max(leaves.norm()) / speed
+        };
+        (turn.max(bend) / (2.0 * LOOK)).ceil().clamp(1.0, 1e4) as u64
+    }
+
+    /// Where an event happens between three looks, its times with its values there.
+    fn crossings(
+        &self,
+        event: usize,
+        looks: [(f64, f64); 3],
+        walk: &Walk,
+        pass: &mut Pass,
+        found: &mut Vec<Happened>,
+    ) -> Result<(), SimulateError> {
+        let wanted = self.events[event].direction;
+        let mut value = |time: f64| self.value(event, &self.within(&walk.at, time, walk, pass)?);
+        let mut looks = looks.to_vec();
+        if let Some(lowest) = dip([looks[0], looks[1], looks[2]], &mut value)? {
+            let between = if (lowest.0 - looks[1].0) * (looks[2].0 - looks[1].0) > 0.0 { 2 } else { 1 };
+            looks.insert(between, lowest);
+        }
+        let mut times = Vec::new();
+        for pair in looks.windows(2) {
+            let ((low, at_low), (high, at_high)) = (pair[0], pair[1]);
+            let Some(direction) = crossing(at_low, at_high) else { continue };
+            if wanted.is_some_and(|wanted| wanted != direction) {
+                continue;
+            }
+            let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
+            let time = root((low, high), (at_low, at_high), least, &mut value)?;
+            // A zero at the start that rounding has moved off it.
+            if walk.at.phase.time != 0.0 || time.abs() > ROUNDING_OF_START * (high - low).abs() {
+                times.push((direction, time));
+            }
+        }
+        for (direction, time) in times {
+            found.push(Happened { event, direction, at: self.within(&walk.at, time, walk, pass)? });
+        }
+        Ok(())
+    }
+
+    /// The point at a time within the step that begins at `start`.
     fn within(
         &self,
         start: &Carried,
-        s: f64,
+        time: f64,
         walk: &Walk,
         pass: &mut Pass,
     ) -> Result<Carried, SimulateError> {
-        if s == 0.0 { Ok(*start) } else { Ok(self.step(start, s, walk.fastest, pass)?.0) }
+        if time == start.phase.time { Ok(*start) } else { Ok(self.step(start, time, walk.fastest, pass)?.0) }
     }
 
     fn values(&self, at: &Carried) -> Result<Vec<f64>, SimulateError> {
@@ -335,17 +400,12 @@ impl Walker<'_> {
     }
 
     fn value(&self, event: usize, at: &Carried) -> Result<f64, SimulateError> {
-        let Phase { rotor, momentum, time } = at.phase;
-        let Center { position, velocity } = at.center;
-        let omega = self.frame.apply_bivector(self.body.omega(momentum));
-        let seen = Seen { time, rotor: rotor * self.frame.reverse(), omega, position, velocity };
-        let failed =
-            |error: TorqueError| SimulateError::Torque { time, message: format!("events[{event}]: {error}") };
-        let value = self.events[event].quantity.value(&seen).map_err(failed)?;
-        if value.is_nan() {
-            return Err(failed(TorqueError("its value is NaN".into())));
-        }
-        Ok(value)
+        let point = Point { body: &self.body, mass: self.mass, phase: &at.phase, center: &at.center };
+        let failed = |error: TorqueError| SimulateError::Torque {
+            time: at.phase.time,
+            message: format!("events[{event}]: {error}"),
+        };
+        self.events[event].quantity.value(&point).map_err(failed)
     }
 }
 

@@ -1,0 +1,83 @@
+//! Walks along a motion: their progress, and forces and events of the core's own making.
+
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::Inertia;
+use polhode_rigid::event::{Direction, Event, Quantity};
+use polhode_rigid::force::{Center, Force};
+use polhode_rigid::method::Method;
+use polhode_rigid::point::Function;
+use polhode_rigid::simulate::{Options, Problem};
+use polhode_rigid::torque::TorqueError;
+
+fn problem() -> Problem {
+    let inertia = Inertia::from_principal_moments([1.0, 2.0, 3.0]).unwrap();
+    Problem::new(&inertia, Rotor::IDENTITY, Bivector([0.25, -0.5, 1.0]), &[])
+}
+
+#[test]
+fn progress_rises_over_both_signs_of_time() {
+    let mut seen = Vec::new();
+    let options = Options { step: Some(1.0 / 64.0), ..Options::default() };
+    let motion = problem().simulate(&[-100.0, -50.0, 30.0, 200.0], options, &mut |at| {
+        seen.push(at.fraction);
+        assert_eq!(at.pass, 1);
+        true
+    });
+    assert_eq!(motion.unwrap().certificate.steps, 300 * 64);
+    // Once every 256 steps: 19,200 of them.
+    assert_eq!(seen.len(), 75);
+    assert!(seen.is_sorted_by(|a, b| a < b) && seen[0] > 0.0 && seen[74] == 1.0, "{seen:?}");
+}
+
+#[test]
+fn a_run_that_is_told_to_stop_stops() {
+    let mut calls = 0;
+    let options = Options { step: Some(1.0 / 64.0), ..Options::default() };
+    let motion = problem().simulate(&[1e6], options, &mut |_| {
+        calls += 1;
+        calls < 3
+    });
+    assert!(motion.is_err());
+    assert_eq!(calls, 3);
+}
+
+/// `x'' = −x` from 1: zeros at the odd quarters, by a function of the force and one of the event.
+#[test]
+fn functions_of_forces_and_events() {
+    let spring = Force::Function(Function::new(|seen| Ok(seen.position * -2.0)));
+    let center = Center { position: Vector([1.0, 0.0, 0.0]), velocity: Vector::default() };
+    let quantity = Quantity::Function(Function::new(|seen| Ok(seen.position.0[0])));
+    let events = vec![Event { quantity, direction: Some(Direction::Falling), terminal: false }];
+    let options = Options { events, ..Options::default() };
+    let motion = problem().with_center(center, 2.0, &[spring]).simulate(&[-9.0, 9.0], options, &mut |_| true);
+    let motion = motion.unwrap();
+    let times = motion.event_states().times;
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let expected = [-1.0, -5.0, 1.0, 5.0].map(|k| k * quarter);
+    assert_eq!(times.len(), 4);
+    let error = motion.certificate.error_estimate.unwrap();
+    assert!(times.iter().zip(expected).all(|(t, e)| (t - e).abs() <= 10.0 * error), "{times:?}");
+    assert!(motion.events.iter().all(|happened| happened.direction == Direction::Falling));
+}
+
+#[test]
+fn what_fails_is_told_with_its_time() {
+    let late = |seen: &polhode_rigid::point::Seen| {
+        if seen.time > 0.5 { Err(TorqueError("too late".into())) } else { Ok(Vector::default()) }
+    };
+    let late = [Force::Function(Function::new(late))];
+    let motion = problem().with_center(Center::default(), 1.0, &late).simulate(
+        &[1.0],
+        Options::default(),
+        &mut |_| true,
+    );
+    let message = motion.unwrap_err().to_string();
+    assert!(message.starts_with("at t = ") && message.ends_with("too late"), "{message}");
+    let drag = [Force::Drag(1.0)];
+    for name in ["strang", "midpoint", "dmv"] {
+        let options = Options { method: Method::from_name(name), ..Options::default() };
+        let motion =
+            problem().with_center(Center::default(), 1.0, &drag).simulate(&[1.0], options, &mut |_| true);
+        assert!(motion.unwrap_err().to_string().contains("centre of mass"), "{name}");
+    }
+}

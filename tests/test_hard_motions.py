@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -78,3 +80,33 @@ def test_output_times_may_be_as_close_as_numbers_are() -> None:
     gap = np.abs(np.diff(found.rotor.components, axis=0)).max(axis=1)
     assert gap[0] < 1e-15
     assert gap[2] < 1e-14
+
+
+@pytest.mark.parametrize(
+    "solution",
+    [
+        ph.LagrangeTop(ph.Inertia.from_principal_moments(1, 1, 2), ROTOR, [1, 2, 3], [0, 0, 1]),
+        ph.DampedTop(BODY, ROTOR, [1, 2, 3], 0.1),
+        ph.LarmorSphere(ph.Inertia.from_principal_moments(1, 1, 1), ROTOR, [1, 2, 3], [0, 0, 1]),
+    ],
+)
+def test_closed_forms_are_shown_and_pickled(solution: ph.DampedTop) -> None:
+    same = pickle.loads(pickle.dumps(solution))
+    assert repr(same) == repr(solution)
+    assert "moments" in repr(solution)
+    np.testing.assert_array_equal(same.at(2.0).rotor.components, solution.at(2.0).rotor.components)
+
+
+def test_a_pickled_trajectory_keeps_its_states() -> None:
+    law = ph.torque.heavy([1.0, 0.2, 0.3])
+    found = ph.simulate(BODY, ph.State(ROTOR, [1, 2, 3]), [1.0, 2.0], law)
+    same = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(same.rotor.components, found.rotor.components)
+    assert same.certificate == found.certificate
+    with pytest.raises(ValueError, match="unpickled"):
+        same.at(1.5)
+
+
+def test_the_module_of_torques_lists_laws() -> None:
+    assert {"heavy", "Torque", "tabulated"} <= set(dir(ph.torque))
+    assert "np" not in dir(ph.torque)

@@ -26,6 +26,25 @@ from polhode._values import as_bivectors, as_vectors, bivector
 if TYPE_CHECKING:
     from polhode._state import State
 
+__all__ = [
+    "Torque",
+    "constant_body",
+    "constant_space",
+    "damping",
+    "formula",
+    "function",
+    "gravity_gradient",
+    "gyrostat",
+    "heavy",
+    "larmor",
+    "magnetic",
+    "pd_control",
+    "quadratic_damping",
+    "tabulated",
+    "torsion_spring",
+    "viscous_damping",
+]
+
 _FRAMES = ("body", "space")
 _KINDS = ("linear", "cubic")
 
@@ -74,6 +93,10 @@ class Torque:
             )
         time = _finite(as_float(t, "t"), "t")
         return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
+
+
+def __dir__() -> list[str]:
+    return __all__
 
 
 # --- fields

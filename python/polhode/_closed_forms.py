@@ -9,6 +9,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, as_float, as_floats
 from polhode._bodies import Inertia
+from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State
 from polhode._values import as_point, bivector
@@ -18,7 +19,32 @@ class _Solution(Protocol):
     def at(self, times: Array) -> tuple[Array, Array]: ...
 
 
-class LagrangeTop:
+class _ClosedForm:
+    """A solution, and what it was made of: inertia, rotor and angular velocity at time 0, torque."""
+
+    _solution: _Solution
+    _given: tuple[Inertia, Rotor, Multivector, Any]
+
+    def at(self, t: Any) -> State:
+        """Return the state at time t in s; an array of times gives a state of that batch shape."""
+        times = as_floats(t, "time")
+        rotors, omegas = self._solution.at(np.ravel(times))
+        return State(
+            Rotor._from_rows(rotors.reshape(*times.shape, 4)),
+            bivector(omegas.reshape(*times.shape, 3), copy=False),
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._given
+
+    def __repr__(self) -> str:
+        inertia, rotor, omega_body, torque = self._given
+        if isinstance(torque, np.ndarray):
+            torque = torque.tolist()
+        return f"{type(self).__name__}({inertia!r}, rotor={rotor}, omega_body={omega_body}, {torque})"
+
+
+class LagrangeTop(_ClosedForm):
     """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
 
     The body is held at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
@@ -44,14 +70,13 @@ class LagrangeTop:
         If all moments differ, one is zero, or ``c`` lies beside the axis; for numbers that are not finite.
     """
 
+    _solution: _native.LagrangeTop
+
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, c: Any) -> None:
         start = _start(inertia, rotor, omega_body)
         c = as_point(c, "c")
         self._solution = _native.LagrangeTop(inertia._core, start.rotor._data, start.omega_body._data, c)
-
-    def at(self, t: Any) -> State:
-        """Return the state at time t in s; an array of times gives a state of that batch shape."""
-        return _state(self._solution, t)
+        self._given = inertia, start.rotor, start.omega_body, c
 
     def describe(self) -> dict[str, Any]:
         """Say what the invariants tell.
@@ -66,7 +91,7 @@ class LagrangeTop:
         return self._solution.describe()
 
 
-class DampedTop:
+class DampedTop(_ClosedForm):
     """Any body with the torque ``N = −g L``, exact at any time.
 
     The free body at ``τ = (1 − e^(−gt))/g``, its angular velocity times ``e^(−gt)``; g in 1/s of either sign.
@@ -77,13 +102,10 @@ class DampedTop:
         start = _start(inertia, rotor, omega_body)
         g = as_float(g, "g")
         self._solution = _native.DampedTop(inertia._core, start.rotor._data, start.omega_body._data, g)
-
-    def at(self, t: Any) -> State:
-        """Return the state at time t in s; an array of times gives a state of that batch shape."""
-        return _state(self._solution, t)
+        self._given = inertia, start.rotor, start.omega_body, g
 
 
-class LarmorSphere:
+class LarmorSphere(_ClosedForm):
     """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
 
     ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with
@@ -94,10 +116,7 @@ class LarmorSphere:
         start = _start(inertia, rotor, omega_body)
         b = as_point(b, "b")
         self._solution = _native.LarmorSphere(inertia._core, start.rotor._data, start.omega_body._data, b)
-
-    def at(self, t: Any) -> State:
-        """Return the state at time t in s; an array of times gives a state of that batch shape."""
-        return _state(self._solution, t)
+        self._given = inertia, start.rotor, start.omega_body, b
 
 
 def _start(inertia: Inertia, rotor: Rotor, omega_body: Any) -> State:
@@ -108,12 +127,3 @@ def _start(inertia: Inertia, rotor: Rotor, omega_body: Any) -> State:
         shapes = (start.rotor.shape, start.omega_body.shape)
         raise ValueError(f"the start must be a single one, got batch shapes {shapes}")
     return start
-
-
-def _state(solution: _Solution, t: Any) -> State:
-    times = as_floats(t, "time")
-    rotors, omegas = solution.at(np.ravel(times))
-    return State(
-        Rotor._from_rows(rotors.reshape(*times.shape, 4)),
-        bivector(omegas.reshape(*times.shape, 3), copy=False),
-    )

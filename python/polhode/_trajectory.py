@@ -99,7 +99,9 @@ class Trajectory:
         output time before, so that it is as accurate as the states at the output times. A ValueError outside.
         """
         if self._motion is None:
-            raise ValueError("this trajectory was not made by simulate: it has no states but its own")
+            raise ValueError(
+                "this trajectory was read or unpickled, not just made by simulate: it has no states but its own"
+            )
         times = as_floats(t, "time")
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))
         shape = times.shape
@@ -109,6 +111,10 @@ class Trajectory:
             vector(found.position.components.reshape(*shape, 3)),
             vector(found.velocity.components.reshape(*shape, 3)),
         )
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: all but the motion between the output times."""
+        return self.__dict__ | {"_motion": None}
 
     def to_xarray(self) -> xarray.Dataset:
         """Return an `xarray.Dataset` with labelled dimensions, units and the conventions."""

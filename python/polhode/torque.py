@@ -34,6 +34,25 @@ from polhode._values import as_bivectors, bivector
 if TYPE_CHECKING:
     from polhode._state import State
 
+__all__ = [
+    "Torque",
+    "constant_body",
+    "constant_space",
+    "damping",
+    "formula",
+    "function",
+    "gravity_gradient",
+    "gyrostat",
+    "heavy",
+    "larmor",
+    "magnetic",
+    "pd_control",
+    "quadratic_damping",
+    "tabulated",
+    "torsion_spring",
+    "viscous_damping",
+]
+
 _FRAMES = ("body", "space")
 _KINDS = ("linear", "cubic")
 
@@ -82,6 +101,10 @@ class Torque:
             )
         time = finite(as_float(t, "t"), "t")
         return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
+
+
+def __dir__() -> list[str]:
+    return __all__
 
 
 # --- fields

@@ -11,7 +11,7 @@ use polhode_ga::{Bivector, Graded, Rotor};
 use polhode_rigid::free::{self, FlowDerivatives, at_each};
 use polhode_rigid::inertia;
 use polhode_rigid::regime::FreeDescription;
-use polhode_rigid::simulate::check_horizon;
+use polhode_rigid::simulate::check_horizons;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -270,6 +270,7 @@ impl FreeMotion {
             return Ok(());
         };
         let place = place(row, &self.shape);
-        check_horizon(times, self.motions[row].horizon()).map_err(|error| bad(format!("{place}{error}")))
+        check_horizons(times, [self.motions[row].horizon(); 2])
+            .map_err(|error| bad(format!("{place}{error}")))
     }
 }

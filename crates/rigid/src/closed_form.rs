@@ -41,13 +41,13 @@ impl ClosedForm {
         Some(ClosedForm { body, rotation, fall })
     }
 
-    /// How far in time, in s, the phase is known.
-    pub fn horizon(&self) -> f64 {
+    /// How far in time, in s, the phase is known backwards and forwards.
+    pub fn horizons(&self) -> [f64; 2] {
         match &self.rotation {
-            Rotation::Free(motion) => motion.horizon(),
-            Rotation::Lagrange(motion) => motion.horizon(),
-            Rotation::Damped(motion) => motion.horizon(),
-            Rotation::Larmor(motion) => motion.horizon(),
+            Rotation::Free(motion) => [motion.horizon(); 2],
+            Rotation::Lagrange(motion) => [motion.horizon(); 2],
+            Rotation::Damped(motion) => motion.horizons(),
+            Rotation::Larmor(motion) => [motion.horizon(); 2],
         }
     }
 

@@ -31,6 +31,10 @@ pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
 /// So many passes are enough.
 const MOST_PASSES: u32 = 30;
 
+/// So many may differ altogether. Where more do, and a step turns the body by less than what leaves rounding of its
+/// error, `turn^(q+1) < ε`, the motion is chaotic and shorter steps tell no more.
+const FEW_PASSES: u32 = 8;
+
 impl Pace {
     /// Steps that are so many times shorter. A local error goes as the eighth power of the step.
     fn refined(self, by: f64) -> Pace {
@@ -82,6 +86,7 @@ pub(crate) fn converge(
 ) -> Result<Converged, SimulateError> {
     let Aim { goal, acceptable, .. } = aim;
     let order = f64::from(aim.order);
+    let shortest_turn = f64::EPSILON.powf(1.0 / (order + 1.0));
     let (mut pace, mut by) = (first, SECOND);
     let mut coarse = run(pace, moved(start, 0))?;
     let (mut steps, mut evaluations) = (coarse.steps, coarse.evaluations);
@@ -136,7 +141,9 @@ pub(crate) fn converge(
         let error = truncation.max(difference.min(rounding));
         let error = error.max(f64::EPSILON * (fine.steps as f64).sqrt());
         // One pass may be lucky; two that gain nothing are ruled by rounding.
-        let gained = error <= 0.5 * previous || previous >= 1e-2;
+        // Passes with long steps may gain nothing yet.
+        let unresolved = number <= FEW_PASSES || fine.largest[0] * fine.longest > shortest_turn;
+        let gained = error <= 0.5 * previous || previous >= 1e-2 && unresolved;
         let stuck = !gained && !before || number > MOST_PASSES;
         if error <= goal || stuck && error <= acceptable {
             return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });
@@ -173,6 +180,7 @@ fn difference(body: &Gyrostat, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carr
         return 1.0;
     }
     let [fastest, farthest, swiftest] = fine.largest.map(|x| x.max(f64::MIN_POSITIVE));
+    let fastest = fastest.max(body.least_rate());
     let apart = |a: &Carried, b: &Carried| {
         let (r, s) = (a.phase.rotor.components(), b.phase.rotor.components());
         let turn = (0..4).map(|k| (r[k] - s[k]) * (r[k] - s[k])).sum::<f64>().sqrt();

@@ -54,6 +54,11 @@ impl DampedTop {
         let principal = frame.reverse().apply_bivector(omega);
         let least = moments.iter().fold(f64::INFINITY, |m: f64, i| m.min(*i));
         let fastest = Gyrostat::rigid(moments).momentum(principal).norm() / least;
+        for value in omega.0.into_iter().chain([fastest]) {
+            if !value.is_finite() {
+                return Err(SimulateError::BadValue { what: "the angular velocity", value });
+            }
+        }
         Ok(DampedTop { free, moments, frame, damping, fastest })
     }
 

@@ -77,11 +77,13 @@ impl Method {
 
     /// The method for these laws: a splitting with equal steps where the torque depends on the attitude alone, or turns
     /// with a circular orbit, for it keeps the energy of long runs; Runge–Kutta with steps of their own for others.
-    pub fn best(body: &Gyrostat, torques: &[Torque], translated: bool) -> Method {
+    /// Where a spring may come to half a turn, at which its torque jumps, equal steps would lose their order.
+    pub fn best(body: &Gyrostat, torques: &[Torque], translated: bool, start: &Phase) -> Method {
         let steady =
             |t: &Torque| t.is_autonomous() || matches!(t, Torque::GravityGradient(o) if o.is_circular());
         let kicks =
             !translated && torques.iter().all(|t| t.dependence() == Dependence::Attitude && steady(t));
+        let kicks = kicks && !may_jump(body, torques, start);
         if !kicks {
             Method::RungeKutta(&DOP853)
         } else if Method::unfit(Method::Splitting(Sequence::Nystrom(&RKN6)), body, torques).is_none()
@@ -119,6 +121,22 @@ impl Method {
             _ => None,
         }
     }
+}
+
+/// Whether the energy lets a spring turn by π.
+fn may_jump(body: &Gyrostat, torques: &[Torque], start: &Phase) -> bool {
+    let half_a_turn = |t: &Torque| match t {
+        Torque::TorsionSpring { stiffness, .. } if *stiffness > 0.0 => Some(t.potential_range()),
+        Torque::TorsionSpring { .. } | Torque::Control { .. } => Some(0.0),
+        _ => None,
+    };
+    let known = torques.iter().all(|t| t.potential(body, start).is_some());
+    // Others may give all that their potentials range over.
+    let range: f64 = torques.iter().filter(|t| half_a_turn(t).is_none()).map(Torque::potential_range).sum();
+    let springs = |t: &&Torque| half_a_turn(t).is_some();
+    let at_start: f64 = torques.iter().filter(springs).filter_map(|t| t.potential(body, start)).sum();
+    let energy = body.kinetic(start.momentum) + at_start + range;
+    torques.iter().filter_map(half_a_turn).any(|needed| !known || energy >= needed)
 }
 
 fn symmetric(body: &Gyrostat) -> bool {

@@ -62,6 +62,13 @@ impl Gyrostat {
         0.5 * (term(0) + term(1) + term(2))
     }
 
+    /// A rate in rad/s below which rounding of the wheel's momentum begins to count in `Ω`, to a part in 1e12; 0 without
+    /// a wheel.
+    pub(crate) fn least_rate(&self) -> f64 {
+        let smallest = self.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
+        1e-4 * self.wheel.norm() / smallest
+    }
+
     /// The inertia matrix on a vector.
     pub fn stretched(&self, u: Vector) -> Vector {
         Vector([0, 1, 2].map(|k| self.moments[k] * u.0[k]))

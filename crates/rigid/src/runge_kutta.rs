@@ -164,6 +164,7 @@ impl RungeKutta {
     fn size<const N: usize>(&self, at: &Carried, change: &Change<N>, h: f64, fastest: f64) -> f64 {
         let momentum = at.phase.rotor.reverse().apply_bivector(Bivector(part(change, 3))).0;
         let omega = [0, 1, 2].map(|k| momentum[k] / self.body.moments[k]);
+        let fastest = fastest.max(self.body.least_rate());
         let relative = if fastest > 0.0 { norm(&omega) / fastest } else { 0.0 };
         let turn = 0.5 * norm(&part(change, 0));
         // f64::max would lose a NaN.

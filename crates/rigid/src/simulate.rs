@@ -82,10 +82,13 @@ pub struct States {
     pub centers: Vec<Center>,
 }
 
-/// Times must not lie beyond the horizon of an exact motion.
-pub fn check_horizon(times: &[f64], horizon: f64) -> Result<(), SimulateError> {
-    match times.iter().position(|t| t.abs() > horizon) {
-        Some(index) => Err(SimulateError::BeyondHorizon { index, time: times[index], horizon }),
+/// Times must not lie beyond the horizons, backwards and forwards, of an exact motion.
+pub fn check_horizons(times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
+    let horizon = |time: f64| horizons[usize::from(time > 0.0)];
+    match times.iter().position(|&t| t.abs() > horizon(t)) {
+        Some(index) => {
+            Err(SimulateError::BeyondHorizon { index, time: times[index], horizon: horizon(times[index]) })
+        }
         None => Ok(()),
     }
 }
@@ -143,12 +146,13 @@ impl Problem {
             return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
         }
         let fall = self.fall();
-        let method =
-            options.method.unwrap_or_else(|| Method::best(&self.body, &self.torques, fall.is_none()));
+        let method = options
+            .method
+            .unwrap_or_else(|| Method::best(&self.body, &self.torques, fall.is_none(), &self.start().phase));
         let translation = self.translation.clone().filter(|_| fall.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
-                check_horizon(times, closed.horizon())?;
+                check_horizons(times, closed.horizons())?;
                 (Engine::ClosedForm(closed), "exact")
             }
             None => (

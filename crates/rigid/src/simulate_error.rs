@@ -98,6 +98,11 @@ impl fmt::Display for SimulateError {
                 "the run would take {steps:.1e} steps of {step:.3e} s, more than {MAX_STEPS:.0e}; shorten it or ask \
                  for a longer step"
             ),
+            SimulateError::NotConverged { rtol, reached, step } if *reached > 0.1 => write!(
+                f,
+                "rtol = {rtol:.1e} was not reached: with steps of {step:.3e} s and shorter ones the motion still comes out \
+                 altogether different, for it magnifies rounding that much; ask for a shorter run, or give a step"
+            ),
             SimulateError::NotConverged { rtol, reached, step } => write!(
                 f,
                 "rtol = {rtol:.1e} was not reached: halving the step to {step:.3e} s leaves {reached:.1e}; the motion \

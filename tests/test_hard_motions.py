@@ -15,7 +15,7 @@ ROTOR = ph.Rotor.from_rotation_vector([0.4, -0.9, 0.3])
 
 @pytest.mark.parametrize("g", [50.0, 1e4, 1e9])
 def test_a_strongly_damped_body_stops_at_the_free_attitude_of_one_over_g(g: float) -> None:
-    found = ph.simulate(BODY, ph.State(ROTOR, [0.3, 1.2, 0.7]), [100.0], ph.torque.damping(g))
+    found = ph.simulate(BODY, ph.State(ROTOR, ph.bivector([0.3, 1.2, 0.7])), [100.0], ph.torque.damping(g))
     expected = ph.FreeMotion(BODY, ROTOR, [0.3, 1.2, 0.7]).at(1 / g).rotor
     assert found.certificate.method == "exact"
     np.testing.assert_allclose(found.rotor.components[-1], expected.components, rtol=0, atol=4e-16)
@@ -24,7 +24,7 @@ def test_a_strongly_damped_body_stops_at_the_free_attitude_of_one_over_g(g: floa
 
 def test_before_the_horizon_of_a_growing_spin_is_an_error() -> None:
     with pytest.raises(ValueError, match=r"times\[0\] = -1"):
-        ph.simulate(BODY, ph.State(ROTOR, [0.3, 1.2, 0.7]), [-1.0, 1.0], ph.torque.damping(1e4))
+        ph.simulate(BODY, ph.State(ROTOR, ph.bivector([0.3, 1.2, 0.7])), [-1.0, 1.0], ph.torque.damping(1e4))
 
 
 def test_a_damped_body_needs_a_finite_spin() -> None:
@@ -39,7 +39,7 @@ def test_a_spring_may_be_turned_past_half_a_turn() -> None:
     half = np.arcsin(np.pi * np.sqrt(k) / spin) / np.sqrt(k)
     times = np.array([0.5 * half, 1.5 * half, 2 * half, 4 * half])
     sphere = ph.Inertia.from_principal_moments(1, 1, 1)
-    state = ph.State(ph.Rotor.identity(), [0, 0, spin])
+    state = ph.State(ph.Rotor.identity(), ph.bivector([0, 0, spin]))
     found = ph.simulate(sphere, state, times, ph.torque.torsion_spring(k), rtol=1e-9)
     first = spin / np.sqrt(k) * np.sin(np.sqrt(k) * 0.5 * half)
     angles = np.array([first, 2 * np.pi - first, 2 * np.pi, 4 * np.pi])
@@ -49,7 +49,7 @@ def test_a_spring_may_be_turned_past_half_a_turn() -> None:
 
 
 def test_a_swing_below_half_a_turn_keeps_its_energy() -> None:
-    state = ph.State(ph.Rotor.identity(), [0.3, 0.2, 0.5])
+    state = ph.State(ph.Rotor.identity(), ph.bivector([0.3, 0.2, 0.5]))
     found = ph.simulate(BODY, state, [100.0], ph.torque.torsion_spring(1.0))
     assert found.certificate.method == "kahan_li8"
 
@@ -57,18 +57,18 @@ def test_a_swing_below_half_a_turn_keeps_its_energy() -> None:
 @pytest.mark.parametrize("damping", [0.0, 0.1])
 def test_a_wheel_leaves_a_body_at_rest(damping: float) -> None:
     law = ph.torque.gyrostat([1.0, 2.0, 3.0]) + ph.torque.viscous_damping(damping)
-    found = ph.simulate(BODY, ph.State(ROTOR, [0.0, 0.0, 0.0]), [10.0], law)
+    found = ph.simulate(BODY, ph.State(ROTOR, ph.bivector([0.0, 0.0, 0.0])), [10.0], law)
     np.testing.assert_allclose(found.omega_body.components, 0, atol=1e-12)
 
 
 def test_chaos_is_told() -> None:
-    state = ph.State(ph.Rotor.identity(), [0.1, 0.2, 0.5])
+    state = ph.State(ph.Rotor.identity(), ph.bivector([0.1, 0.2, 0.5]))
     with pytest.raises(ValueError, match=r"altogether different.*a shorter run"):
         ph.simulate(BODY, state, [500.0], ph.torque.heavy([1.0, 0.2, 0.3]))
 
 
 def test_without_a_tolerance_what_rounding_leaves_is_taken() -> None:
-    state = ph.State(ph.Rotor.identity(), [0.1, 0.2, 1.0])
+    state = ph.State(ph.Rotor.identity(), ph.bivector([0.1, 0.2, 1.0]))
     found = ph.simulate(BODY, state, [1e4], ph.torque.gravity_gradient(0.1, 0.3))
     assert found.certificate.error_estimate is not None
     assert 1e-10 < found.certificate.error_estimate < 1e-6
@@ -76,7 +76,9 @@ def test_without_a_tolerance_what_rounding_leaves_is_taken() -> None:
 
 def test_output_times_may_be_as_close_as_numbers_are() -> None:
     times = [1.0, np.nextafter(1.0, 2), 100.0, np.nextafter(100.0, 200), 101.0]
-    found = ph.simulate(BODY, ph.State(ROTOR, [0.1, 0.2, 1.0]), times, ph.torque.viscous_damping(0.1))
+    found = ph.simulate(
+        BODY, ph.State(ROTOR, ph.bivector([0.1, 0.2, 1.0])), times, ph.torque.viscous_damping(0.1)
+    )
     gap = np.abs(np.diff(found.rotor.components, axis=0)).max(axis=1)
     assert gap[0] < 1e-15
     assert gap[2] < 1e-14
@@ -99,7 +101,7 @@ def test_closed_forms_are_shown_and_pickled(solution: ph.DampedTop) -> None:
 
 def test_a_pickled_trajectory_keeps_its_states() -> None:
     law = ph.torque.heavy([1.0, 0.2, 0.3])
-    found = ph.simulate(BODY, ph.State(ROTOR, [1, 2, 3]), [1.0, 2.0], law)
+    found = ph.simulate(BODY, ph.State(ROTOR, ph.bivector([1, 2, 3])), [1.0, 2.0], law)
     same = pickle.loads(pickle.dumps(found))
     np.testing.assert_array_equal(same.rotor.components, found.rotor.components)
     assert same.certificate == found.certificate

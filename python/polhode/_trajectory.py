@@ -100,7 +100,7 @@ class Trajectory:
         """
         if self._motion is None:
             raise ValueError(
-                "this trajectory was read or unpickled, not just made by simulate: it has no states but its own"
+                "this trajectory was read or unpickled, not made by simulate: it has no states but its own"
             )
         times = as_floats(t, "time")
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))

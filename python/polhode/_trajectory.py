@@ -108,6 +108,10 @@ class Trajectory:
             vector(found.velocity.components.reshape(*shape, 3)),
         )
 
+    def drifts(self) -> dict[str, Array]:
+        """Return each conserved quantity's change since time 0, relative as in the certificate, (n,) each."""
+        return dict(self._motion.drifts()) if self._motion is not None else {}
+
     def to_xarray(self) -> xarray.Dataset:
         """Return an `xarray.Dataset` with labelled dimensions, units and the conventions."""
         from polhode._io import to_xarray

@@ -1,6 +1,6 @@
 //! Torque laws: values made of a name and arguments, and their torques.
 
-use crate::arrays::{Array, Rows, bad, line, one};
+use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use crate::calls::{Argument, of_map};
 use crate::formula::{Said, names};
@@ -32,6 +32,13 @@ pub(crate) struct Law {
     name: String,
     arguments: Py<PyTuple>,
     raised: Raised,
+}
+
+impl Law {
+    /// A law that is made, with the name and the arguments that would make it.
+    pub(crate) fn named(torque: Torque, name: &str, arguments: Bound<'_, PyTuple>) -> Law {
+        Law { torque, name: name.to_owned(), arguments: arguments.unbind(), raised: Raised::default() }
+    }
 }
 
 #[pymethods]
@@ -103,6 +110,19 @@ pub(crate) fn torque_at<'py>(
     let torque =
         total(&body, &torques, &state).map_err(|error| failed(&laws, format!("at t = {time} s: {error}")))?;
     Ok(line(py, frame.apply_bivector(torque).0.to_vec()))
+}
+
+/// The direction from planet to body on an orbit, rows (n, 3) at times (n,).
+#[pyfunction]
+pub(crate) fn orbit_directions<'py>(
+    py: Python<'py>,
+    rate: f64,
+    eccentricity: f64,
+    anomaly: f64,
+    times: Rows<'py>,
+) -> PyResult<Array<'py>> {
+    let orbit = Orbit::new(rate, eccentricity, anomaly).map_err(bad)?;
+    table(py, numbers(&times)?.iter().map(|&time| orbit.place(time).0.0))
 }
 
 /// The exception where a law had no torque: what a Python function raised, or else what is told.

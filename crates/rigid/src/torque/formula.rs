@@ -83,6 +83,11 @@ fn given(axes: Axes) -> [(&'static str, Motion); 11] {
     ]
 }
 
+/// The names that the motion gives to a formula.
+pub fn given_names() -> impl Iterator<Item = &'static str> {
+    given(Axes::Body).into_iter().map(|(name, _)| name)
+}
+
 impl Motion {
     fn meaning(self) -> Meaning {
         match self {
@@ -175,6 +180,20 @@ impl FormulaTorque {
     /// The formula as it was given.
     pub fn text(&self) -> &str {
         &self.compiled.text
+    }
+
+    /// The axes of its value.
+    pub fn axes(&self) -> Axes {
+        self.compiled.axes
+    }
+
+    /// The names in it that the motion does not give, with their values.
+    pub fn known(&self) -> impl Iterator<Item = (&str, Given)> {
+        let Compiled { program, sources, .. } = &*self.compiled;
+        program.inputs.iter().zip(sources).filter_map(|(input, source)| match source {
+            Source::Known(given) => Some((input.name.as_str(), *given)),
+            Source::Motion(_) => None,
+        })
     }
 
     pub(super) fn in_axes(self, frame: Rotor) -> FormulaTorque {

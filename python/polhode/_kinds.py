@@ -46,6 +46,13 @@ def _sum_of(name: str, torque: Torque | None) -> Array:
     return np.sum([law.arguments[0] for law in laws if law.name == name], axis=0)
 
 
+# Heavy bodies that have an integral of their own, by its name.
+_INTEGRABLE = {
+    "kovalevskaya_integral": "Kovalevskaya's top",
+    "goryachev_chaplygin_integral": "Goryachev's and Chaplygin's top",
+}
+
+
 def describe(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     """Return what is known of a motion in SI units; its ``kind`` says which keys there are."""
     laws = scene.torque.laws if scene.torque else ()
@@ -163,6 +170,9 @@ def _heavy(c: Array, scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     motion: dict[str, Any] = {"kind": "heavy", "regime": "heavy body about a fixed point"}
     size = float(np.linalg.norm(c))
     motion["mgl"] = size
+    for integral, name in _INTEGRABLE.items():
+        if integral in trajectory.certificate.conserved:
+            motion["regime"] = f"{name} about a fixed point"
     if size == 0:
         return motion
     try:

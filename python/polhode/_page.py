@@ -128,7 +128,7 @@ def _free(motion: dict[str, Any], row: Row) -> None:
         turns = motion["phase_per_period"] / (2 * np.pi)
         row("phase", f"{_number(turns, 8)} turns about L in a period")
     if motion.get("wobbles_per_turn") is not None:
-        row("wobble", f"{_number(motion['wobbles_per_turn'], 8)} for each turn about axis {axis}")
+        row("wobbles", f"{_number(motion['wobbles_per_turn'], 8)} for each turn about axis {axis}")
     if periodic:
         row("angle to L", f"{_angles(motion['wobble_min'], motion['wobble_max'])} from axis {axis}")
     if motion["wobble_period"] is not None:

@@ -152,8 +152,8 @@ def _repl(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from polhode._scene import Scene
     from polhode._page import as_text
+    from polhode._scene import Scene
     from polhode._summary import summary
 
     output = None if options.output is None else Path(options.output)

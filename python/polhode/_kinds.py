@@ -159,7 +159,12 @@ def _gyrostat(h: Array, trajectory: Trajectory) -> dict[str, Any]:
 def _damped(g: float, scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     """Tell of the free motion at the start, which goes on in the time ``(1 − e^(−gt))/g``."""
     motion = _described(scene, trajectory)
-    return {**motion, "kind": "damped", "damping": float(g), "halved_after": float(np.log(2) / g) if g else None}
+    return {
+        **motion,
+        "kind": "damped",
+        "damping": float(g),
+        "halved_after": float(np.log(2) / g) if g else None,
+    }
 
 
 # --- about a fixed point
@@ -241,7 +246,9 @@ def _satellite(orbit: tuple[float, float, float], trajectory: Trajectory) -> dic
         "from_vertical": _range(np.arctan2(np.hypot(along, across), np.abs(up))),
         "from_normal": _range(np.arctan2(np.hypot(x, y), np.abs(z))),
         "libration_period": 2 * float(np.diff(swings).mean()) if swings.size > 2 else None,
-        "small_libration_period": float(2 * np.pi / (rate * np.sqrt(stiffness))) if rate and stiffness else None,
+        "small_libration_period": float(2 * np.pi / (rate * np.sqrt(stiffness)))
+        if rate and stiffness
+        else None,
     }
 
 

@@ -39,8 +39,8 @@ __all__ = [
     "methods",
     "near_unit",
     "norm",
-    "product",
     "orbit_directions",
+    "product",
     "quantities",
     "read_scene",
     "rotor_apply",
@@ -243,9 +243,7 @@ class Law:
     def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[type[Law], tuple[Any, ...]]: ...
 
-def orbit_directions(
-    rate: float, eccentricity: float, anomaly: float, times: Array
-) -> Array: ...
+def orbit_directions(rate: float, eccentricity: float, anomaly: float, times: Array) -> Array: ...
 def torque_at(laws: list[Law], inertia: Inertia, rotor_row: Array, omega: Array, time: float) -> Array: ...
 
 @final

@@ -177,13 +177,13 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
 def orbit_figure(trajectory: Trajectory, path: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction (n, 3) given along the orbit, on its normal, and up."""
     require_times(trajectory)
-    caption = f"Path of {name} as seen on the orbit: up is away from the planet,\nalong is flight (dot: start)."
+    caption = (
+        f"Path of {name} as seen on the orbit: up is away from the planet,\nalong is flight (dot: start)."
+    )
     return _path_figure(trajectory, path, caption, ("along", "normal", "up"))
 
 
-def _path_figure(
-    trajectory: Trajectory, path: Array, caption: str, names: tuple[str, str, str]
-) -> Figure:
+def _path_figure(trajectory: Trajectory, path: Array, caption: str, names: tuple[str, str, str]) -> Figure:
     figure = new_figure(6.4, 6.4)
     axes = figure.add_subplot()
     view = _View()

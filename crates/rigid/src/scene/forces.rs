@@ -26,9 +26,7 @@ const FORCES: [(&str, Read); 5] = [
         reader.quantity(value, Quantity::QuadraticDrag).map(Force::QuadraticDrag)
     }),
     ("spring", spring),
-    ("central", |reader, value| {
-        reader.quantity(value, Quantity::GravitationalParameter).map(Force::Central)
-    }),
+    ("central", |reader, value| reader.quantity(value, Quantity::GravitationalParameter).map(Force::Central)),
 ];
 
 pub fn read(reader: &mut Reader, value: &Value) -> Option<Vec<Push>> {

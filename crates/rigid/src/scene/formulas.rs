@@ -13,11 +13,12 @@
 use super::reader::{Reader, Table, Value};
 use crate::torque::{Axes, FormulaTorque, given_names};
 use crate::units::{self, Quantity};
-use polhode_ga::{Bivector, Graded, Vector};
 use polhode_ga::formula::{
-    Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading, parse,
+    Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading,
+    parse,
 };
 use polhode_ga::product::Grades;
+use polhode_ga::{Bivector, Graded, Vector};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::DeValue;

@@ -47,8 +47,7 @@ pub struct Initial {
 /// The attitude, the spin and the centre of mass.
 pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
     reader.only(table, &["attitude", "spin", "position", "velocity"]);
-    let attitude =
-        reader.optional(table, "attitude", |reader, value| attitude(reader, value, "`attitude`"));
+    let attitude = reader.optional(table, "attitude", |reader, value| attitude(reader, value, "`attitude`"));
     let spin = reader.field(table, "spin", |reader, value| {
         if let DeValue::String(_) = value.get_ref() {
             return Some((bivector(reader, value)?, SpinFrame::Body));
@@ -65,10 +64,7 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
         attitude: attitude?.unwrap_or(Rotor::IDENTITY),
         spin,
         spin_frame,
-        center: Center {
-            position: position?.unwrap_or_default(),
-            velocity: velocity?.unwrap_or_default(),
-        },
+        center: Center { position: position?.unwrap_or_default(), velocity: velocity?.unwrap_or_default() },
     })
 }
 

@@ -57,9 +57,9 @@ mod formulas;
 mod initial;
 mod reader;
 mod run;
-mod torques;
 #[cfg(test)]
 mod tests;
+mod torques;
 
 use crate::force::Center;
 use crate::units::Quantity;
@@ -74,8 +74,8 @@ use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-pub use torques::Law;
 use toml::de::DeTable;
+pub use torques::Law;
 
 /// A larger file is no scene.
 const LARGEST_FILE: u64 = 10_000_000;

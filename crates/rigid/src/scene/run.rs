@@ -63,12 +63,7 @@ pub fn read(reader: &mut Reader, table: &Table, method: Option<&Table>) -> Optio
         let bound = reader.number(value)?;
         reader.check_positive(value, bound)
     });
-    Some(Run {
-        duration: duration?,
-        samples: samples?,
-        choice: choice?,
-        drift_bound: drift_bound?,
-    })
+    Some(Run { duration: duration?, samples: samples?, choice: choice?, drift_bound: drift_bound? })
 }
 
 /// The fields of `[run]` and `[method]` that choose how to integrate; none in both.

@@ -50,9 +50,7 @@ const LAWS: [(&str, Read); 13] = [
         formulas::bivector(reader, value, Quantity::AngularMomentum).map(Torque::Wheel)
     }),
     ("pd_control", pd_control),
-    ("larmor", |reader, value| {
-        formulas::vector(reader, value, Quantity::AngularRate).map(Torque::Larmor)
-    }),
+    ("larmor", |reader, value| formulas::vector(reader, value, Quantity::AngularRate).map(Torque::Larmor)),
     ("tabulated", tabulated),
     ("heavy", |reader, value| formulas::vector(reader, value, Quantity::Torque).map(Torque::Heavy)),
 ];
@@ -140,9 +138,8 @@ fn gravity_gradient(reader: &mut Reader, value: &Value) -> Option<Torque> {
 fn magnetic(reader: &mut Reader, value: &Value) -> Option<Torque> {
     let table = &reader.table(value, "`magnetic`")?;
     reader.only(table, &["dipole", "field"]);
-    let mut read = |name, quantity| {
-        reader.field(table, name, |reader, value| formulas::vector(reader, value, quantity))
-    };
+    let mut read =
+        |name, quantity| reader.field(table, name, |reader, value| formulas::vector(reader, value, quantity));
     let (dipole, field): (Option<Vector>, Option<Vector>) =
         (read("dipole", Quantity::MagneticDipole), read("field", Quantity::MagneticField));
     Some(Torque::Magnetic { dipole: dipole?, field: field? })
@@ -160,8 +157,7 @@ fn torsion_spring(reader: &mut Reader, value: &Value) -> Option<Torque> {
 fn pd_control(reader: &mut Reader, value: &Value) -> Option<Torque> {
     let table = &reader.table(value, "`pd_control`")?;
     reader.only(table, &["kp", "kd", "target"]);
-    let mut read =
-        |name, quantity| reader.field(table, name, |reader, value| gains(reader, value, quantity));
+    let mut read = |name, quantity| reader.field(table, name, |reader, value| gains(reader, value, quantity));
     let (stiffness, damping) =
         (read("kp", Quantity::TorsionalStiffness), read("kd", Quantity::RotaryDamping));
     let target = attitude(reader, table, "target", "`target`");

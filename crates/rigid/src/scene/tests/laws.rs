@@ -56,7 +56,10 @@ fn every_law_is_read_with_its_units() {
     }
     let found = laws("tabulated = { times = [0, '1 min'], torques = [[0, 0, 1], 'e1e2'], frame = 'space' }");
     let [Torque::Tabulated(table)] = &found[..] else { panic!("{found:?}") };
-    assert_eq!((table.times(), table.kind, table.axes), (&[0.0, 60.0][..], Kind::Linear, crate::torque::Axes::Space));
+    assert_eq!(
+        (table.times(), table.kind, table.axes),
+        (&[0.0, 60.0][..], Kind::Linear, crate::torque::Axes::Space)
+    );
     assert_eq!(table.torques(), [Bivector([0.0, 0.0, 1.0]); 2]);
 }
 
@@ -94,7 +97,10 @@ fn what_is_wrong_with_a_law_has_its_place() {
         ("dampin = 1", "6:1: unknown field `dampin`, expected `damping`"),
         ("damping = '1 s'", "6:11: expected a rate of decay such as `0.1 /s`, found a time (`1 s`)"),
         ("viscous_damping = [1, -2, 1]", "6:23: must not be negative, found -2"),
-        ("gravity_gradient = {}", "6:20: missing field in `gravity_gradient`, expected one of `rate`, `period`"),
+        (
+            "gravity_gradient = {}",
+            "6:20: missing field in `gravity_gradient`, expected one of `rate`, `period`",
+        ),
         (
             "gravity_gradient = { rate = 1, period = 2 }",
             "6:32: `period` conflicts with `rate`, give only one of them",
@@ -114,7 +120,10 @@ fn what_is_wrong_with_a_law_has_its_place() {
             "pd_control = { kp = 1, kd = 1, target = { angle = 1 } }",
             "6:41: missing field in `target`, expected one of `plane`, `rotor`, `quaternion`, `rotation_vector`",
         ),
-        ("tabulated = { times = [0, 1], torques = [[0, 0, 1]] }", "6:13: 2 times for 1 torques; give one for each"),
+        (
+            "tabulated = { times = [0, 1], torques = [[0, 0, 1]] }",
+            "6:13: 2 times for 1 torques; give one for each",
+        ),
         (
             "tabulated = { times = [1, 0], torques = [[0, 0, 1], [0, 0, 1]] }",
             "6:13: times[1] = 0 does not lie after times[0] = 1; sort them",
@@ -132,13 +141,17 @@ fn what_is_wrong_with_a_law_has_its_place() {
         let found = errors_with("[run]", &format!("[torque]\n{text}\n[run]"));
         assert!(found.len() == 1 && found[0].starts_with(message), "{text}: {found:?}");
     }
-    let both = errors(&format!("torque_body = 'Ω'\n{}", LEAST.replace("[run]", "[torque]\ntorque_body = 'Ω'\n[run]")));
+    let both = errors(&format!(
+        "torque_body = 'Ω'\n{}",
+        LEAST.replace("[run]", "[torque]\ntorque_body = 'Ω'\n[run]")
+    ));
     assert_eq!(both, ["1:15: `torque_body` is also in [torque], give only one of them"]);
 }
 
 #[test]
 fn the_motion_keeps_its_names() {
-    let text = format!("[define]\nR = 'e1e2'\n{}", LEAST.replace("[run]", "[torque]\ntorque_body = 'Ω'\n[run]"));
+    let text =
+        format!("[define]\nR = 'e1e2'\n{}", LEAST.replace("[run]", "[torque]\ntorque_body = 'Ω'\n[run]"));
     assert_eq!(errors(&text), ["8:16: `R` is given by the motion; call your value otherwise"]);
 }
 
@@ -147,10 +160,10 @@ fn forces_move_the_centre_of_mass() {
     let table = "[force]\nconstant = '2 N e1'\nthrust = { force = [1, 0, 0], at = [0, '1 cm', 0] }\ndrag = '3 N s/m'\n\
                  quadratic_drag = 4\nspring = { stiffness = '20 N/m', anchor = [1, 2, 3] }\n\
                  central = '398600.4418 km^3/s^2'\n[run]";
-    let text = LEAST.replace("[3, 2, 1]", "[3, 2, 1]\nmass = 2").replace("[run]", table).replace(
-        "spin",
-        "position = ['1 km', 0, 0]\nvelocity = '3 m/s e2'\nspin",
-    );
+    let text = LEAST
+        .replace("[3, 2, 1]", "[3, 2, 1]\nmass = 2")
+        .replace("[run]", table)
+        .replace("spin", "position = ['1 km', 0, 0]\nvelocity = '3 m/s e2'\nspin");
     let scene = scene(&text);
     assert_eq!(scene.center.position, Vector([1000.0, 0.0, 0.0]));
     assert_eq!(scene.center.velocity, Vector([0.0, 3.0, 0.0]));
@@ -170,7 +183,8 @@ fn forces_move_the_centre_of_mass() {
 
 #[test]
 fn forces_need_a_mass_and_a_body_that_is_not_held() {
-    let message = |text: &str| scene(text).build().unwrap_err()[0].to_string().lines().next().unwrap().to_owned();
+    let message =
+        |text: &str| scene(text).build().unwrap_err()[0].to_string().lines().next().unwrap().to_owned();
     let pushed = LEAST.replace("[run]", "[force]\ndrag = 1\n[run]");
     assert_eq!(message(&pushed), "x.toml:1:1: error: a force moves the mass, add the field `mass`");
     let massive = pushed.replace("[3, 2, 1]", "[3, 2, 1]\nmass = 1");
@@ -200,10 +214,10 @@ fn the_method_may_have_a_table() {
             "13:1: `rtol` of [method] is `rtol` of [run], give only one of them",
         ]
     );
-    assert_eq!(
-        errors_with("duration = 10", "duration = 10\n[method]\nname = 'euler'\natol = 2").len(),
-        2
-    );
+    assert_eq!(errors_with("duration = 10", "duration = 10\n[method]\nname = 'euler'\natol = 2").len(), 2);
     let unknown = errors_with("duration = 10", "duration = 10\n[method]\ntol = 2");
-    assert!(unknown.len() == 1 && unknown[0].starts_with("8:1: unknown field `tol`, expected `"), "{unknown:?}");
+    assert!(
+        unknown.len() == 1 && unknown[0].starts_with("8:1: unknown field `tol`, expected `"),
+        "{unknown:?}"
+    );
 }

@@ -24,10 +24,21 @@ def test_python_blocks_run():
 
 
 def test_the_scene_is_the_example():
-    (scene,) = blocks("toml")
+    scene, _ = blocks("toml")
     example = (ROOT / "examples/t-handle.toml").read_text()
     lines = [line for line in example.splitlines() if line and not line.startswith(("#", "title"))]
     assert [line for line in scene.splitlines() if line] == lines
+
+
+def test_the_torques_are_those_of_a_scene(tmp_path):
+    scene, torques = blocks("toml")
+    define = '[define]\nm = "0.2 A m^2 e1"\nB = "30 uT e3"\n'
+    body = re.sub(r"mesh = .*\nlength_unit = .*\ndensity = .*", "moments = [1, 2, 3]", scene)
+    (tmp_path / "a.toml").write_text(define + body.replace("samples = 6001", "samples = 11") + torques)
+    done = subprocess.run(
+        [POLHODE, "run", "a.toml"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert "torque_body       m ∧ (~R B R)" in done.stdout
 
 
 def test_the_mistake_is_shown_as_printed(tmp_path):

@@ -1,4 +1,4 @@
-"""Torques, forces and methods of scenes: the same as in Python, and when they are wrong, told at their place."""
+"""Torques, forces and methods of scenes: the same as in Python, and told at their place when wrong."""
 
 import json
 import pickle

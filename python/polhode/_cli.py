@@ -240,13 +240,13 @@ _WITH_POLHODE = ("free", "damped", "gyrostat")
 
 def _second_figure(scene: Scene, trajectory: Trajectory) -> Figure:
     """Draw what a kind of motion is known by: its polhode, or the path of an axis."""
-    from polhode._kinds import kind_of, long_axis, orbit_of, weight
+    from polhode._kinds import kind_of, long_axis, orbit_of, weight, wheel
     from polhode._plot import main_axis
     from polhode._spheres import axis_figure, orbit_figure, polhode_figure
 
     kind = kind_of(scene.torque)
     if kind in _WITH_POLHODE:
-        return polhode_figure(trajectory, wheel=kind == "gyrostat")
+        return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
     if kind == "satellite":
         path = long_axis(orbit_of(scene.torque), trajectory)
         return orbit_figure(trajectory, path, "the axis of the least moment")

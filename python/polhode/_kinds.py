@@ -34,6 +34,11 @@ def weight(torque: Torque | None) -> Array:
     return _sum_of("heavy", torque)
 
 
+def wheel(torque: Torque | None) -> Array:
+    """Return the momentum of all wheels (3,) in body axes, in kg m²/s."""
+    return _sum_of("gyrostat", torque)
+
+
 def orbit_of(torque: Torque | None) -> tuple[float, float, float]:
     """Return mean motion, eccentricity and mean anomaly of a satellite's orbit."""
     laws = torque.laws if torque else ()
@@ -43,7 +48,8 @@ def orbit_of(torque: Torque | None) -> tuple[float, float, float]:
 
 def _sum_of(name: str, torque: Torque | None) -> Array:
     laws = torque.laws if torque else ()
-    return np.sum([law.arguments[0] for law in laws if law.name == name], axis=0)
+    total: Array = np.sum([law.arguments[0] for law in laws if law.name == name], axis=0)
+    return total
 
 
 # Heavy bodies that have an integral of their own, by its name.
@@ -63,7 +69,7 @@ def describe(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
         case "heavy":
             motion = _heavy(weight(scene.torque), scene, trajectory)
         case "gyrostat":
-            motion = _gyrostat(_sum_of("gyrostat", scene.torque), trajectory)
+            motion = _gyrostat(wheel(scene.torque), trajectory)
         case "damped":
             motion = _damped(float(_sum_of("damping", scene.torque)), scene, trajectory)
         case "satellite":
@@ -212,11 +218,12 @@ def _precession_rate(trajectory: Trajectory, path: Array) -> float | None:
 
 
 def long_axis(orbit: tuple[float, float, float], trajectory: Trajectory) -> Array:
-    """Return the axis of the least moment (n, 3): along the orbit, on its normal e3, and up from the planet."""
+    """Return the axis of the least moment (n, 3): along the orbit, on its normal e3, up from the planet."""
     up = _native.orbit_directions(*orbit, np.ascontiguousarray(trajectory.time))
     normal = np.broadcast_to([0.0, 0.0, 1.0], up.shape)
     axes = np.stack([np.cross(normal, up), normal, up], axis=1)
-    return np.einsum("nij,nj->ni", axes, _principal_direction(trajectory, 0))
+    direction: Array = np.einsum("nij,nj->ni", axes, _principal_direction(trajectory, 0))
+    return direction
 
 
 def _principal_direction(trajectory: Trajectory, k: int) -> Array:
@@ -227,7 +234,7 @@ def _principal_direction(trajectory: Trajectory, k: int) -> Array:
 
 
 def _satellite(orbit: tuple[float, float, float], trajectory: Trajectory) -> dict[str, Any]:
-    """Tell how the axis of the least moment swings about the vertical, and that of the largest about the normal.
+    """Tell how the axes of the least and the largest moment swing about the vertical and the normal.
 
     Small swings in the plane of a circular orbit, with the axes of the moments a < b < c up, along the
     orbit and on its normal, follow ``θ'' = −3 n² (b − a)/c θ``.
@@ -238,6 +245,7 @@ def _satellite(orbit: tuple[float, float, float], trajectory: Trajectory) -> dic
     rate, (a, b, c) = abs(orbit[0]), np.sort(trajectory.inertia.principal_moments)
     swings = _crossings(trajectory.time, along * np.sign(up)) if bound else np.empty(0)
     stiffness = 3 * (b - a) / c
+    small = float(2 * np.pi / (rate * np.sqrt(stiffness))) if rate and stiffness else None
     return {
         "kind": "satellite",
         "regime": "librating about the vertical" if bound else "turning over, not held by the gradient",
@@ -246,9 +254,7 @@ def _satellite(orbit: tuple[float, float, float], trajectory: Trajectory) -> dic
         "from_vertical": _range(np.arctan2(np.hypot(along, across), np.abs(up))),
         "from_normal": _range(np.arctan2(np.hypot(x, y), np.abs(z))),
         "libration_period": 2 * float(np.diff(swings).mean()) if swings.size > 2 else None,
-        "small_libration_period": float(2 * np.pi / (rate * np.sqrt(stiffness)))
-        if rate and stiffness
-        else None,
+        "small_libration_period": small,
     }
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import Array
+from polhode._extras import optional
 from polhode._plot import _AXES, _BLACK, _ORANGE, new_figure, require_times
 from polhode._values import vector
 
@@ -79,12 +80,12 @@ def _finish(axes: Axes, view: _View, semi_axes: Array, names: tuple[str, str, st
     axes.set_axis_off()
 
 
-def polhode_figure(trajectory: Trajectory, wheel: bool = False) -> Figure:
+def polhode_figure(trajectory: Trajectory, wheel: Array | None = None) -> Figure:
     """Draw the polhode on the inertia ellipsoid ``Σ i_k ω_k² = 2E`` of the start, among its neighbours.
 
     Components are about the principal axes. Where the curve is behind the ellipsoid it is faint. Of a body
-    that loses energy it is drawn as if it had that of the start. With a wheel in the body the neighbours
-    are others, and left out.
+    that loses energy it is drawn as if it had that of the start. A wheel's momentum (3,) in body axes
+    makes other neighbours.
     """
     require_times(trajectory)
     figure = new_figure(6.4, 6.4)
@@ -101,9 +102,13 @@ def polhode_figure(trajectory: Trajectory, wheel: bool = False) -> Figure:
     semi_axes = np.sqrt(2 * energy / moments)
     view = _View()
     axes.fill(*view.silhouette(semi_axes).T, facecolor="#F4F6F8", edgecolor=_BLACK, lw=0.9, zorder=0)
-    for curve in [] if wheel else _polhode_family(moments, energy):
+    family = _polhode_family(moments, energy)
+    if wheel is not None:
+        h = (~trajectory.inertia.principal_frame)(vector(wheel)).components
+        family = _wheel_family(moments, energy, h)
+    for curve in family:
         view.curve(axes, curve, curve * moments, color=_FAINT, lw=0.8)
-    for curve in [] if wheel else _separatrix(moments, energy):
+    for curve in _separatrix(moments, energy) if wheel is None else []:
         view.curve(axes, curve, curve * moments, color=_BLACK, lw=0.9, alpha=0.7)
     view.curve(axes, omega, omega * moments, color=_ORANGE, lw=2.0)
     start = view.project(omega[:1])[0]
@@ -111,14 +116,13 @@ def polhode_figure(trajectory: Trajectory, wheel: bool = False) -> Figure:
     axes.plot(*start, "o", color=_ORANGE, ms=6, mec="white", mew=0.8, zorder=5, alpha=0.4 if hidden else 1.0)
     _finish(axes, view, semi_axes, ("axis 1", "axis 2", "axis 3"))
     figure.suptitle(trajectory.attributes.get("title", "Polhode"))
-    others = (
-        "\nGrey: other motions of the same energy. "
-        "Black: the separatrix between turning\nabout the longest and the shortest axis."
-    )
+    others = "\nGrey: other motions of the same energy."
+    if wheel is None:
+        others += " Black: the separatrix between turning\nabout the longest and the shortest axis."
     slowed = " (as it slows, drawn larger)" if energies.min() < 0.999 * energy else ""
     figure.supxlabel(
         f"Angular velocity in principal axes (moments {', '.join(f'{i:.4g}' for i in moments)} kg m²),\n"
-        f"on the ellipsoid of its energy: orange, from the dot{slowed}.{'' if wheel else others}",
+        f"on the ellipsoid of its energy: orange, from the dot{slowed}.{others}",
         fontsize=9,
     )
     return figure
@@ -147,6 +151,27 @@ def _polhode_family(moments: Array, energy: float) -> list[Array]:
             u[:, c] = np.sqrt(np.maximum(2 * energy - u[:, middle] ** 2 - u[:, other] ** 2, 0.0))
             curves += [u / np.sqrt(moments), -u / np.sqrt(moments)]
     return curves
+
+
+def _wheel_family(moments: Array, energy: float, h: Array) -> list[Array]:
+    """Return polhodes of one energy with a wheel of momentum h: where ``|I(ω) + h|`` has one size.
+
+    Level curves over azimuth and height on the sphere ``u_k = ω_k √i_k``, ``|u|² = 2E``.
+    """
+    contour = optional("contourpy", "plot", "a figure").contour_generator
+
+    def rates(azimuth: Array, height: Array) -> Array:
+        across = np.sqrt(1 - height**2)
+        u = np.stack([across * np.cos(azimuth), across * np.sin(azimuth), height], axis=-1)
+        return np.asarray(np.sqrt(2 * energy / moments) * u)
+
+    azimuth, height = np.meshgrid(
+        np.linspace(-np.pi, np.pi, 181), np.sin(np.linspace(-1, 1, 121) * np.pi / 2)
+    )
+    sizes = np.linalg.norm(rates(azimuth, height) * moments + h, axis=-1)
+    levels = sizes.min() + (sizes.max() - sizes.min()) * np.linspace(0.04, 0.96, 12)
+    lines = contour(azimuth, height, sizes)
+    return [rates(line[:, 0], np.clip(line[:, 1], -1, 1)) for level in levels for line in lines.lines(level)]
 
 
 def _separatrix(moments: Array, energy: float) -> list[Array]:

@@ -68,16 +68,6 @@ def test_the_gyroscope_precesses_by_the_fast_top_formula():
     assert motion["tilt_min"] == pytest.approx(np.radians(30), abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["t-handle", "symmetric-top", "toutatis", "gyroscope"])
-def test_examples_check_and_print_a_page(name):
-    assert polhode("check", EXAMPLES / f"{name}.toml").returncode == 0
-    done = polhode("run", EXAMPLES / f"{name}.toml")
-    assert done.returncode == 0
-    assert done.stderr == ""
-    for section in ("Body", "Motion", "Conserved", "Run", "Nothing was written"):
-        assert section in done.stdout
-
-
 # --- what it writes
 
 

@@ -25,7 +25,7 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
-@pytest.mark.parametrize("name", ["algebra", "formulas"])
+@pytest.mark.parametrize("name", ["algebra", "formulas", "motion"])
 def test_the_pages_run_and_print_what_they_say(name):
     for needed in ("jax", "sympy"):
         pytest.importorskip(needed)
@@ -64,7 +64,7 @@ def blocks_of(page):
 
 
 def test_there_are_scenes():
-    assert len(SCENES) == 4
+    assert len(SCENES) == 8
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,8 @@ import pytest
 import polhode as ph
 
 pytest.importorskip("matplotlib")
-from polhode._plot import _View, axis_figure, motion_figure, polhode_figure
+from polhode._plot import motion_figure
+from polhode._spheres import _View, axis_figure, polhode_figure
 
 R0 = ph.Rotor.from_components([4, -2, 1, 2])
 TIMES = np.linspace(0, 10, 201)

@@ -24,10 +24,23 @@ def test_python_blocks_run():
 
 
 def test_the_scene_is_the_example():
-    (scene,) = blocks("toml")
+    scene, _ = blocks("toml")
     example = (ROOT / "examples/t-handle.toml").read_text()
     lines = [line for line in example.splitlines() if line and not line.startswith(("#", "title"))]
     assert [line for line in scene.splitlines() if line] == lines
+
+
+def test_the_torques_are_those_of_a_scene(tmp_path):
+    scene, torques = blocks("toml")
+    define = '[define]\nm = "0.2 A m^2 e1"\nB = "30 uT e3"\n'
+    body = re.sub(r"mesh = .*\nlength_unit = .*\ndensity = .*", "moments = [1, 2, 3]", scene)
+    body = body.replace("samples = 6001", "samples = 11").replace("5 rev/s", "5 deg/s")
+    (tmp_path / "a.toml").write_text(define + body + torques)
+    done = subprocess.run(
+        [POLHODE, "run", "a.toml"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "torque_body       m ∧ (~R B R)" in done.stdout
 
 
 def test_the_mistake_is_shown_as_printed(tmp_path):

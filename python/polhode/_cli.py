@@ -19,6 +19,8 @@ from polhode._native import SceneError, __version__
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from matplotlib.figure import Figure
+
     from polhode._scene import Scene
     from polhode._trajectory import Trajectory
 
@@ -150,8 +152,9 @@ def _repl(_: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    from polhode._page import as_text
     from polhode._scene import Scene
-    from polhode._summary import as_text, summary
+    from polhode._summary import summary
 
     output = None if options.output is None else Path(options.output)
     scene = Scene.read(options.scene)
@@ -209,10 +212,11 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     from polhode._extras import optional
     from polhode._files import check_target
     from polhode._io import require_libraries
+    from polhode._kinds import kind_of
 
     require_libraries()
     optional("matplotlib", "plot", "a figure")
-    second = "polhode" if scene.weight is None else "axis"
+    second = "polhode" if kind_of(scene.torque) in _WITH_POLHODE else "axis"
     targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in ("motion", second))]
     for path in targets:
         check_target(path)
@@ -223,14 +227,33 @@ def _write(targets: list[Path], scene: Scene, trajectory: Trajectory) -> None:
     """Write the data and the figures, all of them or none."""
     from polhode._files import write_atomically
     from polhode._io import netcdf
-    from polhode._plot import as_png, axis_figure, motion_figure, polhode_figure
+    from polhode._plot import as_png, motion_figure
 
-    if scene.weight is None:
-        second = polhode_figure(trajectory)
-    else:
-        second = axis_figure(trajectory, scene.weight, "the body's axis from the pivot")
+    second = _second_figure(scene, trajectory)
     contents = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
     write_atomically(dict(zip(targets, contents, strict=True)))
+
+
+# The kinds of motion whose angular velocity stays on an ellipsoid in the body.
+_WITH_POLHODE = ("free", "damped", "gyrostat")
+
+
+def _second_figure(scene: Scene, trajectory: Trajectory) -> Figure:
+    """Draw what a kind of motion is known by: its polhode, or the path of an axis."""
+    from polhode._kinds import kind_of, long_axis, orbit_of, weight, wheel
+    from polhode._plot import main_axis
+    from polhode._spheres import axis_figure, orbit_figure, polhode_figure
+
+    kind = kind_of(scene.torque)
+    if kind in _WITH_POLHODE:
+        return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
+    if kind == "satellite":
+        path = long_axis(orbit_of(scene.torque), trajectory)
+        return orbit_figure(trajectory, path, "the axis of the least moment")
+    if scene.held and (c := weight(scene.torque)).any():
+        return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
+    number, axis = main_axis(trajectory)
+    return axis_figure(trajectory, axis, f"principal axis {number}")
 
 
 @contextmanager

@@ -6,15 +6,17 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from polhode import _native
-from polhode import torque as laws
+from polhode import force as forces
 from polhode._arrays import Array, frozen
 from polhode._bodies import Body
 from polhode._rotor import Rotor
 from polhode._simulate import simulate
 from polhode._state import State
 from polhode._trajectory import Trajectory
+from polhode.force import Force
 from polhode.torque import Torque
 
 DRIFT_BOUND = 1e-8
@@ -31,15 +33,19 @@ class Scene:
     body
         The body; under gravity in axes whose origin is the fixed point.
     tells_mass
-        False where the file gives an inertia alone; the body then has 1 kg, which a free motion ignores.
+        False where the file gives an inertia alone; the body then has 1 kg, which the motion ignores.
     state
         The state at time 0.
-    weight
-        ``c = m g (centre of mass − fixed point)`` in body axes (3,) in N m, or None without gravity.
+    torque
+        What turns the body, gravity first and then as in the file; None where nothing does.
+    formulas
+        For each law of `torque` its formula as the file has it, or None.
+    force
+        What moves the centre of mass; None where nothing does.
     times
         Output times in s.
-    method, step, rtol
-        As for `polhode.simulate`; step and rtol may be None.
+    method, step, rtol, atol
+        As for `polhode.simulate`; step and tolerances may be None.
     drift_bound
         Largest relative drift of a conserved quantity that counts as success.
     """
@@ -50,11 +56,14 @@ class Scene:
     body: Body
     tells_mass: bool
     state: State
-    weight: Array | None
+    torque: Torque | None
+    formulas: tuple[str | None, ...]
+    force: Force | None
     times: Array
     method: str
     step: float | None
     rtol: float | None
+    atol: float | None
     drift_bound: float
 
     @staticmethod
@@ -73,19 +82,27 @@ class Scene:
             title=fields["title"],
             body=Body._of(fields["body"]),
             tells_mass=fields["tells_mass"],
-            state=State(Rotor._from_rows(fields["rotor"]), fields["omega_body"]),
-            weight=fields["heavy"],
+            state=State(
+                Rotor._from_rows(fields["rotor"]),
+                fields["omega_body"],
+                fields["position"],
+                fields["velocity"],
+            ),
+            torque=Torque(tuple(fields["laws"])) if fields["laws"] else None,
+            formulas=tuple(fields["formulas"]),
+            force=_sum_of(fields["forces"]),
             times=frozen(fields["times"]),
             method=fields["method"],
             step=fields["step"],
             rtol=fields["rtol"],
+            atol=fields["atol"],
             drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
         )
 
     @property
-    def torque(self) -> Torque | None:
-        """Gravity about the fixed point, or None."""
-        return None if self.weight is None else laws.heavy(self.weight)
+    def held(self) -> bool:
+        """Whether the body is held at a fixed point, the origin of its axes."""
+        return self.torque is not None and self.torque.holds
 
     def run(self, progress: Callable[[int, float], object] | None = None) -> Trajectory:
         """Return the motion at the output times; errors and `progress` as for `polhode.simulate`."""
@@ -94,10 +111,18 @@ class Scene:
             self.state,
             self.times,
             self.torque,
+            self.force,
             method=self.method,
             step=self.step,
             rtol=self.rtol,
+            atol=self.atol,
             progress=progress,
         )
         trajectory.attributes.update({"title": self.title or self.path.stem, "scene": self.text})
         return trajectory
+
+
+def _sum_of(calls: list[tuple[str, tuple[Any, ...]]]) -> Force | None:
+    """Return the sum of forces, each the name and the arguments of a function of `polhode.force`."""
+    made: list[Force] = [getattr(forces, name)(*arguments) for name, arguments in calls]
+    return sum(made[1:], made[0]) if made else None

@@ -112,6 +112,10 @@ class Trajectory:
             vector(found.velocity.components.reshape(*shape, 3)),
         )
 
+    def drifts(self) -> dict[str, Array]:
+        """Return each conserved quantity's change since time 0, relative as in the certificate, (n,) each."""
+        return dict(self._motion.drifts()) if self._motion is not None else {}
+
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: all but the motion between the output times."""
         return self.__dict__ | {"_motion": None}

@@ -51,7 +51,7 @@ mod _native {
     #[pymodule_export]
     use crate::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};
     #[pymodule_export]
-    use crate::torque::{Law, torque_at};
+    use crate::torque::{Law, orbit_directions, torque_at};
 
     #[pymodule_export]
     use crate::formula::Formula;

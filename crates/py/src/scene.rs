@@ -2,12 +2,19 @@
 
 use crate::arrays::line;
 use crate::bodies::Body;
-use polhode_rigid::torque::Torque;
+use crate::torque::Law;
+use crate::value;
+use polhode_ga::formula::Given;
+use polhode_ga::product::Grades;
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::force::Force;
+use polhode_rigid::scene::Push;
+use polhode_rigid::torque::{Axes, Kind, Torque};
 use polhode_rigid::{Diagnostic, scene};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 
 create_exception!(polhode, SceneError, PyValueError, "What is wrong with a scene file, with its places.");
@@ -17,18 +24,18 @@ fn report(diagnostics: &[Diagnostic]) -> PyErr {
     SceneError::new_err(texts.join("\n"))
 }
 
-/// Reads a scene file: a dict of what it says, in SI units, with the body made.
+/// Reads a scene file: a dict of what it says, in SI units, with the body and the laws made.
 #[pyfunction]
 pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let built = py.detach(|| {
         let scene = scene::Scene::read(&path)?;
-        scene.build().map(|(body, torques)| (scene, body, torques))
+        scene.build().map(|(body, laws)| (scene, body, laws))
     });
-    let (scene, body, torques) = built.map_err(|diagnostics| report(&diagnostics))?;
-    let heavy = torques.iter().find_map(|torque| match torque {
-        Torque::Heavy(c) => Some(c.0),
-        _ => None,
-    });
+    let (scene, body, laws) = built.map_err(|diagnostics| report(&diagnostics))?;
+    let (position, velocity) = (scene.center.position, scene.center.velocity);
+    let formulas: Vec<Option<String>> = laws.iter().map(|law| law.formula.clone()).collect();
+    let laws: Vec<Py<Law>> = laws.into_iter().map(|law| named(py, law.torque)).collect::<PyResult<_>>()?;
+    let forces: Vec<_> = scene.forces.iter().map(|push| pushed(py, push)).collect::<PyResult<_>>()?;
     let result = PyDict::new(py);
     result.set_item("title", &scene.title)?;
     result.set_item("text", &scene.text)?;
@@ -36,11 +43,86 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("tells_mass", scene.tells_mass())?;
     result.set_item("rotor", line(py, scene.attitude.components().to_vec()))?;
     result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
-    result.set_item("heavy", heavy.map(|c| line(py, c.to_vec())))?;
+    result.set_item("position", line(py, position.0.to_vec()))?;
+    result.set_item("velocity", line(py, velocity.0.to_vec()))?;
+    result.set_item("laws", laws)?;
+    result.set_item("formulas", formulas)?;
+    result.set_item("forces", forces)?;
     result.set_item("times", line(py, scene.run.times()))?;
-    result.set_item("method", &scene.run.method)?;
-    result.set_item("step", scene.run.step)?;
-    result.set_item("rtol", scene.run.rtol)?;
+    result.set_item("method", &scene.run.choice.method)?;
+    result.set_item("step", scene.run.choice.step)?;
+    result.set_item("rtol", scene.run.choice.rtol)?;
+    result.set_item("atol", scene.run.choice.atol)?;
     result.set_item("drift_bound", scene.run.drift_bound)?;
     Ok(result)
+}
+
+/// A law with the call of `polhode.torque` that would make it.
+fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
+    let vector = |Vector([x, y, z]): Vector| (x, y, z);
+    let bivector = |Bivector([x, y, z]): Bivector| (x, y, z);
+    let three = |[x, y, z]: [f64; 3]| (x, y, z);
+    let rotor = |rotor: Rotor| PyTuple::new(py, rotor.components());
+    let axes = |axes| if axes == Axes::Space { "space" } else { "body" };
+    macro_rules! call {
+        ($name:literal, $($argument:expr),*) => { ($name, ($($argument,)*).into_pyobject(py)?) };
+    }
+    let (name, arguments): (&str, Bound<'_, PyTuple>) = match &torque {
+        Torque::Heavy(c) => call!("heavy", vector(*c)),
+        Torque::GravityGradient(orbit) => {
+            call!("gravity_gradient", orbit.rate(), orbit.eccentricity(), orbit.anomaly())
+        }
+        Torque::ConstantBody(torque) => call!("constant_body", bivector(*torque)),
+        Torque::ConstantSpace(torque) => call!("constant_space", bivector(*torque)),
+        Torque::Damping(g) => call!("damping", *g),
+        Torque::QuadraticDamping(k) => call!("quadratic_damping", *k),
+        Torque::ViscousDamping(d) => call!("viscous_damping", three(d.along())),
+        Torque::Magnetic { dipole, field } => call!("magnetic", vector(*dipole), vector(*field)),
+        Torque::TorsionSpring { stiffness, rest } => call!("torsion_spring", *stiffness, rotor(*rest)?),
+        Torque::Wheel(h) => call!("gyrostat", bivector(*h)),
+        Torque::Control { stiffness, damping, target } => {
+            call!("pd_control", three(stiffness.along()), three(damping.along()), rotor(*target)?)
+        }
+        Torque::Larmor(b) => call!("larmor", vector(*b)),
+        Torque::Tabulated(table) => {
+            let times = PyTuple::new(py, table.times())?;
+            let rows = PyTuple::new(py, table.torques().iter().map(|row| bivector(*row)))?;
+            let kind = if table.kind == Kind::Cubic { "cubic" } else { "linear" };
+            call!("tabulated", times, rows, axes(table.axes), kind)
+        }
+        Torque::Formula(law) => {
+            let known = law.known().map(|(name, given)| Ok((name, known(py, given)?)));
+            let known = PyTuple::new(py, known.collect::<PyResult<Vec<_>>>()?)?;
+            call!("formula", law.text(), axes(law.axes()), known)
+        }
+        Torque::Function(_) => return Err(PyValueError::new_err("a scene has no functions of Python's")),
+    };
+    Law::named(py, torque, name, arguments)
+}
+
+/// The value of a name in a formula.
+fn known(py: Python<'_>, given: Given) -> PyResult<Bound<'_, PyAny>> {
+    match given {
+        Given::Value(value) if value.grades() == Grades::SCALAR => {
+            Ok(value.components()[0].into_pyobject(py)?.into_any())
+        }
+        Given::Value(value) => value::one(py, value),
+        _ => Err(PyValueError::new_err("a scene defines no linear maps")),
+    }
+}
+
+/// The call of `polhode.force` that makes a force.
+fn pushed<'py>(py: Python<'py>, push: &Push) -> PyResult<(&'static str, Bound<'py, PyTuple>)> {
+    let row = |Vector(v): Vector| line(py, v.to_vec());
+    Ok(match &push.force {
+        Force::Constant(force) => ("constant", (row(*force),).into_pyobject(py)?),
+        Force::Body(force) => ("thrust", (row(*force), push.at.map(row)).into_pyobject(py)?),
+        Force::Drag(k) => ("drag", (*k,).into_pyobject(py)?),
+        Force::QuadraticDrag(k) => ("quadratic_drag", (*k,).into_pyobject(py)?),
+        Force::Spring(k, anchor) => ("spring", (*k, row(*anchor)).into_pyobject(py)?),
+        Force::Central(mu) => ("central", (*mu,).into_pyobject(py)?),
+        Force::Formula(_) | Force::Function(_) => {
+            return Err(PyValueError::new_err("a scene has no such force"));
+        }
+    })
 }

@@ -93,6 +93,12 @@ impl Motion {
         Ok((which, rising, points(py, self.motion.event_states())?))
     }
 
+    /// Each conserved quantity's name and its relative change (n,) since the start.
+    fn drifts<'py>(&self, py: Python<'py>) -> Vec<(&'static str, Array<'py>)> {
+        let drifts = self.motion.drifts().into_iter();
+        drifts.map(|(quantity, change)| (quantity.name(), line(py, change))).collect()
+    }
+
     /// How the motion was made and what it conserved.
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let proof = &self.motion.certificate;

@@ -1,6 +1,6 @@
 //! Torque laws: values made of a name and arguments, and their torques.
 
-use crate::arrays::{Array, Rows, bad, line, one};
+use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use crate::made::{
     Asked, Known, Made, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
@@ -18,6 +18,19 @@ use std::sync::Arc;
 #[pyclass(frozen, extends = Made, module = "polhode._native")]
 pub(crate) struct Law {
     pub(crate) torque: Torque,
+}
+
+impl Law {
+    /// A law that is made, with the name and the arguments that would make it.
+    pub(crate) fn named(
+        py: Python<'_>,
+        torque: Torque,
+        name: &str,
+        arguments: Bound<'_, PyTuple>,
+    ) -> PyResult<Py<Law>> {
+        let made = Made::new(name.to_owned(), arguments, Raised::default());
+        Py::new(py, PyClassInitializer::from(made).add_subclass(Law { torque }))
+    }
 }
 
 #[pymethods]
@@ -56,6 +69,19 @@ pub(crate) fn torque_at<'py>(
     let torque = total(&body, &torques, &state)
         .map_err(|error| failed(laws.iter().map(Bound::as_super), format!("at t = {time} s: {error}")))?;
     Ok(line(py, frame.apply_bivector(torque).0.to_vec()))
+}
+
+/// The direction from planet to body on an orbit, rows (n, 3) at times (n,).
+#[pyfunction]
+pub(crate) fn orbit_directions<'py>(
+    py: Python<'py>,
+    rate: f64,
+    eccentricity: f64,
+    anomaly: f64,
+    times: Rows<'py>,
+) -> PyResult<Array<'py>> {
+    let orbit = Orbit::new(rate, eccentricity, anomaly).map_err(bad)?;
+    table(py, numbers(&times)?.iter().map(|&time| orbit.place(time).0.0))
 }
 
 /// The law of a name and arguments.

@@ -56,6 +56,15 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// Each quantity with its relative changes at these points.
+    pub fn changes<'s>(&self, states: impl Iterator<Item = &'s Phase> + Clone) -> Vec<(Conserved, Vec<f64>)> {
+        let change = |followed: &Followed, state: &Phase| {
+            (followed.quantity.value(&self.body, self.torques, state) - followed.start) / followed.scale
+        };
+        let series = |f: &Followed| (f.quantity, states.clone().map(|state| change(f, state)).collect());
+        self.quantities.iter().map(series).collect()
+    }
+
     pub fn look(&mut self, state: &Phase) {
         for followed in &mut self.quantities {
             let value = followed.quantity.value(&self.body, self.torques, state);

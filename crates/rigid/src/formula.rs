@@ -69,7 +69,7 @@ struct Compiled {
 }
 
 /// The names that the motion gives. `Ω` is the angular velocity in the axes of a torque.
-fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
+pub(crate) fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
     let mut names = vec![
         ("R", Motion::Rotor),
         ("t", Motion::Time),
@@ -239,6 +239,15 @@ impl Formula {
     /// The formula as it was given.
     pub fn text(&self) -> &str {
         &self.compiled.text
+    }
+
+    /// The names in it that the motion does not give, with their values.
+    pub(crate) fn known(&self) -> impl Iterator<Item = (&str, Given)> {
+        let Compiled { program, sources, .. } = &*self.compiled;
+        program.inputs.iter().zip(sources).filter_map(|(input, source)| match source {
+            Source::Known(given) => Some((input.name.as_str(), *given)),
+            Source::Motion(_) => None,
+        })
     }
 
     pub(crate) fn purpose(&self) -> Purpose {

@@ -3,7 +3,7 @@
 
 use crate::certificate::{Certificate, Watch};
 use crate::closed_form::{ClosedForm, Fall};
-use crate::conserved::energy;
+use crate::conserved::{Conserved, energy};
 use crate::converge::{Aim, DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
 use crate::event::{Event, Happened};
 use crate::force::{Center, Force, Translation};
@@ -360,6 +360,13 @@ impl Motion {
     /// The motion at its output times.
     pub fn states(&self) -> States {
         self.problem.states(&self.states)
+    }
+
+    /// Each conserved quantity, and its change since the start at the output times, relative as in the certificate.
+    pub fn drifts(&self) -> Vec<(Conserved, Vec<f64>)> {
+        let Problem { body, torques, .. } = &self.problem;
+        let watch = Watch::new(*body, torques, self.problem.start().phase);
+        watch.changes(self.states.iter().map(|state| &state.phase))
     }
 
     /// The points at which events happened.

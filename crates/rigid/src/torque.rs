@@ -9,7 +9,7 @@ mod gains;
 mod orbit;
 mod table;
 
-pub use formula::FormulaTorque;
+pub use formula::{FormulaTorque, given_names};
 pub use function::FunctionTorque;
 pub use gains::Gains;
 pub use orbit::Orbit;

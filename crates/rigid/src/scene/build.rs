@@ -1,6 +1,6 @@
 //! From what a scene says of its body to the body.
 
-use super::{BodySpec, Scene};
+use super::{BodySpec, Law, Scene};
 use crate::body::{Body, BodyError};
 use crate::inertia::Inertia;
 use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
@@ -14,23 +14,29 @@ use std::path::Path;
 impl Scene {
     /// The body and what turns it, ready to move. Under gravity the body is shifted so that the fixed
     /// point is the origin of its axes; then `c = m g (centre of mass)`.
-    pub fn build(&self) -> Result<(Body, Vec<Torque>), Vec<Diagnostic>> {
+    pub fn build(&self) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
         let body = self.build_body()?;
-        let (body, torques) = match self.gravity {
-            None => (body, Vec::new()),
+        let mut laws = self.torques.clone();
+        let body = match self.gravity {
+            None => body,
             Some(gravity) => {
                 let body = body.moved(Rotor::IDENTITY, -gravity.pivot);
                 let body = body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
                 let torque = Torque::Heavy(body.center_of_mass * (body.mass * gravity.acceleration));
-                (body, vec![torque])
+                laws.insert(0, Law { torque, formula: None });
+                body
             }
         };
-        let held = self.gravity.is_some();
+        let held = self.is_held();
+        if held && !self.forces.is_empty() {
+            let message = "the body is held at a fixed point, where no force moves it; remove [force]";
+            return Err(vec![self.diagnose("force", message)]);
+        }
         let inertia = if held { body.inertia_about(Vector::default()) } else { Ok(body.inertia) };
         let inertia = inertia.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
         check_moments(inertia.principal_moments())
             .map_err(|error| vec![self.diagnose(self.shape_field(), error.to_string())])?;
-        Ok((body, torques))
+        Ok((body, laws))
     }
 
     /// The body; what no body can have is reported at the field that says it. A mesh is read from its
@@ -53,6 +59,11 @@ impl Scene {
             }
         };
         body.map_err(|error| vec![error])
+    }
+
+    /// Whether the body is held at a fixed point.
+    fn is_held(&self) -> bool {
+        self.gravity.is_some() || self.torques.iter().any(|law| matches!(law.torque, Torque::Heavy(_)))
     }
 
     /// The field that says what the body is.
@@ -90,8 +101,14 @@ impl Scene {
         center_of_mass: Vector,
         field: &str,
     ) -> Result<Body, Diagnostic> {
-        if mass.is_none() && self.gravity.is_some() {
-            return Err(self.diagnose("body", "gravity acts on the mass, add the field `mass`"));
+        let reason = match center_of_mass == Vector::default() {
+            _ if self.gravity.is_some() => Some("gravity acts on the mass"),
+            _ if !self.forces.is_empty() => Some("a force moves the mass"),
+            false if self.is_held() => Some("the inertia about the fixed point depends on the mass"),
+            _ => None,
+        };
+        if let (None, Some(reason)) = (mass, reason) {
+            return Err(self.diagnose("body", format!("{reason}, add the field `mass`")));
         }
         let body = inertia.and_then(|inertia| Body::new(mass.unwrap_or(1.0), inertia, center_of_mass));
         body.map_err(|error| self.body_error(&error, field, None))

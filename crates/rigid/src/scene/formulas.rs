@@ -11,12 +11,14 @@
 //! ```
 
 use super::reader::{Reader, Table, Value};
-use crate::units;
-use polhode_ga::Graded;
+use crate::torque::{Axes, FormulaTorque, given_names};
+use crate::units::{self, Quantity};
 use polhode_ga::formula::{
-    Error, Given, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading, parse,
+    Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading,
+    parse,
 };
 use polhode_ga::product::Grades;
+use polhode_ga::{Bivector, Graded, Vector};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::DeValue;
@@ -104,6 +106,34 @@ pub fn components<const N: usize>(
     found.with_grades(grades).components().try_into().ok()
 }
 
+/// A vector: three quantities, or a formula.
+pub fn vector(reader: &mut Reader, value: &Value, quantity: Quantity) -> Option<Vector> {
+    match value.get_ref() {
+        DeValue::String(_) => components(reader, value, Grades(0b0010), "a vector").map(Vector),
+        _ => reader.quantities(value, quantity).map(Vector),
+    }
+}
+
+/// A bivector: three quantities over e2e3, e3e1, e1e2, or a formula.
+pub fn bivector(reader: &mut Reader, value: &Value, quantity: Quantity) -> Option<Bivector> {
+    match value.get_ref() {
+        DeValue::String(_) => components(reader, value, Grades::BIVECTOR, "a bivector").map(Bivector),
+        _ => reader.quantities(value, quantity).map(Bivector),
+    }
+}
+
+/// The law that a formula is, of what `[define]` and the motion give.
+pub fn torque(reader: &mut Reader, value: &Value, axes: Axes) -> Option<FormulaTorque> {
+    let text = reader.string(value)?;
+    match reader.formulas.torque(text, axes) {
+        Ok(law) => Some(law),
+        Err(wrong) => {
+            report(reader, value, text, wrong);
+            None
+        }
+    }
+}
+
 /// Reports what is wrong with a formula at its place in the file, where its text stands there as it is.
 fn report(reader: &mut Reader, value: &Value, text: &str, wrong: Wrong) {
     let span = value.span();
@@ -130,6 +160,14 @@ impl Formulas {
     fn value(&self, text: &str) -> Result<Graded, Wrong> {
         let source = self.source(text, &[])?;
         self.evaluated(&source.text).map_err(|wrong| source.place(wrong))
+    }
+
+    fn torque(&self, text: &str, axes: Axes) -> Result<FormulaTorque, Wrong> {
+        let given: Vec<String> = given_names().map(str::to_owned).collect();
+        let source = self.source(text, &given)?;
+        let value = |input: &Input| self.values.get(&input.name).map(|value| Given::Value(*value));
+        FormulaTorque::new(&source.text, axes, self.names.clone(), value)
+            .map_err(|error| source.place(error.into()))
     }
 
     fn evaluated(&self, text: &str) -> Result<Graded, Wrong> {

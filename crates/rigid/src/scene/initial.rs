@@ -1,7 +1,8 @@
-//! The table `[initial]`: how the body stands and turns at the beginning.
+//! The table `[initial]`: how the body stands and moves at the beginning.
 
 use super::formulas;
 use super::reader::{Form, Reader, Table, Value};
+use crate::force::Center;
 use crate::units::Quantity;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, MathError, Rotor, Vector};
@@ -30,17 +31,23 @@ const SPINS: [Form; 4] = [
     Form { field: "formula", with: &[] },
 ];
 
-/// The attitude and the spin.
-pub fn read(reader: &mut Reader, table: &Table) -> Option<(Rotor, Bivector, SpinFrame)> {
-    reader.only(table, &["attitude", "spin"]);
-    let attitude = reader.optional(table, "attitude", |reader, value| {
-        if let DeValue::String(_) = value.get_ref() {
-            let components = formulas::components(reader, value, Grades::EVEN, "a rotor")?;
-            return checked(reader, value, Rotor::from_components(components));
-        }
-        let table = reader.table(value, "`attitude`")?;
-        attitude(reader, &table)
-    });
+/// How the body stands and moves at the beginning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Initial {
+    /// The rotor that carries body axes to space axes.
+    pub attitude: Rotor,
+    /// The angular velocity in rad/s, in the axes of `spin_frame`.
+    pub spin: Bivector,
+    /// The axes of `spin`.
+    pub spin_frame: SpinFrame,
+    /// The centre of mass, or the fixed point if there is one, in space.
+    pub center: Center,
+}
+
+/// The attitude, the spin and the centre of mass.
+pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
+    reader.only(table, &["attitude", "spin", "position", "velocity"]);
+    let attitude = reader.optional(table, "attitude", |reader, value| attitude(reader, value, "`attitude`"));
     let spin = reader.field(table, "spin", |reader, value| {
         if let DeValue::String(_) = value.get_ref() {
             return Some((bivector(reader, value)?, SpinFrame::Body));
@@ -48,11 +55,26 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<(Rotor, Bivector, Spin
         let table = reader.table(value, "`spin`")?;
         spin(reader, &table)
     });
-    let (spin, frame) = spin?;
-    Some((attitude?.unwrap_or(Rotor::IDENTITY), spin, frame))
+    let mut place = |name, quantity| {
+        reader.optional(table, name, |reader, value| formulas::vector(reader, value, quantity))
+    };
+    let (position, velocity) = (place("position", Quantity::Length), place("velocity", Quantity::Speed));
+    let (spin, spin_frame) = spin?;
+    Some(Initial {
+        attitude: attitude?.unwrap_or(Rotor::IDENTITY),
+        spin,
+        spin_frame,
+        center: Center { position: position?.unwrap_or_default(), velocity: velocity?.unwrap_or_default() },
+    })
 }
 
-fn attitude(reader: &mut Reader, table: &Table) -> Option<Rotor> {
+/// An attitude in any of its forms, in a table of this title.
+pub fn attitude(reader: &mut Reader, value: &Value, title: &'static str) -> Option<Rotor> {
+    if let DeValue::String(_) = value.get_ref() {
+        let components = formulas::components(reader, value, Grades::EVEN, "a rotor")?;
+        return checked(reader, value, Rotor::from_components(components));
+    }
+    let table = &reader.table(value, title)?;
     let form = reader.form(table, &ATTITUDES, &[])?;
     let value = table.get(form)?;
     let rotor = match form {

@@ -25,13 +25,23 @@
 //! acceleration = "9.81 m/s^2"
 //! pivot = ["0 m", 0, 0]      # in body coordinates; the origin if left out
 //!
+//! [torque]                   # optional: laws that add up, to gravity too
+//! damping = "0.1 /s"
+//! torque_body = "-k Ω_B"     # a formula; or torque_space
+//!
+//! [force]                    # optional: what moves the centre of mass
+//! drag = "0.1 N s/m"
+//!
 //! [run]
 //! duration = "10 s"
 //! samples = 1001             # or interval = "10 ms"
-//! method = "auto"
-//! step = "1 ms"              # these three optional
+//! drift_bound = 1e-8         # optional
+//!
+//! [method]                   # optional, as are all its fields; name (as method), step and rtol may stand in [run]
+//! name = "auto"
+//! step = "1 ms"
 //! rtol = 1e-10
-//! drift_bound = 1e-8
+//! atol = 1e-10
 //! ```
 //!
 //! A bare number is in SI units, a string carries its own. Everything wrong with a file is reported at
@@ -42,26 +52,30 @@ mod body;
 mod build;
 #[cfg(test)]
 mod file_tests;
+mod forces;
 mod formulas;
 mod initial;
 mod reader;
 mod run;
 #[cfg(test)]
 mod tests;
+mod torques;
 
+use crate::force::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
+pub use forces::Push;
 pub use initial::SpinFrame;
 use polhode_ga::diagnostic::Diagnostic;
-use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Rotor, Vector};
 use reader::{Reader, Table, Value};
-pub use run::Run;
+pub use run::{Choice, Run};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
+pub use torques::Law;
 
 /// A larger file is no scene.
 const LARGEST_FILE: u64 = 10_000_000;
@@ -69,7 +83,7 @@ const LARGEST_FILE: u64 = 10_000_000;
 const MOST_REPORTED: usize = 100;
 
 /// What a scene file says, in SI units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Scene {
     /// What the scene shows.
     pub title: Option<String>,
@@ -81,8 +95,14 @@ pub struct Scene {
     pub spin: Bivector,
     /// The axes of `spin`.
     pub spin_frame: SpinFrame,
-    /// Without it the body is free.
+    /// The centre of mass, or the fixed point if there is one, at the beginning.
+    pub center: Center,
+    /// Uniform gravity on a body held at a point.
     pub gravity: Option<Gravity>,
+    /// What else turns the body, in the order of the file.
+    pub torques: Vec<Law>,
+    /// What moves the centre of mass, in the order of the file.
+    pub forces: Vec<Push>,
     /// For how long, and how.
     pub run: Run,
     /// The file, from which paths in it are relative.
@@ -172,7 +192,8 @@ impl Scene {
 }
 
 fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
-    reader.only(root, &["title", "define", "body", "initial", "gravity", "run"]);
+    let tables = ["title", "define", "body", "initial", "gravity", "torque", "force", "run", "method"];
+    reader.only(root, &[&tables[..], &torques::FORMULAS.map(|(name, _)| name)].concat());
     reader.optional(root, "define", |reader, value| {
         let table = reader.table(value, "[define]")?;
         formulas::read(reader, &table);
@@ -183,15 +204,23 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
     let initial =
         section(reader, root, "initial", "[initial]").and_then(|table| initial::read(reader, &table));
     let gravity = reader.optional(root, "gravity", gravity);
-    let run = section(reader, root, "run", "[run]").and_then(|table| run::read(reader, &table));
-    let (attitude, spin, spin_frame) = initial?;
+    let torque = reader.optional(root, "torque", |reader, value| reader.table(value, "[torque]"));
+    let torques = torques::read(reader, root, torque.as_ref().and_then(Option::as_ref));
+    let forces = reader.optional(root, "force", forces::read);
+    let method = reader.optional(root, "method", |reader, value| reader.table(value, "[method]"));
+    let run = section(reader, root, "run", "[run]")
+        .and_then(|table| run::read(reader, &table, method.as_ref().and_then(Option::as_ref)));
+    let initial = initial?;
     Some(Scene {
         title: title?,
         body: body?,
-        attitude,
-        spin,
-        spin_frame,
+        attitude: initial.attitude,
+        spin: initial.spin,
+        spin_frame: initial.spin_frame,
+        center: initial.center,
         gravity: gravity?,
+        torques: torques?,
+        forces: forces?.unwrap_or_default(),
         run: run?,
         path: path.to_owned(),
         text: text.to_owned(),
@@ -212,11 +241,9 @@ fn gravity(reader: &mut Reader, value: &Value) -> Option<Gravity> {
     reader.only(&table, &["acceleration", "pivot"]);
     let acceleration =
         reader.field(&table, "acceleration", |reader, value| reader.quantity(value, Quantity::Acceleration));
-    let pivot = reader.optional(&table, "pivot", |reader, value| match value.get_ref() {
-        DeValue::String(_) => formulas::components(reader, value, Grades(0b0010), "a vector"),
-        _ => reader.quantities(value, Quantity::Length),
-    });
-    Some(Gravity { acceleration: acceleration?, pivot: Vector(pivot?.unwrap_or_default()) })
+    let pivot =
+        reader.optional(&table, "pivot", |reader, value| formulas::vector(reader, value, Quantity::Length));
+    Some(Gravity { acceleration: acceleration?, pivot: pivot?.unwrap_or_default() })
 }
 
 /// The bytes of a file that is small enough, or what is wrong with it.

@@ -27,7 +27,7 @@ impl<'t> Table<'t> {
     }
 
     /// Where the field's name stands.
-    fn name_span(&self, name: &str) -> Option<Range<usize>> {
+    pub fn name_span(&self, name: &str) -> Option<Range<usize>> {
         self.fields.get_key_value(name).map(|(key, _)| key.span())
     }
 }
@@ -286,6 +286,22 @@ impl Reader {
             }
         }
         complete.then_some(array)
+    }
+
+    /// An array of any length, each of its things read by `read`.
+    pub fn list<T>(
+        &mut self,
+        value: &Value,
+        what: &str,
+        mut read: impl FnMut(&mut Reader, &Value) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let Some(items) = value.get_ref().as_array() else {
+            self.wrong_type(value, &format!("an array of {what}"));
+            return None;
+        };
+        // All are read, so that all that is wrong is reported.
+        let read: Vec<Option<T>> = items.iter().map(|item| read(self, item)).collect();
+        read.into_iter().collect()
     }
 
     /// An array of N bare numbers.

@@ -1,8 +1,9 @@
-//! The table `[run]`: for how long, and how.
+//! The tables `[run]` and `[method]`: for how long, and how.
 
 use super::reader::{Reader, Table, Value};
 use crate::method::methods;
 use crate::units::Quantity;
+use toml::de::DeTable;
 
 const DEFAULT_SAMPLES: usize = 1001;
 const MOST_SAMPLES: usize = 10_000_000;
@@ -16,12 +17,8 @@ pub struct Run {
     pub duration: f64,
     /// How many states are kept, the first and the last included.
     pub samples: usize,
-    /// The name of one of [`methods`], or `auto`, which leaves the choice to the program.
-    pub method: String,
-    /// The integrator's step in seconds, if it is fixed.
-    pub step: Option<f64>,
-    /// The relative error that the integrator may make.
-    pub rtol: Option<f64>,
+    /// How to integrate.
+    pub choice: Choice,
     /// The largest relative drift of a conserved quantity that counts as success.
     pub drift_bound: Option<f64>,
 }
@@ -35,11 +32,25 @@ impl Run {
     }
 }
 
+/// What a scene says of the method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The name of one of [`methods`], or `auto`, which leaves the choice to the program.
+    pub method: String,
+    /// The integrator's step in seconds, if it is fixed.
+    pub step: Option<f64>,
+    /// The relative error that the integrator may make.
+    pub rtol: Option<f64>,
+    /// The absolute error that it may make, of rotors and of rates relative to the largest.
+    pub atol: Option<f64>,
+}
+
 fn method_names() -> Vec<&'static str> {
     std::iter::once("auto").chain(methods().map(|method| method.name())).collect()
 }
 
-pub fn read(reader: &mut Reader, table: &Table) -> Option<Run> {
+/// `[run]`, and `[method]` if there is one.
+pub fn read(reader: &mut Reader, table: &Table, method: Option<&Table>) -> Option<Run> {
     reader.only(table, &["duration", "samples", "interval", "method", "step", "rtol", "drift_bound"]);
     let duration = reader.field(table, "duration", duration);
     let samples = match reader.at_most_one(table, &["samples", "interval"]) {
@@ -47,21 +58,42 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<Run> {
         Some(_) => reader.field(table, "interval", |reader, value| interval(reader, value, duration)),
         None => Some(DEFAULT_SAMPLES),
     };
-    let method =
-        reader.optional(table, "method", |reader, value| reader.word(value, "method", &method_names()));
-    let step = reader.optional(table, "step", |reader, value| reader.positive(value, Quantity::Time));
-    let rtol = reader.optional(table, "rtol", rtol);
+    let choice = choice(reader, table, method);
     let drift_bound = reader.optional(table, "drift_bound", |reader, value| {
         let bound = reader.number(value)?;
         reader.check_positive(value, bound)
     });
-    Some(Run {
-        duration: duration?,
-        samples: samples?,
-        method: method?.unwrap_or("auto").to_owned(),
-        step: step?,
-        rtol: rtol?,
-        drift_bound: drift_bound?,
+    Some(Run { duration: duration?, samples: samples?, choice: choice?, drift_bound: drift_bound? })
+}
+
+/// The fields of `[run]` and `[method]` that choose how to integrate; none in both.
+fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Choice> {
+    let none = DeTable::new();
+    let own = Table { title: "[method]", span: run.span.clone(), fields: &none };
+    let own = method.unwrap_or(&own);
+    reader.only(own, &["name", "step", "rtol", "atol"]);
+    for (field, same) in [("name", "method"), ("step", "step"), ("rtol", "rtol")] {
+        if run.get(same).is_some()
+            && let Some(span) = own.name_span(field)
+        {
+            let message = format!("`{field}` of [method] is `{same}` of [run], give only one of them");
+            reader.report(span, message);
+        }
+    }
+    let word = |reader: &mut Reader, value: &Value| reader.word(value, "method", &method_names());
+    let mut from = |table: &Table, name| reader.optional(table, name, word);
+    let (name, older) = (from(own, "name"), from(run, "method"));
+    let mut step = |table: &Table| {
+        reader.optional(table, "step", |reader, value| reader.positive(value, Quantity::Time))
+    };
+    let steps = (step(own), step(run));
+    let mut part = |table: &Table, name| reader.optional(table, name, fraction);
+    let (rtol, older_rtol, atol) = (part(own, "rtol"), part(run, "rtol"), part(own, "atol"));
+    Some(Choice {
+        method: name?.or(older?).unwrap_or("auto").to_owned(),
+        step: steps.0?.or(steps.1?),
+        rtol: rtol?.or(older_rtol?),
+        atol: atol?,
     })
 }
 
@@ -74,12 +106,12 @@ fn duration(reader: &mut Reader, value: &Value) -> Option<f64> {
     None
 }
 
-fn rtol(reader: &mut Reader, value: &Value) -> Option<f64> {
-    let rtol = reader.number(value)?;
-    if 0.0 < rtol && rtol < 1.0 {
-        return Some(rtol);
+fn fraction(reader: &mut Reader, value: &Value) -> Option<f64> {
+    let fraction = reader.number(value)?;
+    if 0.0 < fraction && fraction < 1.0 {
+        return Some(fraction);
     }
-    reader.report(value.span(), format!("must be between 0 and 1, such as `1e-10`, found {rtol}"));
+    reader.report(value.span(), format!("must be between 0 and 1, such as `1e-10`, found {fraction}"));
     None
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Axes, Dependence, TorqueError};
 use crate::force::Center;
-use crate::formula::{Formula, Motion, Purpose};
+use crate::formula::{Formula, Motion, Purpose, given};
 use crate::phase::{Gyrostat, Phase};
 use crate::point::Point;
 use polhode_ga::formula::{Error, Given, Input, Names};
@@ -11,6 +11,11 @@ use polhode_ga::{Bivector, Rotor};
 /// A law that is a formula.
 #[derive(Clone, Debug)]
 pub struct FormulaTorque(Formula);
+
+/// The names that the motion gives to a formula.
+pub fn given_names() -> impl Iterator<Item = &'static str> {
+    given(Purpose::Torque(Axes::Body)).into_iter().map(|(name, _)| name)
+}
 
 impl FormulaTorque {
     /// Reads a formula whose value is the torque in these axes: see [`Formula::new`].
@@ -26,6 +31,16 @@ impl FormulaTorque {
     /// The formula as it was given.
     pub fn text(&self) -> &str {
         self.0.text()
+    }
+
+    /// The axes of its value.
+    pub fn axes(&self) -> Axes {
+        if self.0.purpose() == Purpose::Torque(Axes::Space) { Axes::Space } else { Axes::Body }
+    }
+
+    /// The names in it that the motion does not give, with their values.
+    pub fn known(&self) -> impl Iterator<Item = (&str, Given)> {
+        self.0.known()
     }
 
     pub(super) fn in_axes(self, frame: Rotor) -> FormulaTorque {

@@ -13,6 +13,11 @@ impl Gains {
         Gains(from_fn(|i| from_fn(|j| if i == j { along[i] } else { 0.0 })))
     }
 
+    /// Its factors along the axes.
+    pub fn along(&self) -> [f64; 3] {
+        from_fn(|i| self.0[i][i])
+    }
+
     /// The map seen from other axes: `B ↦ ~F G(F B ~F) F`. A multiple of 1 stays exactly what it is.
     pub fn in_axes(self, frame: Rotor) -> Gains {
         let Gains(g) = self;

@@ -39,6 +39,16 @@ impl Orbit {
         self.rate
     }
 
+    /// The eccentricity.
+    pub fn eccentricity(&self) -> f64 {
+        self.eccentricity
+    }
+
+    /// The mean anomaly at time 0, in rad.
+    pub fn anomaly(&self) -> f64 {
+        self.anomaly
+    }
+
     /// Whether the body keeps its distance.
     pub fn is_circular(&self) -> bool {
         self.eccentricity == 0.0

@@ -18,6 +18,8 @@ pub enum Kind {
 pub struct Table {
     /// The axes of the torques.
     pub axes: Axes,
+    /// How it is interpolated.
+    pub kind: Kind,
     times: Vec<f64>,
     torques: Vec<Bivector>,
     /// Derivatives at the times, of a spline.
@@ -59,7 +61,7 @@ impl Table {
             ));
         }
         let slopes = (kind == Kind::Cubic && times.len() > 2).then(|| spline_slopes(&times, &torques));
-        Ok(Table { axes, times, torques, slopes })
+        Ok(Table { axes, kind, times, torques, slopes })
     }
 
     /// The torque at a time between the first and the last.
@@ -91,11 +93,17 @@ impl Table {
         &self.times
     }
 
+    /// The torques at the times.
+    pub fn torques(&self) -> &[Bivector] {
+        &self.torques
+    }
+
     /// The torques turned by a rotor.
     pub(crate) fn turned(&self, rotor: Rotor) -> Table {
         let turn = |rows: &[Bivector]| rows.iter().map(|row| rotor.apply_bivector(*row)).collect();
         Table {
             axes: self.axes,
+            kind: self.kind,
             times: self.times.clone(),
             torques: turn(&self.torques),
             slopes: self.slopes.as_deref().map(turn),

@@ -3,8 +3,8 @@
 //! A quantity is a number and unit factors, joined by a space, `*`, `·` or `/`; `/` divides by the one
 //! factor after it; a factor may carry a power: `s^-2`, `s**2`, `s²`. The value comes out in SI units.
 //!
-//! Angle is no SI dimension, since a radian is 1. Here it is kept as a fourth dimension beside length,
-//! mass and time, because a rate of `5 1/s` may mean 5 rad/s or 5 turns per second: we ask.
+//! Angle is no SI dimension, since a radian is 1. Here it is kept as a dimension beside length, mass, time
+//! and current, because a rate of `5 1/s` may mean 5 rad/s or 5 turns per second: we ask.
 //!
 //! Powers of ten (prefixes, grams, centimetres) never touch floating point: they move the decimal
 //! exponent of the number's text, so that `7.85 g/cm^3` is exactly the `7850.0` of a source file.
@@ -20,7 +20,7 @@ pub use within::{Within, WithinError, quantities};
 use factor::{Factor, Problem};
 use polhode_ga::diagnostic::quote;
 use std::fmt;
-use table::{ANGLE, Dimension, FREQUENCY, LENGTH, MASS, TIME, find_unit, near_unit};
+use table::{Dimension, FREQUENCY, find_unit, near_unit};
 
 /// What a number measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,11 +34,33 @@ pub enum Quantity {
     Density,
     Acceleration,
     MomentOfInertia,
+    Speed,
+    Force,
+    Torque,
+    AngularMomentum,
+    /// Of damping: the part that is lost in a second.
+    DecayRate,
+    /// Torque per angle.
+    TorsionalStiffness,
+    /// Torque per angular rate.
+    RotaryDamping,
+    /// Torque per square of an angular rate.
+    QuadraticRotaryDamping,
+    /// Force per length.
+    Stiffness,
+    /// Force per speed.
+    Drag,
+    /// Force per square of a speed.
+    QuadraticDrag,
+    /// G M.
+    GravitationalParameter,
+    MagneticDipole,
+    MagneticField,
 }
 
 impl Quantity {
     /// Every quantity, in the order of the enum.
-    pub const ALL: [Quantity; 8] = [
+    pub const ALL: [Quantity; 22] = [
         Quantity::Length,
         Quantity::Mass,
         Quantity::Time,
@@ -47,54 +69,85 @@ impl Quantity {
         Quantity::Density,
         Quantity::Acceleration,
         Quantity::MomentOfInertia,
+        Quantity::Speed,
+        Quantity::Force,
+        Quantity::Torque,
+        Quantity::AngularMomentum,
+        Quantity::DecayRate,
+        Quantity::TorsionalStiffness,
+        Quantity::RotaryDamping,
+        Quantity::QuadraticRotaryDamping,
+        Quantity::Stiffness,
+        Quantity::Drag,
+        Quantity::QuadraticDrag,
+        Quantity::GravitationalParameter,
+        Quantity::MagneticDipole,
+        Quantity::MagneticField,
     ];
+
+    /// Its unit in SI, which a bare number has; one value as a person might write it; its powers of metre,
+    /// kilogram, second, radian and ampere; and its name with the article.
+    fn row(self) -> (&'static str, &'static str, [i32; 5], &'static str) {
+        match self {
+            Quantity::Length => ("m", "5 cm", [1, 0, 0, 0, 0], "a length"),
+            Quantity::Mass => ("kg", "2 kg", [0, 1, 0, 0, 0], "a mass"),
+            Quantity::Time => ("s", "10 s", [0, 0, 1, 0, 0], "a time"),
+            Quantity::Angle => ("rad", "30 deg", [0, 0, 0, 1, 0], "an angle"),
+            Quantity::AngularRate => ("rad/s", "5 rev/s", [0, 0, -1, 1, 0], "an angular rate"),
+            Quantity::Density => ("kg/m^3", "7.85 g/cm^3", [-3, 1, 0, 0, 0], "a density"),
+            Quantity::Acceleration => ("m/s^2", "9.81 m/s^2", [1, 0, -2, 0, 0], "an acceleration"),
+            Quantity::MomentOfInertia => ("kg m^2", "3 kg m^2", [2, 1, 0, 0, 0], "a moment of inertia"),
+            Quantity::Speed => ("m/s", "3 m/s", [1, 0, -1, 0, 0], "a speed"),
+            Quantity::Force => ("N", "2 N", [1, 1, -2, 0, 0], "a force"),
+            Quantity::Torque => ("N m", "2 N m", [2, 1, -2, 0, 0], "a torque"),
+            Quantity::AngularMomentum => ("kg m^2/s", "4 N m s", [2, 1, -1, 0, 0], "an angular momentum"),
+            Quantity::DecayRate => ("1/s", "0.1 /s", [0, 0, -1, 0, 0], "a rate of decay"),
+            Quantity::TorsionalStiffness => ("N m", "2 N m", [2, 1, -2, 0, 0], "a torque per angle"),
+            Quantity::RotaryDamping => ("N m s", "0.1 N m s", [2, 1, -1, 0, 0], "a torque per angular rate"),
+            Quantity::QuadraticRotaryDamping => {
+                ("N m s^2", "0.1 N m s^2", [2, 1, 0, 0, 0], "a torque per squared angular rate")
+            }
+            Quantity::Stiffness => ("N/m", "20 N/m", [0, 1, -2, 0, 0], "a force per length"),
+            Quantity::Drag => ("N s/m", "0.1 N s/m", [0, 1, -1, 0, 0], "a force per speed"),
+            Quantity::QuadraticDrag => {
+                ("N s^2/m^2", "0.1 N s^2/m^2", [-1, 1, 0, 0, 0], "a force per squared speed")
+            }
+            Quantity::GravitationalParameter => {
+                ("m^3/s^2", "398600.4418 km^3/s^2", [3, 0, -2, 0, 0], "a gravitational parameter")
+            }
+            Quantity::MagneticDipole => ("A m^2", "0.2 A m^2", [2, 0, 0, 0, 1], "a magnetic dipole"),
+            Quantity::MagneticField => ("T", "30 uT", [0, 1, -2, 0, -1], "a magnetic field"),
+        }
+    }
 
     /// Its unit in SI, which a bare number has.
     pub fn si_unit(self) -> &'static str {
-        match self {
-            Quantity::Length => "m",
-            Quantity::Mass => "kg",
-            Quantity::Time => "s",
-            Quantity::Angle => "rad",
-            Quantity::AngularRate => "rad/s",
-            Quantity::Density => "kg/m^3",
-            Quantity::Acceleration => "m/s^2",
-            Quantity::MomentOfInertia => "kg m^2",
-        }
+        self.row().0
     }
 
     /// One such value as a person might write it.
     pub fn example(self) -> &'static str {
-        match self {
-            Quantity::Length => "5 cm",
-            Quantity::Mass => "2 kg",
-            Quantity::Time => "10 s",
-            Quantity::Angle => "30 deg",
-            Quantity::AngularRate => "5 rev/s",
-            Quantity::Density => "7.85 g/cm^3",
-            Quantity::Acceleration => "9.81 m/s^2",
-            Quantity::MomentOfInertia => "3 kg m^2",
-        }
+        self.row().1
     }
 
-    fn dimension(self) -> Dimension {
-        match self {
-            Quantity::Length => LENGTH,
-            Quantity::Mass => MASS,
-            Quantity::Time => TIME,
-            Quantity::Angle => ANGLE,
-            Quantity::AngularRate => Dimension([0, 0, -1, 1]),
-            Quantity::Density => Dimension([-3, 1, 0, 0]),
-            Quantity::Acceleration => Dimension([1, 0, -2, 0]),
-            Quantity::MomentOfInertia => Dimension([2, 1, 0, 0]),
-        }
+    /// Whether a value of this dimension is one: what is per angle may be so in words, `N m/rad`, or not.
+    fn measures(self, dimension: Dimension) -> bool {
+        let own = self.row().2;
+        let [.., angle, _] = dimension.0;
+        let least = match self {
+            Quantity::TorsionalStiffness | Quantity::RotaryDamping => -1,
+            Quantity::QuadraticRotaryDamping => -2,
+            _ => own[3],
+        };
+        let [m, kg, s, _, a] = own;
+        (least == angle || own[3] == angle) && dimension.0 == [m, kg, s, angle, a]
     }
 }
 
 impl fmt::Display for Quantity {
     /// With its article: `an angle`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.dimension().name())
+        f.write_str(self.row().3)
     }
 }
 
@@ -186,7 +239,7 @@ pub fn near(word: &str) -> Option<String> {
 fn factor(text: &str, unit: &str, expected: Quantity) -> Result<Factor, UnitError> {
     let text = text.to_owned();
     match Factor::parse(unit) {
-        Ok(factor) if factor.dimension == expected.dimension() => Ok(factor),
+        Ok(factor) if expected.measures(factor.dimension) => Ok(factor),
         Ok(factor) => Err(UnitError::WrongQuantity { text, found: factor.dimension.name(), expected }),
         Err(Problem::UnknownUnit(unit)) => {
             Err(UnitError::UnknownUnit { text, near: near_unit(&unit), unit, expected })

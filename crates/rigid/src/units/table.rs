@@ -3,39 +3,42 @@
 use polhode_ga::diagnostic::nearest;
 use std::f64::consts::{PI, TAU};
 
-/// Powers of metre, kilogram, second and radian.
+/// Powers of metre, kilogram, second, radian and ampere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Dimension(pub [i32; 4]);
+pub struct Dimension(pub [i32; 5]);
 
-pub const LENGTH: Dimension = Dimension([1, 0, 0, 0]);
-pub const MASS: Dimension = Dimension([0, 1, 0, 0]);
-pub const TIME: Dimension = Dimension([0, 0, 1, 0]);
-pub const ANGLE: Dimension = Dimension([0, 0, 0, 1]);
-pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0]);
+pub const LENGTH: Dimension = Dimension([1, 0, 0, 0, 0]);
+pub const MASS: Dimension = Dimension([0, 1, 0, 0, 0]);
+pub const TIME: Dimension = Dimension([0, 0, 1, 0, 0]);
+pub const ANGLE: Dimension = Dimension([0, 0, 0, 1, 0]);
+pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0, 0]);
 
 impl Dimension {
     /// What a quantity of this dimension is called, with its article.
     pub fn name(self) -> &'static str {
         match self.0 {
-            [0, 0, 0, 0] => "a pure number",
-            [1, 0, 0, 0] => "a length",
-            [2, 0, 0, 0] => "an area",
-            [3, 0, 0, 0] => "a volume",
-            [0, 1, 0, 0] => "a mass",
-            [0, 0, 1, 0] => "a time",
-            [0, 0, -1, 0] => "a frequency",
-            [0, 0, 0, 1] => "an angle",
-            [0, 0, -1, 1] => "an angular rate",
-            [0, 0, -2, 1] => "an angular acceleration",
-            [1, 0, -1, 0] => "a speed",
-            [1, 0, -2, 0] => "an acceleration",
-            [-3, 1, 0, 0] => "a density",
-            [2, 1, 0, 0] => "a moment of inertia",
-            [1, 1, -1, 0] => "a momentum",
-            [2, 1, -1, 0] => "an angular momentum",
-            [1, 1, -2, 0] => "a force",
-            [2, 1, -2, 0] => "a torque or an energy",
-            [-1, 1, -2, 0] => "a pressure",
+            [0, 0, 0, 0, 0] => "a pure number",
+            [1, 0, 0, 0, 0] => "a length",
+            [2, 0, 0, 0, 0] => "an area",
+            [3, 0, 0, 0, 0] => "a volume",
+            [0, 1, 0, 0, 0] => "a mass",
+            [0, 0, 1, 0, 0] => "a time",
+            [0, 0, -1, 0, 0] => "a frequency",
+            [0, 0, 0, 1, 0] => "an angle",
+            [0, 0, -1, 1, 0] => "an angular rate",
+            [0, 0, -2, 1, 0] => "an angular acceleration",
+            [1, 0, -1, 0, 0] => "a speed",
+            [1, 0, -2, 0, 0] => "an acceleration",
+            [-3, 1, 0, 0, 0] => "a density",
+            [2, 1, 0, 0, 0] => "a moment of inertia",
+            [1, 1, -1, 0, 0] => "a momentum",
+            [2, 1, -1, 0, 0] => "an angular momentum",
+            [1, 1, -2, 0, 0] => "a force",
+            [2, 1, -2, 0, 0] => "a torque or an energy",
+            [-1, 1, -2, 0, 0] => "a pressure",
+            [0, 0, 0, 0, 1] => "an electric current",
+            [2, 0, 0, 0, 1] => "a magnetic dipole",
+            [0, 1, -2, 0, -1] => "a magnetic field",
             _ => "another quantity",
         }
     }
@@ -63,15 +66,17 @@ const fn other(name: &'static str, dimension: Dimension, numerator: f64, denomin
     Unit { name, dimension, ten: 0, numerator, denominator, prefixes: false }
 }
 
-const UNITS: [Unit; 26] = [
+const UNITS: [Unit; 28] = [
     metric("m", LENGTH, 0),
     metric("g", MASS, -3),
     metric("s", TIME, 0),
     metric("rad", ANGLE, 0),
-    metric("N", Dimension([1, 1, -2, 0]), 0),
-    metric("J", Dimension([2, 1, -2, 0]), 0),
-    metric("Pa", Dimension([-1, 1, -2, 0]), 0),
+    metric("N", Dimension([1, 1, -2, 0, 0]), 0),
+    metric("J", Dimension([2, 1, -2, 0, 0]), 0),
+    metric("Pa", Dimension([-1, 1, -2, 0, 0]), 0),
     metric("Hz", FREQUENCY, 0),
+    metric("A", Dimension([0, 0, 0, 0, 1]), 0),
+    metric("T", Dimension([0, 1, -2, 0, -1]), 0),
     other("ft", LENGTH, 0.3048, 1.0),
     other("inch", LENGTH, 0.0254, 1.0),
     other("au", LENGTH, 149_597_870_700.0, 1.0),
@@ -89,9 +94,9 @@ const UNITS: [Unit; 26] = [
     other("arcsec", ANGLE, PI, 180.0 * 3600.0),
     other("rev", ANGLE, TAU, 1.0),
     other("turn", ANGLE, TAU, 1.0),
-    other("rpm", Dimension([0, 0, -1, 1]), TAU, 60.0),
+    other("rpm", Dimension([0, 0, -1, 1, 0]), TAU, 60.0),
     // The 1 of `1/s`.
-    other("1", Dimension([0; 4]), 1.0, 1.0),
+    other("1", Dimension([0; 5]), 1.0, 1.0),
 ];
 
 /// Both micro signs: U+00B5 of keyboards and U+03BC of the Greek alphabet.
@@ -109,7 +114,7 @@ const PREFIXES: [(&str, i32); 10] = [
 ];
 
 /// What people write instead of a unit's symbol.
-const OTHER_NAMES: [(&str, &str); 22] = [
+const OTHER_NAMES: [(&str, &str); 24] = [
     ("meter", "m"),
     ("metre", "m"),
     ("foot", "ft"),
@@ -131,6 +136,8 @@ const OTHER_NAMES: [(&str, &str); 22] = [
     ("degree", "deg"),
     ("revolution", "rev"),
     ("hertz", "Hz"),
+    ("ampere", "A"),
+    ("tesla", "T"),
     ("Nm", "N m"),
 ];
 

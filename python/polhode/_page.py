@@ -1,0 +1,269 @@
+"""The summary of a run as a page for people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+# How wide the names of rows are.
+_COLUMNS = 18
+
+Row = Callable[[str, str], None]
+
+# (what is shorter is told so, seconds in the unit, its name)
+_SECONDS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"), (6e7, 86400.0, "d"))
+
+QUANTITIES = {
+    "energy": ("energy", "J"),
+    "angular_momentum": ("|L|", "kg m²/s"),
+    "vertical_angular_momentum": ("L about e3", "kg m²/s"),
+    "axial_angular_momentum": ("L about the field", "kg m²/s"),
+    "spin_angular_momentum": ("L about its axis", "kg m²/s"),
+    "kovalevskaya_integral": ("Kovalevskaya's K", "rad⁴/s⁴"),
+    "goryachev_chaplygin_integral": ("Goryachev's G", "rad³/s³"),
+    "jacobi_integral": ("Jacobi's integral", "J"),
+}
+
+# Name and unit of each argument of a law.
+_ARGUMENTS = {
+    "heavy": (("c =", "N m"),),
+    "gravity_gradient": (("n =", "rad/s"), ("e =", ""), ("M0 =", "rad")),
+    "constant_body": (("", "N m in the body"),),
+    "constant_space": (("", "N m in space"),),
+    "damping": (("g =", "1/s"),),
+    "quadratic_damping": (("k =", "N m s²"),),
+    "viscous_damping": (("d =", "N m s"),),
+    "magnetic": (("dipole", "A m²"), ("field", "T")),
+    "torsion_spring": (("k =", "N m"), ("rest", "")),
+    "gyrostat": (("h =", "kg m²/s"),),
+    "pd_control": (("kp =", "N m"), ("kd =", "N m s"), ("target", "")),
+    "larmor": (("b =", "rad/s"),),
+}
+
+
+def as_text(summary: dict[str, Any]) -> str:
+    """Return the summary as a page for a terminal."""
+    body, motion, run = summary["body"], summary["motion"], summary["run"]
+    lines = ["".join(c if c.isprintable() else "\ufffd" for c in summary["title"]), ""]
+
+    def row(name: str, value: str) -> None:
+        lines.append(f"  {name:<{_COLUMNS - 1}} {value}")
+
+    lines.append("Body")
+    free = motion["kind"] in ("free", "damped")
+    ignored = "free motion ignores it" if free else "the motion does not depend on it"
+    row("mass", f"not given, and {ignored}" if body["mass"] is None else f"{_number(body['mass'])} kg")
+    row("centre of mass", f"{_listed(body['center_of_mass'])} m")
+    about = " about the fixed point" if body["held"] else ""
+    row("principal moments", f"{_listed(body['principal_moments'])} kg m²{about}")
+    row("their ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"]))
+    if summary["torques"] or summary["forces"]:
+        lines.append("Acting")
+        for law in summary["torques"]:
+            row(*_law(law))
+        for force in summary["forces"]:
+            row("force", force)
+    lines.append("Motion")
+    _KINDS[motion["kind"]](motion, row)
+    _changes(motion, row)
+    lines.append("Conserved")
+    for name, entry in summary["conserved"].items():
+        label, unit = QUANTITIES[name]
+        row(label, f"{_number(entry['value'], 10)} {unit}, drift {entry['drift']:.1e}")
+    row("|R| − 1", f"{run['rotor_norm_drift']:.1e}")
+    lines.append("Run")
+    _run(run, motion["kind"], row)
+    return "\n".join(lines)
+
+
+def _law(law: dict[str, Any]) -> tuple[str, str]:
+    """Return the name and the arguments of a torque law; a formula as it stands in the scene."""
+    name, arguments = law["law"], law["arguments"]
+    if name == "formula":
+        return f"torque_{arguments[1]}", " ".join(law["formula"].split())
+    if name not in _ARGUMENTS:
+        return name, law["call"].partition("(")[2].removesuffix(")")
+    told = []
+    for (label, unit), argument in zip(_ARGUMENTS[name], arguments, strict=True):
+        if isinstance(argument, list):
+            equal = len(set(argument)) == 1 and name in ("viscous_damping", "pd_control")
+            value = _number(argument[0]) if equal else _listed(argument)
+        else:
+            value = _number(argument)
+        told.append(" ".join(part for part in (label, value, unit) if part))
+    return name, "; ".join(told)
+
+
+def _run(run: dict[str, Any], kind: str, row: Row) -> None:
+    row("duration", f"{_time(run['duration'])}, {run['samples']} output times")
+    if run["method"] == "exact":
+        elliptic = kind in ("free", "damped", "lagrange")
+        row("method", "exact solution in elliptic functions" if elliptic else "exact solution")
+    else:
+        row("method", f"{run['method']}, {run['steps']} steps of at most {_number(run['step'])} s")
+        row("evaluations", f"{run['evaluations']} of the torques")
+    if run["error_estimate"] is not None:
+        row("error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate")
+    if not run["drift_within_bound"]:
+        row("FAILED", f"a conserved quantity drifted by more than {run['drift_bound']:g}")
+
+
+# --- the kinds of motion
+
+
+def _free(motion: dict[str, Any], row: Row) -> None:
+    axis = motion["axis"]
+    words = {
+        "short-axis mode": f"short-axis mode: ω circles axis {axis}, that of the largest moment",
+        "long-axis mode": f"long-axis mode: ω circles axis {axis}, that of the smallest moment",
+    }
+    row("regime", words.get(motion["regime"], motion["regime"]))
+    periodic = motion["period"] is not None
+    if periodic:
+        row("modulus k", _number(motion["modulus"], 10))
+        row("period of ω", f"{_time(motion['period'])} in the body")
+        row("precession", f"{_time(motion['precession_period'])} for one turn about L, on average")
+        turns = motion["phase_per_period"] / (2 * np.pi)
+        row("phase", f"{_number(turns, 8)} turns about L in a period")
+    if motion.get("wobbles_per_turn") is not None:
+        row("wobbles", f"{_number(motion['wobbles_per_turn'], 8)} for each turn about axis {axis}")
+    if periodic:
+        row("angle to L", f"{_angles(motion['wobble_min'], motion['wobble_max'])} from axis {axis}")
+    if motion["wobble_period"] is not None:
+        row("small wobbles", f"would take {_time(motion['wobble_period'])}")
+    if motion["flip_time"] is not None and motion["modulus"] > 0.9:
+        text = f"every {_time(motion['flip_time'])} about the middle axis (half a period)"
+        found = motion.get("reversals")
+        if found:
+            text += f"; seen: {found['count']}, every {_time(found['mean_interval'])}"
+        row("flips", text)
+    if "closed_form" in motion:
+        difference = motion["closed_form"]["largest_rotor_difference"]
+        row("closed form", f"handout eq. (4.35): the rotor differs by at most {difference:.1e}")
+
+
+def _damped(motion: dict[str, Any], row: Row) -> None:
+    row("damping", "the motion of a free body, more and more slowly")
+    if motion["halved_after"] is not None:
+        row("half of ω", f"after {_time(motion['halved_after'])}, and again")
+    _free(motion, row)
+    if motion["period"] is not None:
+        row("", "(periods are those at the start)")
+
+
+def _gyrostat(motion: dict[str, Any], row: Row) -> None:
+    row("regime", motion["regime"])
+    share = np.linalg.norm(motion["wheel"]) / motion["momentum_size"] if motion["momentum_size"] else 0.0
+    if share:
+        row("wheel", f"{_number(100 * share, 4)} % of |L|")
+    if "from_wheel" in motion:
+        row("angle to L", f"{_angles(*motion['from_wheel'])} from the wheel's axis")
+
+
+def _lagrange(motion: dict[str, Any], row: Row) -> None:
+    row("regime", f"symmetric top under gravity, {motion['regime']}")
+    _tilt(motion, row)
+    if motion["nutation_period"] is not None:
+        row("nutation", f"{_time(motion['nutation_period'])} from low to low")
+    if motion["precession_rate"] is not None:
+        row(
+            "precession",
+            f"{_number(motion['precession_rate'])} rad/s on average, "
+            f"{_time(abs(motion['precession_period']))} for a turn",
+        )
+        if (fast := motion["fast_top_precession_rate"]) is not None:
+            off = motion["precession_rate"] / fast - 1
+            row("fast-top formula", f"{_number(fast)} rad/s, m g l/(i3 ω3); the average is off by {off:+.2e}")
+    able = "stable" if motion["sleeps"] else "not stable"
+    row(
+        "upright",
+        f"{able} with its spin of {_number(motion['spin'])} rad/s; "
+        f"from {_number(motion['critical_spin'])} rad/s on it sleeps",
+    )
+
+
+def _heavy(motion: dict[str, Any], row: Row) -> None:
+    row("regime", motion["regime"])
+    if "tilt_min" not in motion:
+        row("", "held at its centre of mass")
+        return
+    _tilt(motion, row)
+    rate = motion["precession_rate"]
+    if rate is None:
+        row("precession", "not followed: the output times are too far apart")
+    else:
+        row("precession", f"{_number(rate)} rad/s on average")
+
+
+def _tilt(motion: dict[str, Any], row: Row) -> None:
+    row("m g l", f"{_number(motion['mgl'])} N m")
+    row("tilt from up", _angles(motion["tilt_min"], motion["tilt_max"]))
+
+
+def _satellite(motion: dict[str, Any], row: Row) -> None:
+    row("regime", motion["regime"])
+    if motion["orbital_period"] is not None:
+        row("orbit", f"{_time(motion['orbital_period'])}, eccentricity {_number(motion['eccentricity'])}")
+    row("long axis", f"{_angles(*motion['from_vertical'])} from the vertical")
+    row("short axis", f"{_angles(*motion['from_normal'])} from the orbit's normal")
+    if motion["libration_period"] is not None:
+        row("libration", f"{_time(motion['libration_period'])} for a swing in the plane, on average")
+    if motion["small_libration_period"] is not None:
+        row("small librations", f"would take {_time(motion['small_libration_period'])} in the plane")
+
+
+def _torqued(motion: dict[str, Any], row: Row) -> None:
+    row("regime", motion["regime"])
+
+
+_KINDS = {
+    "free": _free,
+    "damped": _damped,
+    "gyrostat": _gyrostat,
+    "lagrange": _lagrange,
+    "heavy": _heavy,
+    "satellite": _satellite,
+    "torqued": _torqued,
+}
+
+
+def _changes(motion: dict[str, Any], row: Row) -> None:
+    """Tell how rate, momentum, attitude and place were at the start and at the end."""
+    for key, name, unit in (("rate", "|ω|", "rad/s"), ("angular_momentum", "|L|", "kg m²/s")):
+        if "changes" in motion:
+            ends = motion["changes"][key]
+            row(name, f"{_number(ends['start'])} {unit} at the start, {_number(ends['end'])} at the end")
+    if "from_target" in motion:
+        degrees = [f"{_number(float(np.degrees(motion['from_target'][k])))}°" for k in ("start", "end")]
+        row("from the target", f"{degrees[0]} at the start, {degrees[1]} at the end")
+    for key, unit in (("position", "m"), ("velocity", "m/s")):
+        if key in motion:
+            row(key, f"({_listed(motion[key]['start'])}) to ({_listed(motion[key]['end'])}) {unit}")
+
+
+# --- numbers
+
+
+def _number(x: float, digits: int = 6) -> str:
+    return f"{x:.{digits}g}"
+
+
+def _listed(values: list[float]) -> str:
+    """Return components; what is rounding beside the largest reads 0."""
+    floor = 1e-12 * max(abs(x) for x in values)
+    return ", ".join(_number(x if abs(x) > floor else 0.0) for x in values)
+
+
+def _angles(low: float, high: float) -> str:
+    """Return a range of angles in degrees, one where both read the same."""
+    first, last = (f"{np.degrees(x):.6g}°" for x in (low, high))
+    return first if first == last else f"{first} to {last}"
+
+
+def _time(seconds: float) -> str:
+    for below, unit, name in _SECONDS:
+        if abs(seconds) < below:
+            return f"{_number(seconds / unit)} {name}"
+    return f"{_number(seconds / (365.25 * 86400))} yr"

@@ -1,0 +1,114 @@
+"""The scenes in examples/: each runs, prints its page, and tells the number that it is there for."""
+
+import numpy as np
+import pytest
+
+from command_line import EXAMPLES, polhode, summary_of
+
+SCENES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
+SIDEREAL_DAY = 86164.0905
+
+
+def period_of_pendulum(amplitude):
+    """The period over that of small swings, by the arithmetic-geometric mean."""
+    x, y = 1.0, np.cos(amplitude / 2)
+    while abs(x - y) > 1e-15:
+        x, y = (x + y) / 2, np.sqrt(x * y)
+    return 1 / x
+
+
+def test_there_are_examples():
+    assert len(SCENES) == 11
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_examples_check_and_print_a_page(name):
+    assert polhode("check", EXAMPLES / f"{name}.toml").returncode == 0
+    done = polhode("run", EXAMPLES / f"{name}.toml")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for section in ("Body", "Motion", "Conserved", "Run", "Nothing was written"):
+        assert f"\n{section}" in done.stdout
+    assert (EXAMPLES / f"{name}.toml").read_text().startswith("# ")
+
+
+def test_the_nutating_top_draws_loops():
+    result = summary_of(EXAMPLES / "nutating-top.toml")
+    motion = result["motion"]
+    assert (motion["kind"], motion["regime"]) == ("lagrange", "nutating with loops")
+    # With moments (3, 3, 1), c = 19.62 N m: the bounds are zeros of u'² = (1 − u²)(α − βu) − (b − au)².
+    u, a = 0.5, 15 / 3
+    w = np.array([0.0, -1.2, 15.0])
+    up = np.array([0.0, np.sin(np.pi / 3), np.cos(np.pi / 3)])
+    b = (np.array([3, 3, 1]) * w) @ up / 3
+    beta = 2 * 19.62 / 3
+    alpha = w[0] ** 2 + w[1] ** 2 + beta * u
+    roots = np.sort(np.roots([beta, -(alpha + a * a), 2 * a * b - beta, alpha - b * b]))
+    tilts = np.arccos(roots[:2])[::-1]
+    np.testing.assert_allclose([motion["tilt_min"], motion["tilt_max"]], tilts, rtol=1e-9)
+    assert set(result["conserved"]) == {
+        "energy",
+        "vertical_angular_momentum",
+        "spin_angular_momentum",
+    }
+    assert result["torques"][0]["law"] == "heavy"
+
+
+def test_the_satellite_swings_as_a_pendulum():
+    result = summary_of(EXAMPLES / "gravity-gradient.toml")
+    motion = result["motion"]
+    assert motion["regime"] == "librating about the vertical"
+    small = 5677 / np.sqrt(3 * (1150 - 50) / 1200)
+    assert motion["small_libration_period"] == pytest.approx(small, rel=1e-12)
+    # θ'' = −3/2 n² (b − a)/c sin 2θ: a pendulum at twice the angle. Crossings lie between samples 30 s apart.
+    exact = small * period_of_pendulum(2 * np.radians(20))
+    assert motion["libration_period"] == pytest.approx(exact, rel=2e-5)
+    assert motion["from_vertical"][1] == pytest.approx(np.radians(20), abs=1e-9)
+    assert motion["from_normal"][1] < 1e-9
+    assert result["conserved"]["jacobi_integral"]["drift"] < 1e-12
+
+
+def test_kovalevskayas_integral_is_conserved():
+    result = summary_of(EXAMPLES / "kovalevskaya.toml")
+    assert result["motion"]["regime"] == "Kovalevskaya's top about a fixed point"
+    # (ω1² − ω2² − c1 γ1/i3)² + (2 ω1 ω2 − c1 γ2/i3)² about the axes of the file, γ = (−sin 40°, 0, cos 40°).
+    gamma = np.array([-np.sin(np.radians(40)), 0.0])
+    k = (1 - 4 - 3 * gamma[0]) ** 2 + (4 - 3 * gamma[1]) ** 2
+    told = result["conserved"]["kovalevskaya_integral"]
+    assert told["value"] == pytest.approx(k, rel=1e-12)
+    assert told["drift"] < 1e-11
+
+
+def test_the_wheel_holds_the_middle_axis(tmp_path):
+    motion = summary_of(EXAMPLES / "dual-spin.toml")["motion"]
+    assert motion["kind"] == "gyrostat"
+    assert motion["from_wheel"][1] < np.radians(15)
+    # Without the wheel L comes to the opposite end of the middle axis.
+    text = (EXAMPLES / "dual-spin.toml").read_text().replace("25 N m s", "0.001 N m s")
+    (tmp_path / "a.toml").write_text(text)
+    assert summary_of(tmp_path / "a.toml")["motion"]["from_wheel"][1] > np.radians(150)
+
+
+def test_feynmans_plate_wobbles_twice_per_turn():
+    motion = summary_of(EXAMPLES / "feynman-plate.toml")["motion"]
+    # i3/i1 over the cosine of the angle from the axis to L, tan = 0.01 i1/i3.
+    assert motion["wobbles_per_turn"] == pytest.approx(2 * np.hypot(1, 0.005), rel=1e-12)
+    assert motion["wobbles_per_turn"] == pytest.approx(2.000025, abs=1e-9)
+    assert "2.000025 for each turn" in polhode("run", EXAMPLES / "feynman-plate.toml").stdout
+
+
+def test_the_earths_period_is_eulers():
+    motion = summary_of(EXAMPLES / "earth.toml")["motion"]
+    day = SIDEREAL_DAY / np.cos(np.radians(0.3 / 3600))
+    assert motion["period"] / day == pytest.approx(1 / 0.00327379 - 1, rel=1e-9)
+    assert motion["period"] / SIDEREAL_DAY == pytest.approx(304.5, abs=0.05)
+
+
+def test_the_coils_take_the_spin_away():
+    result = summary_of(EXAMPLES / "detumbling.toml")
+    rate = result["motion"]["changes"]["rate"]
+    assert rate["start"] == pytest.approx(np.radians(np.sqrt(77)), rel=1e-12)
+    assert rate["end"] < 0.1 * rate["start"]
+    (law,) = result["torques"]
+    assert law["formula"] == "-k (Ω_B·b(R, 2*n*t)) ∧ b(R, 2*n*t)"
+    assert result["conserved"] == {}

@@ -45,7 +45,8 @@ impl DampedTop {
         omega: Bivector,
         damping: f64,
     ) -> Result<DampedTop, SimulateError> {
-        if !damping.is_finite() {
+        // Products in twice the precision overflow early.
+        if damping.is_nan() || damping.abs() > 1e150 {
             return Err(SimulateError::BadValue { what: "the damping g", value: damping });
         }
         let free = FreeMotion::new(inertia, rotor, omega)?;

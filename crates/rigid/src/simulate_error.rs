@@ -80,6 +80,7 @@ impl fmt::Display for SimulateError {
                 "{what} is {value}; it must be finite{}",
                 match *what {
                     "step" | "rtol" => " and positive",
+                    "the damping g" => " and below 1e150",
                     _ => "",
                 }
             ),

@@ -133,7 +133,7 @@ fn what_is_wrong_with_a_law_has_its_place() {
         ("torque_body = 'e1 + R'", "6:16: "),
         ("torque_body = '3 kg (e1∧e2'", "6:21: "),
         ("torque_body = '~R e3 R'", "6:16: a torque is a bivector, grade 2; this has the grade 1: "),
-        ("torque_body = 'Ω = Ω'", "6:16: an equation has no value; write one side, the torque"),
+        ("torque_body = 'Ω = Ω'", "6:16: an equation has no value; write one side, which is a torque"),
         ("torque_body = '2 t Ω'", "6:18: `t` is a unit and a name here; for the name write `2*t`"),
         ("torque_space = 3", "6:16: expected a string, found an integer"),
     ];

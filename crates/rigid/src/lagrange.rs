@@ -118,7 +118,15 @@ impl LagrangeTop {
             return Ok(LagrangeTop { axes, start, form: Form::Steady(motion) });
         }
         let orbit = Orbit::new(&start).ok_or(SimulateError::NearUpright)?;
-        Ok(LagrangeTop { axes, start, form: form(&axes, &start, orbit) })
+        let top = LagrangeTop { axes, start, form: form(&axes, &start, orbit) };
+        if top.meets(rotor) { Ok(top) } else { Err(SimulateError::NearUpright) }
+    }
+
+    /// Whether the solution has the start: beside an upright axis with hardly any weight the roots of the cubic may
+    /// come too close for their digits.
+    fn meets(&self, rotor: Rotor) -> bool {
+        let (found, given) = (self.at(0.0).0.components(), rotor.components());
+        (0..4).all(|k| (found[k] - given[k]).abs() <= 1e-12)
     }
 
     /// How far in time, in s, the phases are known: to 1e17 turns.

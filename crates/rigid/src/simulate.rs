@@ -245,33 +245,22 @@ impl Problem {
     ) -> Result<Pass, SimulateError> {
         let mut breaks: Vec<f64> = self.torques.iter().flat_map(|t| t.breaks()).copied().collect();
         breaks.sort_by(f64::total_cmp);
-        self.walker(engine, pace, &breaks, events, number, progress).pass(start, times)
-    }
-
-    fn walker<'a>(
-        &'a self,
-        engine: &'a Engine,
-        pace: Pace,
-        breaks: &'a [f64],
-        events: &'a [Event],
-        number: u32,
-        progress: &'a mut dyn FnMut(Progress) -> bool,
-    ) -> Walker<'a> {
         let watch = Watch::new(self.body, &self.torques, self.start().phase);
         let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
-        Walker {
+        let walker = Walker {
             body: self.body,
             engine,
             watch,
             pace,
             first,
-            breaks,
+            breaks: &breaks,
             events,
             fall: self.fall(),
             mass: self.mass,
             number,
             progress,
-        }
+        };
+        walker.pass(start, times)
     }
 
     /// The closed form at all times, as a pass without steps.
@@ -399,11 +388,7 @@ impl Motion {
         for group in order.chunk_by(|&i, &j| self.nearest(times[i]) == self.nearest(times[j])) {
             let from = self.nearest(times[group[0]]).map_or(self.problem.start(), |k| self.states[k]);
             let wanted: Vec<f64> = group.iter().map(|&i| times[i]).collect();
-            let mut breaks: Vec<f64> =
-                self.problem.torques.iter().flat_map(|t| t.breaks()).copied().collect();
-            breaks.sort_by(f64::total_cmp);
-            let walker = self.problem.walker(&self.engine, self.pace, &breaks, &[], 1, progress);
-            let pass = walker.pass(from, &wanted)?;
+            let pass = self.problem.pass_from(from, &self.engine, &wanted, (self.pace, 1), &[], progress)?;
             group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
         }
         Ok(self.problem.states(&found))

@@ -16,7 +16,7 @@
 //!
 //! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
 //! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`maps`] (exp, log and
-//! powers over rows), [`curve`] (functions of one number in lanes, of the arithmetic of [`lanes_math`]), [`threads`], [`values`] (`Vector`, `Bivector`, `Trivector`, `Multivector`),
+//! powers over rows), [`curve`] (functions of one number in lanes, of the arithmetic of [`lanes_math`]), [`lanes`] (bodies side by side), [`threads`], [`values`] (`Vector`, `Bivector`, `Trivector`, `Multivector`),
 //! [`graded`] (a value that carries its grades), [`rotor`] (rotations), [`functions`] (inverse, exp, log,
 //! square root), [`general`] (the same in any algebra; complements, join and meet), [`pauli`], [`formula`]
 //! (the language of the handout), [`diagnostic`] (errors that show their place in a text).
@@ -33,6 +33,7 @@ pub mod formula;
 pub mod functions;
 pub mod general;
 pub mod graded;
+pub mod lanes;
 pub mod lanes_math;
 mod map;
 pub mod maps;

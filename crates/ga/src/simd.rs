@@ -17,6 +17,8 @@ mod squares;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use crate::lanes::Work;
+use crate::map::BUILT_WITH_FMA;
 use std::ops::Range;
 
 #[cfg(target_arch = "aarch64")]
@@ -221,6 +223,22 @@ impl Path {
             // SAFETY: the instructions were detected.
             #[cfg(target_arch = "aarch64")]
             Level::Neon => unsafe { neon::apply_neon(kernel, a, b, out) },
+        }
+    }
+
+    /// Does work that is compiled for this path.
+    pub fn run<T: Work>(self, work: T) -> T::Output {
+        match self.0 {
+            Level::Portable => work.run::<BUILT_WITH_FMA>(),
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::run_avx2(work) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::run_avx512(work) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::run_neon(work) },
         }
     }
 

@@ -14,6 +14,7 @@
 
 pub mod body;
 pub mod certificate;
+pub mod classical;
 mod closed_form;
 pub mod conserved;
 mod converge;

@@ -1,11 +1,12 @@
 //! Methods by name, and what each is fit for.
 
+use crate::classical::Classical;
 use crate::closed_form::ClosedForm;
 use crate::dmv::MoserVeselov;
 use crate::force::Translation;
 use crate::midpoint::Midpoint;
 use crate::phase::{Gyrostat, Phase};
-use crate::runge_kutta::{Carried, DOP853, RK4, RungeKutta, Tableau};
+use crate::runge_kutta::{Carried, DOP853, RungeKutta, Tableau};
 use crate::simulate_error::SimulateError;
 use crate::splitting::{COMPOSITIONS, RKN6, Sequence, Splitting};
 use crate::symmetric_top::equal;
@@ -16,6 +17,8 @@ use crate::torque::{Dependence, Torque};
 pub enum Method {
     /// Exact turns and kicks.
     Splitting(Sequence),
+    /// The classical Runge–Kutta method on components.
+    Classical,
     /// Runge–Kutta on the group of rotors.
     RungeKutta(&'static Tableau),
     /// The implicit midpoint rule.
@@ -29,7 +32,7 @@ pub fn methods() -> impl Iterator<Item = Method> {
     let compositions = COMPOSITIONS.iter().map(|c| Method::Splitting(Sequence::Composition(c)));
     let others = [
         Method::Splitting(Sequence::Nystrom(&RKN6)),
-        Method::RungeKutta(&RK4),
+        Method::Classical,
         Method::RungeKutta(&DOP853),
         Method::Midpoint,
         Method::MoserVeselov,
@@ -48,6 +51,7 @@ impl Method {
         match self {
             Method::Splitting(Sequence::Composition(composition)) => composition.name,
             Method::Splitting(Sequence::Nystrom(nystrom)) => nystrom.name,
+            Method::Classical => "rk4",
             Method::RungeKutta(tableau) => tableau.name,
             Method::Midpoint => "midpoint",
             Method::MoserVeselov => "dmv",
@@ -59,6 +63,7 @@ impl Method {
         match self {
             Method::Splitting(Sequence::Composition(composition)) => composition.order,
             Method::Splitting(Sequence::Nystrom(nystrom)) => nystrom.order,
+            Method::Classical => 4,
             Method::RungeKutta(tableau) => tableau.order,
             Method::Midpoint | Method::MoserVeselov => 2,
         }
@@ -66,7 +71,7 @@ impl Method {
 
     /// Whether it estimates the error of each step, and chooses the next by it.
     pub fn adapts(self) -> bool {
-        matches!(self, Method::RungeKutta(tableau) if !tableau.fifth.is_empty())
+        matches!(self, Method::RungeKutta(_))
     }
 
     /// How far the fastest turn may go in the first step that is tried, in rad: an implicit equation has a solution for
@@ -97,7 +102,7 @@ impl Method {
 
     /// Why it is not fit for this body and these laws, and what is.
     fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
-        if matches!(self, Method::RungeKutta(_) | Method::Midpoint) {
+        if matches!(self, Method::Classical | Method::RungeKutta(_) | Method::Midpoint) {
             return None;
         }
         if torques.iter().any(|t| t.dependence() == Dependence::Rate) {
@@ -148,6 +153,7 @@ fn symmetric(body: &Gyrostat) -> bool {
 #[derive(Clone, Debug)]
 pub(crate) enum Engine {
     Splitting(Splitting),
+    Classical(Classical),
     RungeKutta(RungeKutta),
     Midpoint(Midpoint),
     MoserVeselov(MoserVeselov),
@@ -165,7 +171,8 @@ impl Engine {
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
         let moving = "leaves the centre of mass to its closed form, which these forces have not; use auto, dop853 or rk4";
-        let moving = (translation.is_some() && !matches!(method, Method::RungeKutta(_))).then_some(moving);
+        let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta(_)))
+            .then_some(moving);
         if let Some(reason) = method.unfit(&body, torques).or(moving) {
             return Err(SimulateError::Unfit { method: method.name(), reason });
         }
@@ -173,6 +180,7 @@ impl Engine {
             Method::Splitting(sequence) => {
                 Engine::Splitting(Splitting::new(body, torques.to_vec(), sequence, start))
             }
+            Method::Classical => Engine::Classical(Classical::new(body, torques.to_vec(), translation)),
             Method::RungeKutta(tableau) => {
                 Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation, tableau))
             }
@@ -187,6 +195,7 @@ impl Engine {
         let mut to = *from;
         match self {
             Engine::Splitting(splitting) => splitting.step(&mut to.phase, h)?,
+            Engine::Classical(classical) => to = classical.step(from, h)?,
             Engine::RungeKutta(runge_kutta) => return runge_kutta.step(from, h, fastest),
             Engine::ClosedForm(motion) => to = motion.at(from.phase.time + h),
             Engine::Midpoint(midpoint) => midpoint.step(&mut to.phase, h)?,
@@ -199,6 +208,7 @@ impl Engine {
     pub fn evaluations(&self) -> u64 {
         match self {
             Engine::Splitting(splitting) => splitting.evaluations(),
+            Engine::Classical(_) => 4,
             Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
             Engine::ClosedForm(_) => 0,
             // One in each iteration, of which there are about as many.

@@ -24,7 +24,7 @@ use crate::simulate_error::SimulateError;
 use crate::torque::{Torque, TorqueError, exerted};
 use crate::turn::cosine_and_sinc;
 use polhode_ga::{Bivector, Rotor, Vector};
-pub use tableau::{DOP853, RK4, Tableau};
+pub use tableau::{DOP853, Tableau};
 
 type Axial = [f64; 3];
 
@@ -108,14 +108,11 @@ impl RungeKutta {
         let momentum_space = from.momentum_space + Bivector(part(&change, 3));
         let momentum = rotor.reverse().apply_bivector(momentum_space);
         let phase = Phase { rotor, momentum, time: from.phase.time + h };
-        let error = if tableau.fifth.is_empty() {
-            0.0
-        } else {
-            let size = |row| self.size(from, &combined(row, &slopes, h), h, fastest);
-            let (fifth, third) = (size(tableau.fifth), size(tableau.third));
-            // As Hairer's code weighs the two: of order 8 where both are small.
-            if fifth == 0.0 { 0.0 } else { fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt() }
-        };
+        let size = |row| self.size(from, &combined(row, &slopes, h), h, fastest);
+        let (fifth, third) = (size(tableau.fifth), size(tableau.third));
+        // As Hairer's code weighs the two: of order 8 where both are small.
+        let error =
+            if fifth == 0.0 { 0.0 } else { fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt() };
         Ok((Carried { phase, momentum_space, center: moved(&from.center, &change, h) }, error))
     }
 

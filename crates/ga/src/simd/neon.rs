@@ -2,6 +2,7 @@
 
 use super::squares::squares;
 use super::{Element, Kernel, Lane};
+use crate::lanes::Work;
 use std::arch::aarch64::*;
 
 #[target_feature(enable = "neon")]
@@ -12,6 +13,11 @@ pub(super) fn apply_neon<const W: usize, K: Kernel<W>>(
     out: &mut [Lane<W>],
 ) {
     kernel.fused_block(a, b, out);
+}
+
+#[target_feature(enable = "neon")]
+pub(super) fn run_neon<T: Work>(work: T) -> T::Output {
+    work.run::<true>()
 }
 
 /// The machine's own prefetching is relied on.

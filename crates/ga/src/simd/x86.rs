@@ -2,6 +2,7 @@
 
 use super::squares::squares;
 use super::{Element, Kernel, Lane};
+use crate::lanes::Work;
 use std::arch::x86_64::*;
 
 #[target_feature(enable = "avx2,fma")]
@@ -22,6 +23,16 @@ pub(super) fn apply_avx512<const W: usize, K: Kernel<W>>(
     out: &mut [Lane<W>],
 ) {
     kernel.fused_block(a, b, out);
+}
+
+#[target_feature(enable = "avx2,fma")]
+pub(super) fn run_avx2<T: Work>(work: T) -> T::Output {
+    work.run::<true>()
+}
+
+#[target_feature(enable = "avx512f,fma")]
+pub(super) fn run_avx512<T: Work>(work: T) -> T::Output {
+    work.run::<true>()
 }
 
 /// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own

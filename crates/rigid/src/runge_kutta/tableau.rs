@@ -16,22 +16,11 @@ pub struct Tableau {
     pub nodes: &'static [f64],
     /// `b_i`.
     pub weights: Sparse,
-    /// What the embedded method of order 5 has less than this one; empty if there is none.
+    /// What the embedded method of order 5 has less than this one.
     pub fifth: Sparse,
     /// The same of order 3.
     pub third: Sparse,
 }
-
-/// The classical method.
-pub static RK4: Tableau = Tableau {
-    name: "rk4",
-    order: 4,
-    rows: &[&[], &[(0, 0.5)], &[(1, 0.5)], &[(2, 1.0)]],
-    nodes: &[0.0, 0.5, 0.5, 1.0],
-    weights: &[(0, 1.0 / 6.0), (1, 1.0 / 3.0), (2, 1.0 / 3.0), (3, 1.0 / 6.0)],
-    fifth: &[],
-    third: &[],
-};
 
 /// Order 8 with embedded 5 and 3: E. Hairer, S. P. Nørsett & G. Wanner, *Solving Ordinary Differential Equations
 /// I*, 2nd ed., II.5, after Dormand & Prince.
@@ -149,7 +138,7 @@ mod tests {
 
     #[test]
     fn rows_sum_to_their_nodes() {
-        for tableau in [&RK4, &DOP853] {
+        for tableau in [&DOP853] {
             let sum = |row: Sparse| row.iter().map(|(_, a)| a).sum::<f64>();
             for (row, node) in tableau.rows.iter().zip(tableau.nodes) {
                 let size: f64 = row.iter().map(|(_, a)| a.abs()).sum();

@@ -25,6 +25,11 @@ impl Threads {
         thread::available_parallelism().map_or(Threads::ONE, |count| Threads::new(count.get()))
     }
 
+    /// How many.
+    pub fn count(self) -> usize {
+        self.0
+    }
+
     /// Splits rows into one contiguous range for each thread, though none of fewer than `least` rows. To
     /// start a thread takes some 30 µs, and a range should take longer.
     pub fn ranges(self, rows: usize, least: usize) -> impl ExactSizeIterator<Item = Range<usize>> {

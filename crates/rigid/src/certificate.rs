@@ -5,7 +5,7 @@ use crate::phase::{Gyrostat, Phase};
 use crate::torque::Torque;
 
 /// How far a run went astray in what it should have conserved.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certificate {
     /// The method's name, `exact` for the exact solution.
     pub method: &'static str,

@@ -22,6 +22,17 @@ use std::array;
 /// Rotor and angular velocity in principal axes; with place and velocity of the centre of mass where they are stepped too.
 pub(crate) type State<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 
+/// Where bodies are, side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<const W: usize, const F: bool> {
+    /// From principal axes to space; |R| is 1 up to what a step leaves.
+    pub rotor: [Lanes<W, F>; 4],
+    /// In principal axes, rad/s.
+    pub omega: [Lanes<W, F>; 3],
+    /// In s.
+    pub time: Lanes<W, F>,
+}
+
 /// Bodies side by side, in principal axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bodies<const W: usize, const F: bool> {
@@ -40,12 +51,11 @@ pub(crate) trait Exert<const W: usize, const F: bool> {
     /// Whether there are torques at all, a wheel or damping.
     const ACTS: bool;
 
-    /// The torque in principal axes at rotor and angular velocity, at a time in s: without the part `−g I(Ω)` and that of
-    /// a wheel.
-    fn torque<const N: usize>(&mut self, at: &State<N, W, F>, time: Lanes<W, F>) -> [Lanes<W, F>; 3];
+    /// The torque in principal axes at a point of the motion, without the part `−g I(Ω)` and that of a wheel.
+    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 
-    /// The acceleration of the centre of mass in space, of states that have it.
-    fn acceleration<const N: usize>(&mut self, at: &State<N, W, F>, time: Lanes<W, F>) -> [Lanes<W, F>; 3];
+    /// The acceleration in space of a centre of mass whose place and velocity are given.
+    fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
 }
 
 impl<const W: usize, const F: bool> Bodies<W, F> {
@@ -127,7 +137,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
         slope[4 + k] = bodies.coupling[k] * products[k];
     }
     if E::ACTS {
-        let mut torque = exert.torque(y, time);
+        let mut torque = exert.torque(&Place { rotor: r, omega: w, time });
         let h = bodies.wheel;
         torque[0] += h[2].times_from(w[1], h[1] * w[2]);
         torque[1] += h[0].times_from(w[2], h[2] * w[0]);
@@ -138,7 +148,8 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
         }
     }
     if N == 13 {
-        let acceleration = exert.acceleration(y, time);
+        let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
+        let acceleration = exert.acceleration(&Place { rotor: r, omega: w, time }, &center);
         for k in 0..3 {
             slope[7 + k] = y[10 + k];
             slope[10 + k] = acceleration[k];
@@ -242,25 +253,25 @@ impl Acting<'_> {
         One::each(value)
     }
 
-    fn phase<const N: usize>(&self, at: &State<N, 1, false>, time: One) -> Phase {
-        phase(&self.of.body, &One::alone(*at), time.0[0])
+    fn phase(&self, at: &Place<1, false>) -> Phase {
+        let rotor = Rotor::from_unit_components(One::alone(at.rotor));
+        let momentum = self.of.body.momentum(Bivector(One::alone(at.omega)));
+        Phase { rotor, momentum, time: at.time.0[0] }
     }
 }
 
 impl Exert<1, false> for Acting<'_> {
     const ACTS: bool = true;
 
-    fn torque<const N: usize>(&mut self, at: &State<N, 1, false>, time: One) -> [One; 3] {
-        let phase = self.phase(at, time);
-        let torque = exerted(&self.of.torques, &self.of.body, &phase).map(|torque| torque.0);
-        self.noted(torque)
+    fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
+        let torque = exerted(&self.of.torques, &self.of.body, &self.phase(at));
+        self.noted(torque.map(|torque| torque.0))
     }
 
-    fn acceleration<const N: usize>(&mut self, at: &State<N, 1, false>, time: One) -> [One; 3] {
+    fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
         let Some(translation) = &self.of.translation else { return [One::ZERO; 3] };
-        let phase = self.phase(at, time);
-        let three = |first: usize| Vector(array::from_fn(|k| at[first + k].0[0]));
-        let center = Center { position: three(7), velocity: three(10) };
+        let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
+        let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
         let acceleration = translation.acceleration(&self.of.body, &phase, &center);
         let failed = |error: TorqueError| SimulateError::Torque { time: phase.time, message: error.0 };
         self.noted(acceleration.map(|a| a.0).map_err(failed))

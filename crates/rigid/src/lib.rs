@@ -23,6 +23,7 @@ pub mod dmv;
 mod double_double;
 mod eigen;
 pub mod elliptic;
+pub mod ensemble;
 pub mod event;
 mod exact;
 pub mod force;

@@ -5,6 +5,7 @@ use crate::certificate::{Certificate, Watch};
 use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::{Conserved, energy};
 use crate::converge::{Aim, DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
+use crate::ensemble::Own;
 use crate::event::{Event, Happened};
 use crate::force::{Center, Force, Translation};
 use crate::inertia::Inertia;
@@ -146,9 +147,7 @@ impl Problem {
             return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
         }
         let fall = self.fall();
-        let method = options
-            .method
-            .unwrap_or_else(|| Method::best(&self.body, &self.torques, fall.is_none(), &self.start().phase));
+        let method = options.method.unwrap_or_else(|| self.best());
         let translation = self.translation.clone().filter(|_| fall.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
@@ -220,6 +219,11 @@ impl Problem {
             events: pass.events,
             certificate,
         })
+    }
+
+    /// The best method of steps.
+    pub(crate) fn best(&self) -> Method {
+        Method::best(&self.body, &self.torques, self.fall().is_none(), &self.start().phase)
     }
 
     /// One pass over the times.
@@ -296,7 +300,7 @@ impl Problem {
         Some(Fall { start, acceleration: sum / translation.mass })
     }
 
-    fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
+    pub(crate) fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
         check_moments(self.body.moments)?;
         for (index, &time) in times.iter().enumerate() {
             if !time.is_finite() || index > 0 && time < times[index - 1] {
@@ -346,6 +350,14 @@ impl Problem {
 }
 
 impl Motion {
+    /// Writes the points at the output times.
+    pub(crate) fn write(&self, own: &mut Own) {
+        let Problem { frame, body, torques, .. } = &self.problem;
+        for (index, state) in self.states.iter().enumerate() {
+            own.write(index, (*frame, body, torques), &state.phase, &state.center);
+        }
+    }
+
     /// The motion at its output times.
     pub fn states(&self) -> States {
         self.problem.states(&self.states)

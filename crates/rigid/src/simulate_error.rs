@@ -44,6 +44,18 @@ pub enum SimulateError {
     Interrupted,
 }
 
+impl SimulateError {
+    /// When in the motion it happened, in s, if it was on the way.
+    pub fn time(&self) -> Option<f64> {
+        match self {
+            SimulateError::StepTooSmall { time, .. }
+            | SimulateError::Torque { time, .. }
+            | SimulateError::Diverged { time } => Some(*time),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for SimulateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,0 +1,151 @@
+//! Many bodies at once: each as alone, many side by side in lanes.
+//!
+//! A body has its own inertia, start and laws, or shares them with the others. What becomes of one never depends on the
+//! others, on how many there are, or on how many threads share them. A motion in closed form is known at any time;
+//! others are stepped in the lanes where the method has a form for them, the rest one by one. A body that fails is
+//! told, and the others go on.
+
+mod block;
+mod fixed;
+mod laws;
+mod output;
+
+use crate::force::{Center, Force};
+use crate::inertia::Inertia;
+use crate::method::Method;
+use crate::simulate::{Options, Problem, Progress, check_moments};
+use crate::simulate_error::SimulateError;
+use crate::torque::Torque;
+use block::Crew;
+pub(crate) use output::Own;
+pub use output::{Outputs, Summary};
+use polhode_ga::threads::Threads;
+use polhode_ga::{Bivector, Rotor};
+
+/// One value for all bodies, or one for each.
+#[derive(Clone, Debug)]
+pub struct Rows<T>(Vec<T>);
+
+impl<T> Rows<T> {
+    /// One at least.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn new(rows: Vec<T>) -> Rows<T> {
+        assert!(!rows.is_empty(), "one for all, or one for each");
+        Rows(rows)
+    }
+
+    /// That of a body.
+    pub fn of(&self, body: usize) -> &T {
+        &self.0[if self.is_one() { 0 } else { body }]
+    }
+
+    /// Whether all share one.
+    pub fn is_one(&self) -> bool {
+        self.0.len() == 1
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[T] {
+        &self.0
+    }
+}
+
+/// How a body starts at time 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// From body axes to space.
+    pub rotor: Rotor,
+    /// In body axes, rad/s.
+    pub omega: Bivector,
+    /// The centre of mass in space.
+    pub center: Center,
+}
+
+/// Bodies, their starts and what acts on them. Vectors of a body are in body axes.
+#[derive(Clone, Debug)]
+pub struct Ensemble {
+    /// About the centres of mass, or about fixed points.
+    pub inertias: Rows<Inertia>,
+    /// One for each body.
+    pub starts: Vec<Start>,
+    /// Laws that add up.
+    pub laws: Vec<Rows<Torque>>,
+    /// In kg; NaN where nobody said it.
+    pub masses: Rows<f64>,
+    /// What moves the centres of mass.
+    pub forces: Vec<Force>,
+}
+
+/// A body that could not be followed to the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Its number.
+    pub body: usize,
+    /// Up to where it was followed, in s.
+    pub time: f64,
+    /// Why no further.
+    pub error: SimulateError,
+}
+
+impl Ensemble {
+    /// A body with its laws, to be followed alone.
+    pub fn problem(&self, body: usize) -> Problem {
+        let start = &self.starts[body];
+        let laws: Vec<Torque> = self.laws.iter().map(|law| law.of(body).clone()).collect();
+        Problem::new(self.inertias.of(body), start.rotor, start.omega, &laws).with_center(
+            start.center,
+            *self.masses.of(body),
+            &self.forces,
+        )
+    }
+
+    /// Follows all bodies to the times (s, not decreasing, of either sign), with options as for one body, by so many
+    /// threads. `progress` is asked now and then by the calling thread; at false all ends with
+    /// [`SimulateError::Interrupted`]. An error for what none of the bodies could be followed with.
+    ///
+    /// # Panics
+    /// If numbers of rows do not fit together.
+    pub fn run(
+        &self,
+        times: &[f64],
+        options: &Options,
+        threads: Threads,
+        outputs: Outputs,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Summary, SimulateError> {
+        self.check(times, options)?;
+        let rows = [self.inertias.0.len(), self.masses.0.len()];
+        let rows = rows.into_iter().chain(self.laws.iter().map(|law| law.0.len()));
+        assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
+        Crew::new(self, times, options, outputs).work(threads, progress)
+    }
+
+    /// What is wrong for all bodies alike.
+    fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
+        if let Some(start) = self.starts.first() {
+            let still = Problem::new(self.inertias.of(0), start.rotor, Bivector::default(), &[]);
+            still.check(times, options)?;
+        }
+        Ok(())
+    }
+
+    /// A body whose number comes with what is wrong with it, before anything is computed.
+    pub fn first_unusable(&self) -> Option<(usize, SimulateError)> {
+        (0..self.starts.len()).find_map(|body| {
+            let inertia = self.inertias.of(body);
+            let moments = inertia.principal_moments();
+            check_moments(moments).err().map(|error| (body, error))
+        })
+    }
+
+    /// Whether lanes have a form for this method with these laws.
+    fn in_lanes(&self, method: Method) -> bool {
+        // A table of its own gives each body its own steps.
+        let own_breaks =
+            |law: &Rows<Torque>| !law.is_one() && law.all().iter().any(|law| !law.breaks().is_empty());
+        let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
+        matches!(method, Method::Classical) && !moved && !self.laws.iter().any(own_breaks)
+    }
+}

@@ -1,0 +1,240 @@
+//! The work on an ensemble, shared by threads: each takes bodies that nobody has taken yet.
+
+use super::fixed::FixedSteps;
+use super::output::{Outputs, Own, Summary};
+use super::{Ensemble, Failure};
+use crate::certificate::Certificate;
+use crate::closed_form::Fall;
+use crate::conserved::Conserved;
+use crate::force::{Center, Force};
+use crate::method::Method;
+use crate::phase::{Gyrostat, Phase};
+use crate::simulate::{Options, Progress};
+use crate::simulate_error::SimulateError;
+use crate::torque::{Torque, wheel};
+use polhode_ga::lanes::fastest;
+use polhode_ga::threads::Threads;
+use polhode_ga::{Rotor, Vector};
+use std::iter::Enumerate;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// Bodies side by side: two registers of the widest machines, so that each waits for the other's results.
+pub(super) const SIDE_BY_SIDE: usize = 16;
+
+/// Parts of a body's way, for the count of what is done.
+const PARTS: f64 = 1024.0;
+
+/// A body that is stepped in lanes, in principal axes.
+#[derive(Debug)]
+pub(super) struct Member<'a> {
+    pub body: usize,
+    /// From principal axes to those of the body.
+    pub frame: Rotor,
+    pub gyrostat: Gyrostat,
+    pub torques: Vec<Torque>,
+    pub start: Phase,
+    pub own: Own<'a>,
+}
+
+/// What is told of a body.
+pub(super) struct Told {
+    pub body: usize,
+    pub certificate: Certificate,
+    pub failure: Option<(f64, SimulateError)>,
+}
+
+type Queue<'a> = Enumerate<Box<dyn Iterator<Item = Own<'a>> + Send + 'a>>;
+
+/// All that threads share.
+pub(super) struct Crew<'a> {
+    pub ensemble: &'a Ensemble,
+    pub times: &'a [f64],
+    pub options: &'a Options,
+    queue: Mutex<Queue<'a>>,
+    told: Mutex<Vec<Told>>,
+    stopped: AtomicBool,
+    /// In parts of bodies.
+    done: AtomicU64,
+    running: AtomicUsize,
+    /// The laws in principal axes, where all bodies share them and an inertia.
+    shared: Option<Vec<Torque>>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl<'a> Crew<'a> {
+    pub fn new(
+        ensemble: &'a Ensemble,
+        times: &'a [f64],
+        options: &'a Options,
+        outputs: Outputs<'a>,
+    ) -> Crew<'a> {
+        let each: Box<dyn Iterator<Item = Own<'a>> + Send + 'a> = Box::new(outputs.each(times.len().max(1)));
+        let alike = ensemble.inertias.is_one() && ensemble.laws.iter().all(|law| law.is_one());
+        let frame = ensemble.inertias.of(0).principal_frame();
+        let turned = || ensemble.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect();
+        Crew {
+            ensemble,
+            times,
+            options,
+            queue: Mutex::new(each.enumerate()),
+            told: Mutex::new(Vec::with_capacity(ensemble.starts.len())),
+            stopped: AtomicBool::new(false),
+            done: AtomicU64::new(0),
+            running: AtomicUsize::new(0),
+            shared: alike.then(turned),
+        }
+    }
+
+    /// Does all the work.
+    pub fn work(
+        &self,
+        threads: Threads,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Summary, SimulateError> {
+        let count = threads.count().min(self.ensemble.starts.len()).max(1);
+        self.running.store(count, Ordering::Relaxed);
+        thread::scope(|scope| {
+            for _ in 1..count {
+                // Where no more threads are to be had, those that are there do all the work.
+                if thread::Builder::new().spawn_scoped(scope, || self.take_turns(&mut |_| true)).is_err() {
+                    self.running.fetch_sub(1, Ordering::Relaxed);
+                }
+            }
+            self.take_turns(progress);
+            while self.running.load(Ordering::Relaxed) > 0 {
+                self.report(progress);
+                thread::sleep(Duration::from_millis(1));
+            }
+        });
+        if self.stopped.load(Ordering::Relaxed) {
+            return Err(SimulateError::Interrupted);
+        }
+        Ok(summary(std::mem::take(&mut *lock(&self.told))))
+    }
+
+    /// Takes bodies and follows them, until there are no more.
+    fn take_turns(&self, progress: &mut dyn FnMut(Progress) -> bool) {
+        let mut side_by_side = Vec::with_capacity(SIDE_BY_SIDE);
+        loop {
+            let next = if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() };
+            let more = next.is_some();
+            if let Some((body, own)) = next {
+                match self.fixed_steps(body) {
+                    Some(_) => side_by_side.push(self.member(body, own)),
+                    None => self.alone(body, own, progress),
+                }
+            }
+            if side_by_side.len() == SIDE_BY_SIDE || !more && !side_by_side.is_empty() {
+                let members = std::mem::take(&mut side_by_side);
+                fastest(FixedSteps { crew: self, members, progress });
+            }
+            if !more {
+                break;
+            }
+        }
+        self.running.fetch_sub(1, Ordering::Relaxed);
+    }
+
+    /// The step and the method of a body that is to be stepped by equal steps in lanes.
+    pub fn fixed_steps(&self, body: usize) -> Option<(f64, Method)> {
+        let step = self.options.step?;
+        let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
+        self.ensemble.in_lanes(method).then_some((step, method))
+    }
+
+    fn member(&self, body: usize, own: Own<'a>) -> Member<'a> {
+        let (inertia, start) = (self.ensemble.inertias.of(body), &self.ensemble.starts[body]);
+        let frame = inertia.principal_frame();
+        let turned = || self.ensemble.laws.iter().map(|law| law.of(body).clone().in_axes(frame)).collect();
+        let torques = self.shared.clone().unwrap_or_else(turned);
+        let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
+        let omega = frame.reverse().apply_bivector(start.omega);
+        let start = Phase { rotor: start.rotor * frame, momentum: gyrostat.momentum(omega), time: 0.0 };
+        Member { body, frame, gyrostat, torques, start, own }
+    }
+
+    /// Follows a body alone.
+    fn alone(&self, body: usize, mut own: Own<'a>, progress: &mut dyn FnMut(Progress) -> bool) {
+        let problem = self.ensemble.problem(body);
+        let mut so_far = 0;
+        let mut go_on = |at: Progress| {
+            self.count(&mut so_far, at.fraction, 1);
+            self.report(progress)
+        };
+        let told = match problem.simulate(self.times, self.options.clone(), &mut go_on) {
+            Ok(motion) => {
+                motion.write(&mut own);
+                Told { body, certificate: motion.certificate, failure: None }
+            }
+            Err(error) => {
+                (0..self.times.len()).for_each(|index| own.unknown(index));
+                let time = error.time().unwrap_or(0.0);
+                Told { body, certificate: Certificate::default(), failure: Some((time, error)) }
+            }
+        };
+        self.count(&mut so_far, 1.0, 1);
+        self.tell([told]);
+    }
+
+    /// Where the centre of mass of a body that only constant forces move is at a time.
+    pub fn center(&self, body: usize, time: f64) -> Center {
+        let (start, mass) = (self.ensemble.starts[body].center, *self.ensemble.masses.of(body));
+        let force = self.ensemble.forces.iter().fold(Vector::default(), |sum, force| match force {
+            Force::Constant(force) => sum + *force,
+            _ => sum,
+        });
+        let acceleration = if self.ensemble.forces.is_empty() { Vector::default() } else { force / mass };
+        Fall { start, acceleration }.at(time)
+    }
+
+    pub fn tell(&self, told: impl IntoIterator<Item = Told>) {
+        lock(&self.told).extend(told);
+    }
+
+    /// Counts so many bodies as done to this fraction; `so_far` are the parts that were counted of each before.
+    pub fn count(&self, so_far: &mut u64, fraction: f64, bodies: usize) {
+        let parts = (fraction * PARTS) as u64;
+        self.done.fetch_add(parts.saturating_sub(*so_far) * bodies as u64, Ordering::Relaxed);
+        *so_far = parts.max(*so_far);
+    }
+
+    /// Tells how much is done; whether to go on.
+    pub fn report(&self, progress: &mut dyn FnMut(Progress) -> bool) -> bool {
+        let whole = PARTS * self.ensemble.starts.len() as f64;
+        let fraction = (self.done.load(Ordering::Relaxed) as f64 / whole).min(1.0);
+        if !progress(Progress { pass: 1, fraction }) {
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+        !self.stopped.load(Ordering::Relaxed)
+    }
+}
+
+/// What was told, by bodies.
+fn summary(mut told: Vec<Told>) -> Summary {
+    told.sort_by_key(|told| told.body);
+    let count = told.len();
+    let mut all = Summary::default();
+    for (row, Told { body, certificate, failure }) in told.into_iter().enumerate() {
+        all.methods.push(certificate.method);
+        all.steps.push([certificate.steps, certificate.evaluations]);
+        all.longest.push(certificate.step);
+        all.estimates.push(certificate.error_estimate.unwrap_or(f64::NAN));
+        all.norm_drifts.push(certificate.norm_drift);
+        for (quantity, start, change) in certificate.drifts {
+            let name = Conserved::name(quantity);
+            let place = all.drifts.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
+                all.drifts.push((name, vec![[f64::NAN; 2]; count]));
+                all.drifts.len() - 1
+            });
+            all.drifts[place].1[row] = [start, change];
+        }
+        all.failures.extend(failure.map(|(time, error)| Failure { body, time, error }));
+    }
+    all
+}

@@ -10,28 +10,18 @@
 //! is conserved by construction. What it has is few operations, so that bodies side by side in lanes stay in registers:
 //! a step of a free body is 146 products, sums and products with sums.
 
+use crate::exert::{Alone, Exert, Place};
 use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::Carried;
 use crate::simulate_error::SimulateError;
-use crate::torque::{Torque, TorqueError, exerted};
+use crate::torque::Torque;
 use polhode_ga::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 
 /// Rotor and angular velocity in principal axes; with place and velocity of the centre of mass where they are stepped too.
 pub(crate) type State<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
-
-/// Where bodies are, side by side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<const W: usize, const F: bool> {
-    /// From principal axes to space; |R| is 1 up to what a step leaves.
-    pub rotor: [Lanes<W, F>; 4],
-    /// In principal axes, rad/s.
-    pub omega: [Lanes<W, F>; 3],
-    /// In s.
-    pub time: Lanes<W, F>,
-}
 
 /// Bodies side by side, in principal axes.
 #[derive(Clone, Copy, Debug)]
@@ -44,18 +34,6 @@ pub(crate) struct Bodies<const W: usize, const F: bool> {
     pub wheel: [Lanes<W, F>; 3],
     /// The g of all dampings `−g I(Ω)`, in 1/s.
     pub damping: Lanes<W, F>,
-}
-
-/// What turns bodies side by side, and moves them.
-pub(crate) trait Exert<const W: usize, const F: bool> {
-    /// Whether there are torques at all, a wheel or damping.
-    const ACTS: bool;
-
-    /// The torque in principal axes at a point of the motion, without the part `−g I(Ω)` and that of a wheel.
-    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
-
-    /// The acceleration in space of a centre of mass whose place and velocity are given.
-    fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
 }
 
 impl<const W: usize, const F: bool> Bodies<W, F> {
@@ -206,7 +184,7 @@ impl Classical {
     pub fn step(&self, from: &Carried, h: f64) -> Result<Carried, SimulateError> {
         let omega = self.body.omega(from.phase.momentum).0;
         let (rotor, time) = (from.phase.rotor.components(), from.phase.time);
-        let mut acting = Acting { of: self, failure: None };
+        let mut acting = Alone::new(&self.body, &self.torques, self.translation.as_ref());
         let rotation: [f64; 7] = array::from_fn(|k| if k < 4 { rotor[k] } else { omega[k - 4] });
         let (rotation, center) = if self.translation.is_none() {
             let mut state = One::each(rotation);
@@ -224,10 +202,8 @@ impl Classical {
             let three = |first: usize| Vector(array::from_fn(|k| state[first + k]));
             (array::from_fn(|k| state[k]), Center { position: three(7), velocity: three(10) })
         };
-        match acting.failure {
-            Some(failure) => Err(failure),
-            None => Ok(Carried::new(phase(&self.body, &rotation, time + h), center)),
-        }
+        acting.finish()?;
+        Ok(Carried::new(phase(&self.body, &rotation, time + h), center))
     }
 }
 
@@ -236,44 +212,4 @@ pub(crate) fn phase(body: &Gyrostat, state: &[f64], time: f64) -> Phase {
     let omega = Bivector([state[4], state[5], state[6]]);
     let rotor = Rotor::from_unit_components([state[0], state[1], state[2], state[3]]);
     Phase { rotor, momentum: body.momentum(omega), time }
-}
-
-/// What acts on a single body; the first failure to say how.
-struct Acting<'a> {
-    of: &'a Classical,
-    failure: Option<SimulateError>,
-}
-
-impl Acting<'_> {
-    fn noted(&mut self, value: Result<[f64; 3], SimulateError>) -> [One; 3] {
-        let value = value.unwrap_or_else(|failure| {
-            self.failure.get_or_insert(failure);
-            [f64::NAN; 3]
-        });
-        One::each(value)
-    }
-
-    fn phase(&self, at: &Place<1, false>) -> Phase {
-        let rotor = Rotor::from_unit_components(One::alone(at.rotor));
-        let momentum = self.of.body.momentum(Bivector(One::alone(at.omega)));
-        Phase { rotor, momentum, time: at.time.0[0] }
-    }
-}
-
-impl Exert<1, false> for Acting<'_> {
-    const ACTS: bool = true;
-
-    fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
-        let torque = exerted(&self.of.torques, &self.of.body, &self.phase(at));
-        self.noted(torque.map(|torque| torque.0))
-    }
-
-    fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
-        let Some(translation) = &self.of.translation else { return [One::ZERO; 3] };
-        let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
-        let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
-        let acceleration = translation.acceleration(&self.of.body, &phase, &center);
-        let failed = |error: TorqueError| SimulateError::Torque { time: phase.time, message: error.0 };
-        self.noted(acceleration.map(|a| a.0).map_err(failed))
-    }
 }

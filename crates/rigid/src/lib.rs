@@ -26,6 +26,7 @@ pub mod elliptic;
 pub mod ensemble;
 pub mod event;
 mod exact;
+mod exert;
 pub mod force;
 pub mod formula;
 pub mod free;

@@ -23,6 +23,7 @@ use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use crate::torque::{Torque, TorqueError, exerted};
 use crate::turn::cosine_and_sinc;
+use polhode_ga::lanes::Lanes;
 use polhode_ga::{Bivector, Rotor, Vector};
 pub use tableau::{DOP853, Tableau};
 
@@ -212,7 +213,7 @@ fn exponential(turn: &Axial) -> (Rotor, f64) {
     let square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
     // Of x = ½θ.
     let z = 0.25 * square;
-    let (cos, sinc) = cosine_and_sinc(z);
+    let (Lanes([cos]), Lanes([sinc])) = cosine_and_sinc(Lanes::<1, false>([z]));
     let cotangent = if z < 0.0625 {
         // (1 − x cot x)/4x²; the next term is below rounding beside the 1 that it is added to.
         1.0 / 12.0

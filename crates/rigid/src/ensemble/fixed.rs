@@ -3,7 +3,8 @@
 use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
 use super::laws::{Laws, Nothing};
 use crate::certificate::{Certificate, Watch};
-use crate::classical::{self, Bodies, Classical, Exert, State};
+use crate::classical::{self, Bodies, Classical, State};
+use crate::exert::Exert;
 use crate::force::Center;
 use crate::phase::Phase;
 use crate::runge_kutta::Carried;

@@ -1,6 +1,6 @@
 //! Torque laws of bodies side by side.
 
-use crate::classical::{Exert, Place};
+use crate::exert::{Exert, Place};
 use crate::phase::{Gyrostat, Phase};
 use crate::torque::Torque;
 use polhode_ga::lanes::{Lanes, cross, matrix};

@@ -9,10 +9,10 @@ mod block;
 mod fixed;
 mod laws;
 mod output;
+mod steppers;
 
 use crate::force::{Center, Force};
 use crate::inertia::Inertia;
-use crate::method::Method;
 use crate::simulate::{Options, Problem, Progress, check_moments};
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
@@ -140,12 +140,12 @@ impl Ensemble {
         })
     }
 
-    /// Whether lanes have a form for this method with these laws.
-    fn in_lanes(&self, method: Method) -> bool {
+    /// Whether lanes can step these bodies: only constant forces move them, and they are not smooth at the same times.
+    fn in_lanes(&self) -> bool {
         // A table of its own gives each body its own steps.
         let own_breaks =
             |law: &Rows<Torque>| !law.is_one() && law.all().iter().any(|law| !law.breaks().is_empty());
         let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
-        matches!(method, Method::Classical) && !moved && !self.laws.iter().any(own_breaks)
+        !moved && !self.laws.iter().any(own_breaks)
     }
 }

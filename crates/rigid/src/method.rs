@@ -101,7 +101,7 @@ impl Method {
     }
 
     /// Why it is not fit for this body and these laws, and what is.
-    fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
+    pub(crate) fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
         if matches!(self, Method::Classical | Method::RungeKutta(_) | Method::Midpoint) {
             return None;
         }

@@ -11,10 +11,13 @@ use crate::method::Method;
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate::{Options, Progress};
 use crate::simulate_error::SimulateError;
+use crate::splitting::Sequence;
+use crate::splitting::turns::Kind;
 use crate::torque::{Torque, wheel};
 use polhode_ga::lanes::fastest;
 use polhode_ga::threads::Threads;
 use polhode_ga::{Rotor, Vector};
+use std::borrow::Cow;
 use std::iter::Enumerate;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -44,6 +47,26 @@ pub(super) struct Told {
     pub body: usize,
     pub certificate: Certificate,
     pub failure: Option<(f64, SimulateError)>,
+}
+
+/// How bodies are stepped side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plan {
+    /// In s.
+    pub step: f64,
+    pub method: Method,
+    /// About which axes a splitting turns them.
+    kind: Option<Kind>,
+}
+
+impl Plan {
+    /// Evaluations of the torque in a step.
+    pub fn evaluations(&self) -> u64 {
+        match self.method {
+            Method::Splitting(sequence) => sequence.stages().0.len() as u64 + 1,
+            _ => 4,
+        }
+    }
 }
 
 type Queue<'a> = Enumerate<Box<dyn Iterator<Item = Own<'a>> + Send + 'a>>;
@@ -120,39 +143,71 @@ impl<'a> Crew<'a> {
 
     /// Takes bodies and follows them, until there are no more.
     fn take_turns(&self, progress: &mut dyn FnMut(Progress) -> bool) {
-        let mut side_by_side = Vec::with_capacity(SIDE_BY_SIDE);
-        loop {
-            let next = if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() };
-            let more = next.is_some();
-            if let Some((body, own)) = next {
-                match self.fixed_steps(body) {
-                    Some(_) => side_by_side.push(self.member(body, own)),
-                    None => self.alone(body, own, progress),
-                }
+        // Bodies wait for others that are stepped alike.
+        let mut waiting: Vec<(Plan, Vec<Member>)> = Vec::new();
+        while let Some((body, own)) = self.next() {
+            let Some(plan) = self.plan(body) else {
+                self.alone(body, own, progress);
+                continue;
+            };
+            let place = waiting.iter().position(|(alike, _)| *alike == plan).unwrap_or_else(|| {
+                waiting.push((plan, Vec::with_capacity(SIDE_BY_SIDE)));
+                waiting.len() - 1
+            });
+            waiting[place].1.push(self.member(body, own));
+            if waiting[place].1.len() == SIDE_BY_SIDE {
+                let (plan, members) = waiting.swap_remove(place);
+                fastest(FixedSteps { crew: self, plan, members, progress });
             }
-            if side_by_side.len() == SIDE_BY_SIDE || !more && !side_by_side.is_empty() {
-                let members = std::mem::take(&mut side_by_side);
-                fastest(FixedSteps { crew: self, members, progress });
-            }
-            if !more {
-                break;
-            }
+        }
+        for (plan, members) in waiting {
+            fastest(FixedSteps { crew: self, plan, members, progress });
         }
         self.running.fetch_sub(1, Ordering::Relaxed);
     }
 
-    /// The step and the method of a body that is to be stepped by equal steps in lanes.
-    pub fn fixed_steps(&self, body: usize) -> Option<(f64, Method)> {
+    /// A body that nobody has taken yet, with the room for its points.
+    fn next(&self) -> Option<(usize, Own<'a>)> {
+        if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() }
+    }
+
+    /// How a body is stepped by equal steps in lanes, if it is.
+    fn plan(&self, body: usize) -> Option<Plan> {
         let step = self.options.step?;
         let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
-        self.ensemble.in_lanes(method).then_some((step, method))
+        if !self.ensemble.in_lanes() {
+            return None;
+        }
+        let kind = match method {
+            Method::Classical => None,
+            Method::Splitting(sequence) => {
+                let moments = self.ensemble.inertias.of(body).principal_moments();
+                let wheel = wheel(&self.torques(body));
+                let kind = Kind::of(&Gyrostat { moments, wheel });
+                let exact_drift = matches!(sequence, Sequence::Nystrom(_)) && !kind.is_symmetric();
+                if exact_drift || method.unfit(&Gyrostat { moments, wheel }, &self.torques(body)).is_some() {
+                    return None;
+                }
+                Some(kind)
+            }
+            _ => return None,
+        };
+        Some(Plan { step, method, kind })
+    }
+
+    /// The laws of a body in principal axes.
+    fn torques(&self, body: usize) -> Cow<'_, [Torque]> {
+        if let Some(shared) = &self.shared {
+            return shared.into();
+        }
+        let frame = self.ensemble.inertias.of(body).principal_frame();
+        self.ensemble.laws.iter().map(|law| law.of(body).clone().in_axes(frame)).collect()
     }
 
     fn member(&self, body: usize, own: Own<'a>) -> Member<'a> {
         let (inertia, start) = (self.ensemble.inertias.of(body), &self.ensemble.starts[body]);
         let frame = inertia.principal_frame();
-        let turned = || self.ensemble.laws.iter().map(|law| law.of(body).clone().in_axes(frame)).collect();
-        let torques = self.shared.clone().unwrap_or_else(turned);
+        let torques = self.torques(body).into_owned();
         let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(start.omega);
         let start = Phase { rotor: start.rotor * frame, momentum: gyrostat.momentum(omega), time: 0.0 };

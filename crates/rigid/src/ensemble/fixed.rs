@@ -1,21 +1,22 @@
 //! Equal steps of bodies side by side.
 
-use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
+use super::block::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
 use super::laws::{Laws, Nothing};
+use super::steppers::{Components, Kicks, Stepper, of};
 use crate::certificate::{Certificate, Watch};
-use crate::classical::{self, Bodies, Classical, State};
-use crate::exert::Exert;
+use crate::classical::Bodies;
 use crate::force::Center;
+use crate::kicks::fixed_momentum;
+use crate::method::{Engine, Method};
 use crate::phase::Phase;
 use crate::runge_kutta::Carried;
 use crate::simulate::Progress;
 use crate::simulate_error::SimulateError;
+use crate::splitting::turns::Turns;
 use crate::torque::Torque;
 use crate::walk::is_finite;
-use polhode_ga::lanes::{Lanes, Work};
+use polhode_ga::lanes::Work;
 use std::array;
-
-const W: usize = SIDE_BY_SIDE;
 
 /// Steps between looks at whether all is finite, and whether to go on.
 const BETWEEN_LOOKS: u64 = 1024;
@@ -23,6 +24,7 @@ const BETWEEN_LOOKS: u64 = 1024;
 /// At most [`SIDE_BY_SIDE`] bodies to be stepped over all times.
 pub(super) struct FixedSteps<'a, 'b> {
     pub crew: &'b Crew<'a>,
+    pub plan: Plan,
     pub members: Vec<Member<'a>>,
     pub progress: &'b mut dyn FnMut(Progress) -> bool,
 }
@@ -57,39 +59,40 @@ impl Work for FixedSteps<'_, '_> {
 
     #[inline(always)]
     fn run<const F: bool>(mut self) {
-        let free = self.members.iter().all(|member| member.torques.is_empty());
         let torques: Vec<Vec<Torque>> =
             self.members.iter_mut().map(|m| std::mem::take(&mut m.torques)).collect();
-        // Lanes without a body hold another one's.
-        let of = |l: usize| if l < self.members.len() { l } else { 0 };
-        let damping = |l: usize| torques[of(l)].iter().map(Torque::damping_rate).sum();
-        let bodies: Bodies<W, F> =
-            Bodies::new(array::from_fn(|l| (self.members[of(l)].gyrostat, damping(l))));
-        if free {
-            self.walk(&bodies, &mut Nothing, &torques);
+        let laws = |l: usize| &torques[if l < torques.len() { l } else { 0 }][..];
+        let damping = |l: usize| laws(l).iter().map(Torque::damping_rate).sum();
+        let members = &self.members;
+        let gyrostats = array::from_fn(|l| of(members, l).gyrostat);
+        if let Method::Splitting(sequence) = self.plan.method {
+            let (stages, last) = sequence.stages();
+            let fixed = |l: usize| fixed_momentum(laws(l), &of(members, l).start).map(|momentum| momentum.0);
+            let turns = Turns::new(array::from_fn(|l| (gyrostats[l], damping(l), fixed(l))));
+            let (stages, exert) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
+            self.walk(&mut Kicks::<_, F> { turns, stages, exert }, &torques);
         } else {
-            let gyrostats = array::from_fn(|l| self.members[of(l)].gyrostat);
-            let mut laws = Laws::new(gyrostats, array::from_fn(|l| &torques[of(l)][..]));
-            self.walk(&bodies, &mut laws, &torques);
+            let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
+            if torques.iter().all(Vec::is_empty) {
+                self.walk(&mut Components::<_, F> { bodies, exert: Nothing }, &torques);
+            } else {
+                let exert = Laws::new(gyrostats, array::from_fn(laws));
+                self.walk(&mut Components::<_, F> { bodies, exert }, &torques);
+            }
         }
     }
 }
 
 impl FixedSteps<'_, '_> {
     #[inline(always)]
-    fn walk<const F: bool, E: Exert<W, F>>(
-        self,
-        bodies: &Bodies<W, F>,
-        exert: &mut E,
-        torques: &[Vec<Torque>],
-    ) {
-        let FixedSteps { crew, mut members, progress } = self;
-        let Some((step, method)) = crew.fixed_steps(members[0].body) else { return };
+    fn walk<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
+        let FixedSteps { crew, plan, mut members, progress } = self;
+        let Plan { step, method, .. } = plan;
         let times = crew.times;
         let mut watches: Vec<Watch> =
             members.iter().zip(torques).map(|(m, t)| Watch::new(m.gyrostat, t, m.start)).collect();
-        let mut failures: [Option<(f64, SimulateError)>; W] = [const { None }; W];
-        let mut norm_drifts = [0.0_f64; W];
+        let mut failures: [Option<(f64, SimulateError)>; SIDE_BY_SIDE] = [const { None }; SIDE_BY_SIDE];
+        let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
         let breaks = breaks(torques);
         let begin = times.first().map_or(0.0, |t| t.min(0.0));
@@ -97,7 +100,7 @@ impl FixedSteps<'_, '_> {
         let early = times.partition_point(|&t| t < 0.0);
         let sides: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..early).rev(), &mut (early..times.len())];
         for (side, indices) in sides.into_iter().enumerate() {
-            let mut state: State<7, W, F> = load(&members);
+            let mut state = stepper.start(&members);
             let mut time = 0.0;
             for index in indices {
                 for stretch in stretches(time, times[index], step, &breaks) {
@@ -107,14 +110,15 @@ impl FixedSteps<'_, '_> {
                         let before = state;
                         for i in first..last {
                             let (from, to) = (stretch.begin(i), stretch.end(i));
-                            classical::step(bodies, exert, &mut state, from, to - from);
+                            stepper.step(&mut state, from, to - from);
                         }
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
-                            if failures[l].is_none() && !lane(&state, l).iter().all(|x| x.is_finite()) {
-                                let from = phase(member, &before, l, stretch.begin(first));
+                            let now = stepper.phase(&member.gyrostat, &state, l, stretch.end(last - 1));
+                            if failures[l].is_none() && !is_finite(&Carried::new(now, Center::default())) {
+                                let from = stepper.phase(&member.gyrostat, &before, l, stretch.begin(first));
                                 let part = (&stretch, first..last);
-                                failures[l] = Some(diagnose(member, &torques[l], from, part));
+                                failures[l] = Some(diagnose(method, member, &torques[l], from, part));
                             }
                         }
                         let gone = stretch.end(last - 1);
@@ -131,7 +135,7 @@ impl FixedSteps<'_, '_> {
                         member.own.unknown(index);
                         continue;
                     }
-                    let phase = phase(member, &state, l, time);
+                    let phase = stepper.phase(&member.gyrostat, &state, l, time);
                     let size = phase.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt();
                     norm_drifts[l] = norm_drifts[l].max((size - 1.0).abs());
                     watches[l].look(&phase);
@@ -150,7 +154,7 @@ impl FixedSteps<'_, '_> {
                 method: method.name(),
                 step: longest,
                 steps,
-                evaluations: 4 * steps,
+                evaluations: steps * plan.evaluations(),
                 error_estimate: None,
                 drifts: watch.finish(),
                 norm_drift,
@@ -186,41 +190,24 @@ fn stretches(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Stretch> {
     ends.into_iter().map(part).filter(|stretch| stretch.from != stretch.to).collect()
 }
 
-fn load<const F: bool>(members: &[Member]) -> State<7, W, F> {
-    let mut state = [Lanes::ZERO; 7];
-    for l in 0..W {
-        let member = &members[if l < members.len() { l } else { 0 }];
-        let (rotor, omega) =
-            (member.start.rotor.components(), member.gyrostat.omega(member.start.momentum).0);
-        for k in 0..7 {
-            state[k].0[l] = if k < 4 { rotor[k] } else { omega[k - 4] };
-        }
-    }
-    state
-}
-
-fn lane<const F: bool>(state: &State<7, W, F>, l: usize) -> [f64; 7] {
-    array::from_fn(|k| state[k].0[l])
-}
-
-fn phase<const F: bool>(member: &Member, state: &State<7, W, F>, l: usize, time: f64) -> Phase {
-    classical::phase(&member.gyrostat, &lane(state, l), time)
-}
-
 /// When and why the steps from a point lead to nothing: steps them once more, alone.
 #[cold]
 fn diagnose(
+    method: Method,
     member: &Member,
     torques: &[Torque],
     from: Phase,
     (stretch, steps): (&Stretch, std::ops::Range<u64>),
 ) -> (f64, SimulateError) {
-    let alone = Classical::new(member.gyrostat, torques.to_vec(), None);
     let mut at = Carried::new(from, Center::default());
+    let alone = match Engine::new(method, member.gyrostat, torques, None, &member.start) {
+        Ok(alone) => alone,
+        Err(error) => return (from.time, error),
+    };
     for i in steps {
         let (begin, end) = (stretch.begin(i), stretch.end(i));
-        match alone.step(&at, end - begin) {
-            Ok(next) if is_finite(&next) => at = next,
+        match alone.step(&at, end - begin, 0.0) {
+            Ok((next, _)) if is_finite(&next) => at = next,
             Ok(_) => return (begin, SimulateError::Diverged { time: end }),
             Err(error) => return (begin, error),
         }

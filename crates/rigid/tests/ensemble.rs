@@ -1,0 +1,184 @@
+//! Many bodies at once are as each alone.
+
+use polhode_ga::threads::Threads;
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::ensemble::{Ensemble, Failure, Outputs, Rows, Start, Summary};
+use polhode_rigid::force::Center;
+use polhode_rigid::method::Method;
+use polhode_rigid::simulate::Options;
+use polhode_rigid::torque::Torque;
+use polhode_rigid::{Inertia, SimulateError};
+
+/// Bodies of every order of moments, symmetric ones and a sphere among them, in axes of their own.
+fn bodies(count: usize) -> Vec<Inertia> {
+    let moments = [
+        [1.0, 2.0, 2.5],
+        [2.5, 1.0, 2.0],
+        [2.0, 2.5, 1.0],
+        [1.0, 2.5, 2.0],
+        [2.0, 1.0, 1.0],
+        [1.0, 2.0, 2.0],
+        [1.5, 1.5, 1.5],
+    ];
+    let tilted = |i: usize| {
+        let m = moments[i % moments.len()];
+        let r = Rotor::from_components([1.0, 0.1 * (i % 5) as f64, 0.0, 0.2 * (i % 3) as f64])
+            .unwrap()
+            .to_matrix();
+        let entry = |j: usize, k: usize| (0..3).map(|a| r[j][a] * m[a] * r[k][a]).sum::<f64>();
+        Inertia::from_matrix(std::array::from_fn(|j| std::array::from_fn(|k| entry(j.min(k), j.max(k)))))
+            .unwrap()
+    };
+    (0..count).map(tilted).collect()
+}
+
+fn starts(count: usize) -> Vec<Start> {
+    let start = |i: usize| Start {
+        rotor: Rotor::from_components([1.0, (i as f64).sin(), 0.3, (2.0 * i as f64).cos()]).unwrap(),
+        omega: Bivector([0.3 + 0.01 * i as f64, 1.0, (i as f64).cos()]),
+        center: Center { position: Vector([1.0, 0.0, 0.0]), velocity: Vector([0.0, i as f64, 0.0]) },
+    };
+    (0..count).map(start).collect()
+}
+
+fn ensemble(count: usize, laws: Vec<Rows<Torque>>) -> Ensemble {
+    Ensemble {
+        inertias: Rows::new(bodies(count)),
+        starts: starts(count),
+        laws,
+        masses: Rows::new(vec![2.0]),
+        forces: vec![],
+    }
+}
+
+/// All points of all bodies as rows of eleven numbers: rotor, angular velocity, momentum and energy.
+fn points(bodies: &Ensemble, times: &[f64], options: &Options, threads: usize) -> (Vec<[f64; 11]>, Summary) {
+    let rows = bodies.starts.len() * times.len();
+    let [mut a, mut b, mut c, mut d] = [4, 3, 3, 1].map(|n| vec![0.5; n * rows]);
+    let outputs =
+        Outputs { rotors: &mut a, omegas: &mut b, momenta: &mut c, energies: &mut d, centers: None };
+    let summary = bodies.run(times, options, Threads::new(threads), outputs, &mut |_| true).unwrap();
+    let row = |i: usize| {
+        std::array::from_fn(|k| match k {
+            0..4 => a[4 * i + k],
+            4..7 => b[3 * i + k - 4],
+            7..10 => c[3 * i + k - 7],
+            _ => d[i],
+        })
+    };
+    ((0..rows).map(row).collect(), summary)
+}
+
+fn stepped(method: &str, step: f64) -> Options {
+    Options { method: Method::from_name(method), step: Some(step), ..Options::default() }
+}
+
+fn weights(count: usize) -> Rows<Torque> {
+    Rows::new((0..count).map(|i| Torque::Heavy(Vector([0.1, 0.02 * i as f64, 0.3]))).collect())
+}
+
+fn dampings(count: usize) -> Rows<Torque> {
+    Rows::new((0..count).map(|i| Torque::Damping(0.01 * (i % 4) as f64)).collect())
+}
+
+const TIMES: [f64; 5] = [-1.0, 0.0, 0.25, 2.0, 5.0];
+
+#[test]
+fn a_body_among_others_is_as_alone() {
+    let count = 45;
+    let wheel = Rows::new(vec![Torque::Wheel(Bivector([0.1, 0.2, -0.3]))]);
+    let lists = [
+        vec![],
+        vec![weights(count)],
+        vec![dampings(count)],
+        vec![wheel.clone()],
+        vec![weights(count), dampings(count), wheel],
+    ];
+    for laws in lists {
+        let all = ensemble(count, laws);
+        for method in ["rk4", "strang", "yoshida4", "kahan_li8", "rkn6", "midpoint"] {
+            let options = stepped(method, 0.05);
+            let (found, summary) = points(&all, &TIMES, &options, 2);
+            for body in 0..count {
+                let alone = all.problem(body).simulate(&TIMES, options.clone(), &mut |_| true);
+                let motion = match alone {
+                    Ok(motion) => motion,
+                    Err(error) => {
+                        assert!(
+                            summary.failures.iter().any(|f| f.body == body && f.error == error),
+                            "{error}"
+                        );
+                        continue;
+                    }
+                };
+                let states = motion.states();
+                assert_eq!(summary.methods[body], motion.certificate.method);
+                assert_eq!(summary.steps[body][0], motion.certificate.steps);
+                for (k, row) in found[body * TIMES.len()..][..TIMES.len()].iter().enumerate() {
+                    let single = states.rotors[k].components().into_iter().chain(states.omegas[k].0);
+                    let single = single.chain(states.momenta_space[k].0).chain([states.energies[k]]);
+                    for (x, y) in row.iter().zip(single) {
+                        // 120 steps of up to 51 roundings at random, magnified some times.
+                        let bound = 20.0 * f64::EPSILON * (120.0 * 51.0_f64).sqrt() * y.abs().max(1.0);
+                        assert!((x - y).abs() <= bound, "{method}, body {body}, t = {}: {x} {y}", TIMES[k]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_body_depends_on_threads_or_on_others() {
+    let count = 70;
+    let all = ensemble(count, vec![weights(count), dampings(count)]);
+    for method in ["rk4", "strang", "kahan_li6"] {
+        let options = stepped(method, 0.05);
+        let (found, _) = points(&all, &TIMES, &options, 1);
+        for threads in [2, 3, 7] {
+            assert_eq!(points(&all, &TIMES, &options, threads).0, found, "{method}");
+        }
+        for body in [0, 33, 69] {
+            let one = Ensemble {
+                inertias: Rows::new(vec![all.inertias.of(body).clone()]),
+                starts: vec![all.starts[body]],
+                laws: all.laws.iter().map(|law| Rows::new(vec![law.of(body).clone()])).collect(),
+                ..all.clone()
+            };
+            let (alone, _) = points(&one, &TIMES, &options, 1);
+            assert_eq!(alone, found[body * TIMES.len()..][..TIMES.len()], "{method} {body}");
+        }
+    }
+}
+
+#[test]
+fn a_body_that_fails_is_told_and_the_others_go_on() {
+    let count = 40;
+    let healthy = ensemble(count, vec![Rows::new(vec![Torque::ConstantBody(Bivector::default()); count])]);
+    let mut broken = healthy.clone();
+    let mut torques = vec![Torque::ConstantBody(Bivector::default()); count];
+    torques[17] = Torque::ConstantBody(Bivector([1e200, 0.0, 0.0]));
+    broken.laws = vec![Rows::new(torques)];
+    for method in ["rk4", "strang"] {
+        let options = stepped(method, 0.05);
+        let (expected, _) = points(&healthy, &TIMES, &options, 2);
+        let (found, summary) = points(&broken, &TIMES, &options, 2);
+        let [Failure { body: 17, error: SimulateError::Diverged { .. }, .. }] = &summary.failures[..] else {
+            panic!("{method}: {:?}", summary.failures)
+        };
+        for body in (0..count).filter(|&body| body != 17) {
+            assert_eq!(found[body * 5..][..5], expected[body * 5..][..5]);
+        }
+        assert!(found[17 * 5 + 4].iter().all(|x| x.is_nan()));
+    }
+}
+
+#[test]
+fn a_run_can_be_stopped() {
+    let all = ensemble(40, vec![]);
+    let [mut a, mut b, mut c, mut d] = [4, 3, 3, 1].map(|n| vec![0.0; n * 40]);
+    let outputs =
+        Outputs { rotors: &mut a, omegas: &mut b, momenta: &mut c, energies: &mut d, centers: None };
+    let result = all.run(&[1e6], &stepped("rk4", 0.01), Threads::new(2), outputs, &mut |_| false);
+    assert_eq!(result, Err(SimulateError::Interrupted));
+}

@@ -22,6 +22,8 @@ COLUMNS = [
     "numba",
     "NumPy",
     "JAX",
+    "MuJoCo",
+    "MuJoCo, rollout",
     "Pauli",
 ]
 LEGEND = """\

@@ -16,6 +16,7 @@ import numpy as np
 import algebras
 import batches
 import compiled
+import ensembles
 import imports
 import machine
 import motion
@@ -31,6 +32,7 @@ SECTIONS = {
     "Formulas": compiled.rows,
     "Any signature": algebras.rows,
     "Motion": motion.rows,
+    "Ensembles": ensembles.rows,
     "Import, beyond NumPy": imports.rows,
 }
 SEED = 1

@@ -47,7 +47,7 @@ impl Ensemble {
         Ok(Drawn {
             rotors: rotors.iter().map(|rotor| rotor.components()).collect(),
             omegas: omegas.iter().map(|omega| omega.0).collect(),
-            centers: places.zip(velocities).map(center).collect(),
+            centers: places.into_iter().zip(velocities).map(center).collect(),
             inertias: draw.inertias(body, held)?,
             laws: laws.iter().map(|law| draw.law(law, body, scene.gravity)).collect::<Result<_, _>>()?,
         })
@@ -66,44 +66,48 @@ impl Draw<'_> {
         Words::new(self.ensemble.seed, name, self.bodies.start as u64).take(self.bodies.len())
     }
 
-    /// A vector about which those of the bodies spread.
-    fn spread(&self, name: &str, spread: Option<Spread>, vector: Vector) -> impl Iterator<Item = [f64; 3]> {
-        let draw = move |words: [u64; 8]| spread.map_or(vector.0, |spread| spread.draw(vector.0, &words));
-        self.words(name).map(draw)
+    /// What is drawn of the words of this name, for each of the bodies; the nominal one where nothing is.
+    fn each<T: Clone>(&self, name: &str, nominal: T, draw: Option<impl Fn([u64; 8]) -> T>) -> Vec<T> {
+        match draw {
+            Some(draw) => self.words(name).map(draw).collect(),
+            None => vec![nominal; self.bodies.len()],
+        }
+    }
+
+    /// Vectors that spread about one.
+    fn spread(&self, name: &str, spread: Option<Spread>, Vector(vector): Vector) -> Vec<[f64; 3]> {
+        self.each(name, vector, spread.map(|spread| move |words| spread.draw(vector, &words)))
     }
 
     /// Four normal numbers point in every direction of their space alike, so their rotor turns to every attitude
     /// alike.
-    fn rotors(&self, attitude: Rotor) -> Vec<Rotor> {
-        let rotor = |words: [u64; 8]| match self.ensemble.attitude {
-            None => attitude,
-            Some(Attitudes::Turned(spread)) => {
-                let vector = Bivector(spread.draw([0.0; 3], &words));
-                attitude * Rotor::exp(vector * -0.5)
-            }
-            Some(Attitudes::Uniform) => {
-                let direction = unit(from_fn(|k| normal(words[k])));
-                Rotor::from_unit_components(direction)
+    fn rotors(&self, nominal: Rotor) -> Vec<Rotor> {
+        let draw = |attitudes| {
+            move |words: [u64; 8]| match attitudes {
+                Attitudes::Turned(spread) => {
+                    nominal * Rotor::exp(Bivector(spread.draw([0.0; 3], &words)) * -0.5)
+                }
+                Attitudes::Uniform => Rotor::from_unit_components(unit(from_fn(|k| normal(words[k])))),
             }
         };
-        self.words("attitude").map(rotor).collect()
+        self.each("attitude", nominal, self.ensemble.attitude.map(draw))
     }
 
     /// In body axes, whatever the axes in which they are drawn.
     fn omegas(&self, scene: &Scene, rotors: &[Rotor]) -> Vec<Bivector> {
         let size = scene.spin.norm();
-        let direction = |words: [u64; 8]| match self.ensemble.directions {
-            true => unit(from_fn(|k| normal(words[k]))).map(|x| size * x),
-            false => scene.spin.0,
+        let direction = |words: [u64; 8]| unit(from_fn(|k| normal(words[k]))).map(|x| size * x);
+        let directions = self.ensemble.directions.then_some(direction);
+        let mut spins = self.each("spin.direction", scene.spin.0, directions);
+        if let Some(spread) = self.ensemble.spin {
+            let draw = |(spin, words): (&mut [f64; 3], _)| *spin = spread.draw(*spin, &words);
+            spins.iter_mut().zip(self.words("spin")).for_each(draw);
+        }
+        let omega = |(spin, rotor): ([f64; 3], &Rotor)| match scene.spin_frame {
+            SpinFrame::Body => Bivector(spin),
+            SpinFrame::Space => rotor.reverse().apply_bivector(Bivector(spin)),
         };
-        let spins = self.words("spin.direction").map(direction).zip(self.words("spin"));
-        let spin =
-            |(spin, words)| Bivector(self.ensemble.spin.map_or(spin, |spread| spread.draw(spin, &words)));
-        let omega = |(spin, rotor): (Bivector, &Rotor)| match scene.spin_frame {
-            SpinFrame::Body => spin,
-            SpinFrame::Space => rotor.reverse().apply_bivector(spin),
-        };
-        spins.map(spin).zip(rotors).map(omega).collect()
+        spins.into_iter().zip(rotors).map(omega).collect()
     }
 
     /// A body is possible if and only if none of the integrals `c_k = ∫ x_k² dm` along its principal axes is

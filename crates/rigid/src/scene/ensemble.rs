@@ -44,6 +44,43 @@ pub struct Ensemble {
     pub parameters: Vec<(&'static Parameter, Spread)>,
 }
 
+/// What differs from body to body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Varied {
+    /// Its name in `[ensemble]`, dotted; `spin.direction` for directions.
+    pub name: String,
+    /// How it spreads; none where all that it can be is alike.
+    pub spread: Option<Spread>,
+    /// The unit of the widths, but for factors.
+    pub unit: &'static str,
+}
+
+impl Ensemble {
+    /// All that differs.
+    pub fn varied(&self) -> Vec<Varied> {
+        let turned = match self.attitude {
+            Some(Attitudes::Turned(spread)) => Some(spread),
+            _ => None,
+        };
+        let own = [
+            ("attitude", self.attitude.is_some(), turned, Quantity::Angle.si_unit()),
+            ("spin.direction", self.directions, None, ""),
+            ("spin", self.spin.is_some(), self.spin, Quantity::AngularRate.si_unit()),
+            ("moments", self.moments.is_some(), self.moments, ""),
+            ("position", self.position.is_some(), self.position, Quantity::Length.si_unit()),
+            ("velocity", self.velocity.is_some(), self.velocity, Quantity::Speed.si_unit()),
+        ];
+        let own = own.into_iter().filter(|(_, differs, ..)| *differs);
+        let own = own.map(|(name, _, spread, unit)| Varied { name: name.to_owned(), spread, unit });
+        let parameters = self.parameters.iter().map(|(parameter, spread)| Varied {
+            name: parameter.name(),
+            spread: Some(*spread),
+            unit: parameter.quantity.map_or("", Quantity::si_unit),
+        });
+        own.chain(parameters).collect()
+    }
+}
+
 /// How attitudes differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Attitudes {

@@ -80,7 +80,7 @@ use crate::force::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use draws::{DrawError, Drawn};
-pub use ensemble::{Attitudes, Ensemble};
+pub use ensemble::{Attitudes, Ensemble, Varied};
 pub use forces::Push;
 pub use initial::SpinFrame;
 pub use parameters::{Limit, Parameter};

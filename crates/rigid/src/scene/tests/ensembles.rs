@@ -73,6 +73,21 @@ fn an_ensemble_is_read() {
             ("torque.gravity_gradient.eccentricity".to_owned(), one(Form::Uniform, 0.0)),
         ]
     );
+    let names: Vec<String> = found.varied().into_iter().map(|varied| varied.name).collect();
+    assert_eq!(
+        names,
+        [
+            "attitude",
+            "spin.direction",
+            "spin",
+            "moments",
+            "position",
+            "velocity",
+            "torque.viscous_damping",
+            "torque.gravity_gradient.period",
+            "torque.gravity_gradient.eccentricity",
+        ]
+    );
     let least = super::scene(&with("number = 1\nattitude = 'uniform'")).ensemble.unwrap();
     assert_eq!((least.seed, least.attitude, least.spin), (0, Some(Attitudes::Uniform), None));
     assert!(super::scene(LEAST).ensemble.is_none());

@@ -116,7 +116,13 @@ impl Reader {
                 continue;
             }
             let what = if value.get_ref().is_table() { "table" } else { "field" };
-            self.report(key.span(), unknown(what, name, known));
+            let message = match name.split_once('.') {
+                Some((table, _)) if known.contains(&table) => {
+                    format!("in quotes this is a single name; write {name} without")
+                }
+                _ => unknown(what, name, known),
+            };
+            self.report(key.span(), message);
         }
     }
 

@@ -137,6 +137,10 @@ fn what_is_wrong_with_an_ensemble_has_its_place() {
             "gravity.acceleration = { normal = 1 }",
             "12:9: what varies needs a value in the scene, and this has no [gravity]",
         ),
+        (
+            "'torque.damping' = { normal = 1 }",
+            "12:1: in quotes this is a single name; write torque.damping without",
+        ),
         ("torque.pd_control = { normal = 1 }", "12:23: unknown field `normal`, expected one of `kp`, `kd`"),
         ("torque.pd_control.kd = 1", "12:24: expected a table such as `{ relative = … }`, found an integer"),
         (

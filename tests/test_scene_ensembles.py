@@ -55,7 +55,7 @@ def test_bodies_are_drawn(path, spec):
     np.testing.assert_array_equal(state.position.components, np.zeros((1000, 3)))
     np.testing.assert_array_equal(state.velocity.components[:, 2], 0.0)
     assert len(inertias) == 1000
-    # This body is flat: its integrals of x² dm are 2, 1 and 0, and i1 is the second, i2 the first, i3 their sum.
+    # This body is flat: its integrals of x² dm are 2, 1 and 0; i1 is the second, i2 the first, i3 their sum.
     moments = np.array([inertia.principal_moments for inertia in inertias])
     spread = np.log(moments / scene.body.inertia.principal_moments).std(axis=0)
     # Of 1000 normal numbers the deviation is off by 1/√2000; five times as much happens once in a million.

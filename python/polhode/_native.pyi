@@ -317,6 +317,7 @@ def simulate(
     events: list[Event],
     progress: Callable[[int, float], object] | None,
 ) -> Motion: ...
+
 @final
 class Draws:
     def number(self) -> int: ...

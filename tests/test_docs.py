@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -21,7 +22,11 @@ def test_scenes_run(text, tmp_path):
     shutil.copy(ROOT / "examples/t-handle.stl", tmp_path / "examples")
     path = tmp_path / "scene.toml"
     path.write_text(text)
-    trajectory = ph.Scene.read(path).run()
+    scene = ph.Scene.read(path)
+    if scene.ensemble is not None:
+        state, _, _ = scene.ensemble.draw(count=3)
+        assert state.rotor.shape == (3,)
+    trajectory = replace(scene, ensemble=None).run()
     assert trajectory.certificate.worst < 1e-10
 
 
@@ -64,7 +69,7 @@ def blocks_of(page):
 
 
 def test_there_are_scenes():
-    assert len(SCENES) == 8
+    assert len(SCENES) == 9
 
 
 @pytest.mark.parametrize(

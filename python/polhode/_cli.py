@@ -189,12 +189,30 @@ def _check(options: argparse.Namespace) -> int:
             if not options.json:
                 _complain(str(error), BAD_INPUT)
         else:
-            findings.append({"scene": path, "ok": True, "body": repr(scene.body)})
+            findings.append({"scene": path, "ok": True, "body": repr(scene.body), **_size(scene)})
             if not options.json:
-                print(f"{path}: ok, {scene.body!r}, {len(scene.times)} output times")
+                print(f"{path}: ok, {scene.body!r}, {len(scene.times)} output times{_many(scene)}")
     if options.json:
         print(json.dumps(findings, indent=2))
     return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
+
+
+def _size(scene: Scene) -> dict[str, int]:
+    """Return how many bodies an ensemble has and how much memory they will take; nothing without one."""
+    if scene.ensemble is None:
+        return {}
+    return {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
+
+
+def _many(scene: Scene) -> str:
+    """Return the same in words."""
+    if scene.ensemble is None:
+        return ""
+    size, unit = float(scene.result_bytes), "bytes"
+    for larger in ("kB", "MB", "GB", "TB", "PB"):
+        if size >= 1000:
+            size, unit = size / 1000, larger
+    return f", {scene.ensemble.number} bodies, {size:.3g} {unit} of results"
 
 
 def _netcdf_name(name: str) -> str:

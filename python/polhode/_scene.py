@@ -12,6 +12,7 @@ from polhode import _native
 from polhode import force as forces
 from polhode._arrays import Array, frozen
 from polhode._bodies import Body
+from polhode._drawn import EnsembleSpec
 from polhode._rotor import Rotor
 from polhode._simulate import simulate
 from polhode._state import State
@@ -48,6 +49,8 @@ class Scene:
         As for `polhode.simulate`; step and tolerances may be None.
     drift_bound
         Largest relative drift of a conserved quantity that counts as success.
+    ensemble
+        How many bodies there are, and in what they differ from this one; None where there is but one.
     """
 
     path: Path
@@ -65,6 +68,7 @@ class Scene:
     rtol: float | None
     atol: float | None
     drift_bound: float
+    ensemble: EnsembleSpec | None
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Scene:
@@ -97,7 +101,14 @@ class Scene:
             rtol=fields["rtol"],
             atol=fields["atol"],
             drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
+            ensemble=None if fields["ensemble"] is None else EnsembleSpec._of(fields["ensemble"]),
         )
+
+    @property
+    def result_bytes(self) -> int:
+        """The memory that the states of all bodies at all times take: rotors, Ω, L and energies."""
+        numbers = 4 + 3 + 3 + 1
+        return (1 if self.ensemble is None else self.ensemble.number) * len(self.times) * numbers * 8
 
     @property
     def held(self) -> bool:
@@ -106,6 +117,11 @@ class Scene:
 
     def run(self, progress: Callable[[int, float], object] | None = None) -> Trajectory:
         """Return the motion at the output times; errors and `progress` as for `polhode.simulate`."""
+        if self.ensemble is not None:
+            raise ValueError(
+                f"an ensemble of {self.ensemble.number} bodies cannot be run yet; "
+                "remove the table [ensemble] to run the one body"
+            )
         trajectory = simulate(
             self.body,
             self.state,

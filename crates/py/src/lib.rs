@@ -8,6 +8,7 @@ mod batches;
 mod bodies;
 mod calls;
 mod closed_forms;
+mod draws;
 mod formula;
 mod free;
 mod laws;
@@ -65,6 +66,8 @@ mod _native {
     #[pymodule_export]
     use crate::value::{Multivector, Rotor};
 
+    #[pymodule_export]
+    use crate::draws::Draws;
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene};
     #[pymodule_export]

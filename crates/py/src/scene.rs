@@ -2,11 +2,12 @@
 
 use crate::arrays::line;
 use crate::bodies::Body;
+use crate::draws::Draws;
 use crate::torque::Law;
 use crate::value;
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::{Bivector, Vector};
 use polhode_rigid::force::Force;
 use polhode_rigid::scene::Push;
 use polhode_rigid::torque::{Axes, Kind, Torque};
@@ -34,7 +35,7 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     let (scene, body, laws) = built.map_err(|diagnostics| report(&diagnostics))?;
     let (position, velocity) = (scene.center.position, scene.center.velocity);
     let formulas: Vec<Option<String>> = laws.iter().map(|law| law.formula.clone()).collect();
-    let laws: Vec<Py<Law>> = laws.into_iter().map(|law| named(py, law.torque)).collect::<PyResult<_>>()?;
+    let made: Vec<Py<Law>> = laws.iter().map(|law| named(py, law.torque.clone())).collect::<PyResult<_>>()?;
     let forces: Vec<_> = scene.forces.iter().map(|push| pushed(py, push)).collect::<PyResult<_>>()?;
     let result = PyDict::new(py);
     result.set_item("title", &scene.title)?;
@@ -45,7 +46,7 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
     result.set_item("position", line(py, position.0.to_vec()))?;
     result.set_item("velocity", line(py, velocity.0.to_vec()))?;
-    result.set_item("laws", laws)?;
+    result.set_item("laws", made)?;
     result.set_item("formulas", formulas)?;
     result.set_item("forces", forces)?;
     result.set_item("times", line(py, scene.run.times()))?;
@@ -54,50 +55,75 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("rtol", scene.run.choice.rtol)?;
     result.set_item("atol", scene.run.choice.atol)?;
     result.set_item("drift_bound", scene.run.drift_bound)?;
+    result.set_item("ensemble", Draws::of(py, scene, body, laws)?)?;
     Ok(result)
 }
 
 /// A law with the call of `polhode.torque` that would make it.
-fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
-    let vector = |Vector([x, y, z]): Vector| (x, y, z);
-    let bivector = |Bivector([x, y, z]): Bivector| (x, y, z);
-    let three = |[x, y, z]: [f64; 3]| (x, y, z);
-    let rotor = |rotor: Rotor| PyTuple::new(py, rotor.components());
-    let axes = |axes| if axes == Axes::Space { "space" } else { "body" };
-    macro_rules! call {
-        ($name:literal, $($argument:expr),*) => { ($name, ($($argument,)*).into_pyobject(py)?) };
-    }
-    let (name, arguments): (&str, Bound<'_, PyTuple>) = match &torque {
-        Torque::Heavy(c) => call!("heavy", vector(*c)),
-        Torque::GravityGradient(orbit) => {
-            call!("gravity_gradient", orbit.rate(), orbit.eccentricity(), orbit.anomaly())
-        }
-        Torque::ConstantBody(torque) => call!("constant_body", bivector(*torque)),
-        Torque::ConstantSpace(torque) => call!("constant_space", bivector(*torque)),
-        Torque::Damping(g) => call!("damping", *g),
-        Torque::QuadraticDamping(k) => call!("quadratic_damping", *k),
-        Torque::ViscousDamping(d) => call!("viscous_damping", three(d.along())),
-        Torque::Magnetic { dipole, field } => call!("magnetic", vector(*dipole), vector(*field)),
-        Torque::TorsionSpring { stiffness, rest } => call!("torsion_spring", *stiffness, rotor(*rest)?),
-        Torque::Wheel(h) => call!("gyrostat", bivector(*h)),
-        Torque::Control { stiffness, damping, target } => {
-            call!("pd_control", three(stiffness.along()), three(damping.along()), rotor(*target)?)
-        }
-        Torque::Larmor(b) => call!("larmor", vector(*b)),
+pub(crate) fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
+    let (name, arguments) = match &torque {
         Torque::Tabulated(table) => {
             let times = PyTuple::new(py, table.times())?;
-            let rows = PyTuple::new(py, table.torques().iter().map(|row| bivector(*row)))?;
+            let rows = PyTuple::new(py, table.torques().iter().map(|Bivector([x, y, z])| (*x, *y, *z)))?;
             let kind = if table.kind == Kind::Cubic { "cubic" } else { "linear" };
-            call!("tabulated", times, rows, axes(table.axes), kind)
+            ("tabulated", (times, rows, axes(table.axes), kind).into_pyobject(py)?)
         }
         Torque::Formula(law) => {
             let known = law.known().map(|(name, given)| Ok((name, known(py, given)?)));
             let known = PyTuple::new(py, known.collect::<PyResult<Vec<_>>>()?)?;
-            call!("formula", law.text(), axes(law.axes()), known)
+            ("formula", (law.text(), axes(law.axes()), known).into_pyobject(py)?)
         }
-        Torque::Function(_) => return Err(PyValueError::new_err("a scene has no functions of Python's")),
+        _ => {
+            let Some((name, numbers)) = call(&torque) else {
+                return Err(PyValueError::new_err("a scene has no functions of Python's"));
+            };
+            let argument = |numbers: &Numbers| match numbers {
+                Numbers::One(x) => Ok(x.into_pyobject(py)?.into_any()),
+                Numbers::Row(row) => Ok(PyTuple::new(py, row)?.into_any()),
+            };
+            let arguments = numbers.iter().map(argument).collect::<PyResult<Vec<_>>>()?;
+            (name, PyTuple::new(py, arguments)?)
+        }
     };
     Law::named(py, torque, name, arguments)
+}
+
+fn axes(axes: Axes) -> &'static str {
+    if axes == Axes::Space { "space" } else { "body" }
+}
+
+/// An argument of a law.
+pub(crate) enum Numbers {
+    One(f64),
+    Row(Vec<f64>),
+}
+
+/// The function of `polhode.torque` that makes a law of numbers alone, and its arguments.
+pub(crate) fn call(torque: &Torque) -> Option<(&'static str, Vec<Numbers>)> {
+    use Numbers::One;
+    let row = |numbers: &[f64]| Numbers::Row(numbers.to_vec());
+    Some(match torque {
+        Torque::Heavy(c) => ("heavy", vec![row(&c.0)]),
+        Torque::GravityGradient(orbit) => {
+            let (rate, eccentricity, anomaly) = (orbit.rate(), orbit.eccentricity(), orbit.anomaly());
+            ("gravity_gradient", vec![One(rate), One(eccentricity), One(anomaly)])
+        }
+        Torque::ConstantBody(torque) => ("constant_body", vec![row(&torque.0)]),
+        Torque::ConstantSpace(torque) => ("constant_space", vec![row(&torque.0)]),
+        Torque::Damping(g) => ("damping", vec![One(*g)]),
+        Torque::QuadraticDamping(k) => ("quadratic_damping", vec![One(*k)]),
+        Torque::ViscousDamping(d) => ("viscous_damping", vec![row(&d.along())]),
+        Torque::Magnetic { dipole, field } => ("magnetic", vec![row(&dipole.0), row(&field.0)]),
+        Torque::TorsionSpring { stiffness, rest } => {
+            ("torsion_spring", vec![One(*stiffness), row(&rest.components())])
+        }
+        Torque::Wheel(h) => ("gyrostat", vec![row(&h.0)]),
+        Torque::Control { stiffness, damping, target } => {
+            ("pd_control", vec![row(&stiffness.along()), row(&damping.along()), row(&target.components())])
+        }
+        Torque::Larmor(b) => ("larmor", vec![row(&b.0)]),
+        Torque::Tabulated(_) | Torque::Formula(_) | Torque::Function(_) => return None,
+    })
 }
 
 /// The value of a name in a formula.

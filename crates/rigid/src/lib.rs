@@ -40,6 +40,7 @@ pub mod midpoint;
 pub mod phase;
 pub mod point;
 mod quaternion;
+mod random;
 pub mod regime;
 pub mod runge_kutta;
 pub mod scene;

@@ -1,6 +1,6 @@
 //! From what a scene says of its body to the body.
 
-use super::{BodySpec, Law, Scene};
+use super::{BodySpec, Gravity, Law, Scene};
 use crate::body::{Body, BodyError};
 use crate::inertia::Inertia;
 use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
@@ -10,6 +10,14 @@ use crate::torque::Torque;
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Rotor, Vector};
 use std::path::Path;
+
+impl Gravity {
+    /// The law on a body whose fixed point is the origin of its axes.
+    pub(super) fn law(&self, body: &Body) -> Law {
+        let torque = Torque::Heavy(body.center_of_mass * (body.mass * self.acceleration));
+        Law { name: "gravity", torque, formula: None }
+    }
+}
 
 impl Scene {
     /// The body and what turns it, ready to move. Under gravity the body is shifted so that the fixed
@@ -22,8 +30,7 @@ impl Scene {
             Some(gravity) => {
                 let body = body.moved(Rotor::IDENTITY, -gravity.pivot);
                 let body = body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
-                let torque = Torque::Heavy(body.center_of_mass * (body.mass * gravity.acceleration));
-                laws.insert(0, Law { torque, formula: None });
+                laws.insert(0, gravity.law(&body));
                 body
             }
         };
@@ -62,7 +69,7 @@ impl Scene {
     }
 
     /// Whether the body is held at a fixed point.
-    fn is_held(&self) -> bool {
+    pub(super) fn is_held(&self) -> bool {
         self.gravity.is_some() || self.torques.iter().any(|law| matches!(law.torque, Torque::Heavy(_)))
     }
 

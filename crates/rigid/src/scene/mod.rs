@@ -42,6 +42,17 @@
 //! step = "1 ms"
 //! rtol = 1e-10
 //! atol = 1e-10
+//!
+//! [ensemble]                 # optional: many bodies that differ at random from this one
+//! number = 100_000
+//! seed = 7                   # 0 if left out
+//! attitude = "uniform"       # or { normal = "2 deg" }, one or three along the body axes: turned by a rotation vector
+//! spin = { relative = 0.01 } # or normal, uniform, as below; direction = "uniform" alone or with one of them
+//! moments = { relative = 0.02 }           # each integral of x_k² dm along the principal axes
+//! position = { normal = "1 mm" }          # or { uniform = … }, half widths; one or three; velocity too
+//! gravity.acceleration = { normal = "1e-3 m/s^2" }
+//! torque.damping = { relative = 0.1 }     # times exp(0.1 n); or normal, uniform: any parameter of a law
+//! torque.magnetic.dipole = { normal = ["1 mA m^2", 0, 0] }
 //! ```
 //!
 //! A bare number is in SI units, a string carries its own. Everything wrong with a file is reported at
@@ -50,13 +61,17 @@
 
 mod body;
 mod build;
+mod draws;
+mod ensemble;
 #[cfg(test)]
 mod file_tests;
 mod forces;
 mod formulas;
 mod initial;
+mod parameters;
 mod reader;
 mod run;
+mod spread;
 #[cfg(test)]
 mod tests;
 mod torques;
@@ -64,12 +79,16 @@ mod torques;
 use crate::force::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
+pub use draws::{DrawError, Drawn};
+pub use ensemble::{Attitudes, Ensemble, Varied};
 pub use forces::Push;
 pub use initial::SpinFrame;
+pub use parameters::{Limit, Parameter};
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Bivector, Rotor, Vector};
 use reader::{Reader, Table, Value};
 pub use run::{Choice, Run};
+pub use spread::{Form, Spread};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -105,6 +124,8 @@ pub struct Scene {
     pub forces: Vec<Push>,
     /// For how long, and how.
     pub run: Run,
+    /// How many bodies, and in what they differ, if there are more than the one.
+    pub ensemble: Option<Ensemble>,
     /// The file, from which paths in it are relative.
     pub path: PathBuf,
     /// The content of the file.
@@ -192,7 +213,8 @@ impl Scene {
 }
 
 fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Option<Scene> {
-    let tables = ["title", "define", "body", "initial", "gravity", "torque", "force", "run", "method"];
+    let tables =
+        ["title", "define", "body", "initial", "gravity", "torque", "force", "run", "method", "ensemble"];
     reader.only(root, &[&tables[..], &torques::FORMULAS.map(|(name, _)| name)].concat());
     reader.optional(root, "define", |reader, value| {
         let table = reader.table(value, "[define]")?;
@@ -210,6 +232,8 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
     let method = reader.optional(root, "method", |reader, value| reader.table(value, "[method]"));
     let run = section(reader, root, "run", "[run]")
         .and_then(|table| run::read(reader, &table, method.as_ref().and_then(Option::as_ref)));
+    let nominal = ensemble::Nominal { initial, gravity, laws: torques.as_deref() };
+    let ensemble = reader.optional(root, "ensemble", |reader, value| ensemble::read(reader, value, &nominal));
     let initial = initial?;
     Some(Scene {
         title: title?,
@@ -222,6 +246,7 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
         torques: torques?,
         forces: forces?.unwrap_or_default(),
         run: run?,
+        ensemble: ensemble?,
         path: path.to_owned(),
         text: text.to_owned(),
     })

@@ -58,7 +58,7 @@ impl Reader {
         self.problems.push((span, message.into()));
     }
 
-    fn wrong_type(&mut self, value: &Value, expected: &str) {
+    pub fn wrong_type(&mut self, value: &Value, expected: &str) {
         let found = match value.get_ref() {
             DeValue::String(_) => "a string",
             DeValue::Integer(_) => "an integer",
@@ -116,7 +116,13 @@ impl Reader {
                 continue;
             }
             let what = if value.get_ref().is_table() { "table" } else { "field" };
-            self.report(key.span(), unknown(what, name, known));
+            let message = match name.split_once('.') {
+                Some((table, _)) if known.contains(&table) => {
+                    format!("in quotes this is a single name; write {name} without")
+                }
+                _ => unknown(what, name, known),
+            };
+            self.report(key.span(), message);
         }
     }
 
@@ -195,6 +201,11 @@ impl Reader {
 
     /// A whole number.
     pub fn integer(&mut self, value: &Value) -> Option<i128> {
+        self.within(value, "the integer is beyond 2^53")
+    }
+
+    /// An integer that is not too large, of which this is said otherwise.
+    fn within(&mut self, value: &Value, beyond: &str) -> Option<i128> {
         let DeValue::Integer(integer) = value.get_ref() else {
             self.wrong_type(value, "a whole number");
             return None;
@@ -202,7 +213,7 @@ impl Reader {
         match i128::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(integer) if integer.abs() <= LARGEST_INTEGER => Some(integer),
             _ => {
-                self.report(value.span(), "the integer is beyond 2^53; write it with a decimal point");
+                self.report(value.span(), beyond);
                 None
             }
         }
@@ -213,7 +224,9 @@ impl Reader {
         let DeValue::Float(float) = value.get_ref() else {
             // At most 2^53 in magnitude, so exact.
             return match value.get_ref() {
-                DeValue::Integer(_) => self.integer(value).map(|integer| integer as f64),
+                DeValue::Integer(_) => self
+                    .within(value, "the integer is beyond 2^53; write it with a decimal point")
+                    .map(|integer| integer as f64),
                 _ => {
                     self.wrong_type(value, "a number");
                     None

@@ -19,6 +19,8 @@ use toml::de::DeValue;
 /// A law, and its formula as it stands in the file, if it is one.
 #[derive(Clone, Debug)]
 pub struct Law {
+    /// The field of `[torque]` that says it, or `gravity`.
+    pub name: &'static str,
     /// The law.
     pub torque: Torque,
     /// The formula, whose numbers may have units.
@@ -68,7 +70,7 @@ pub fn read(reader: &mut Reader, root: &Table, table: Option<&Table>) -> Option<
             reader.report(value.span(), format!("`{name}` is also in [torque], give only one of them"));
         }
         for value in [Some(root), table].into_iter().flatten().filter_map(|table| table.get(name)) {
-            laws.push((value.span().start, formula(reader, value, axes)));
+            laws.push((value.span().start, formula(reader, value, name, axes)));
         }
     }
     if let Some(table) = table {
@@ -77,7 +79,7 @@ pub fn read(reader: &mut Reader, root: &Table, table: Option<&Table>) -> Option<
         for (name, read) in LAWS {
             if let Some(value) = table.get(name) {
                 let torque = read(reader, value);
-                laws.push((value.span().start, torque.map(|torque| Law { torque, formula: None })));
+                laws.push((value.span().start, torque.map(|torque| Law { name, torque, formula: None })));
             }
         }
     }
@@ -85,10 +87,10 @@ pub fn read(reader: &mut Reader, root: &Table, table: Option<&Table>) -> Option<
     laws.into_iter().map(|(_, law)| law).collect()
 }
 
-fn formula(reader: &mut Reader, value: &Value, axes: Axes) -> Option<Law> {
+fn formula(reader: &mut Reader, value: &Value, name: &'static str, axes: Axes) -> Option<Law> {
     let law = formulas::torque(reader, value, axes)?;
     let written = reader.string(value)?.to_owned();
-    Some(Law { torque: Torque::Formula(law), formula: Some(written) })
+    Some(Law { name, torque: Torque::Formula(law), formula: Some(written) })
 }
 
 fn not_negative(reader: &mut Reader, value: &Value, quantity: Quantity) -> Option<f64> {

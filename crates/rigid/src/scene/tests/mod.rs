@@ -1,5 +1,6 @@
 //! What a scene says is what is read.
 
+mod ensembles;
 mod laws;
 mod refusals;
 

@@ -30,7 +30,7 @@ fn everything_wrong_with_a_file_is_reported_in_its_order() {
         [
             "1:9: expected a string, found an integer",
             "2:1: unknown field `tilte`, expected one of `title`, `define`, `body`, `initial`, `gravity`, `torque`, \
-             `force`, `run`, `method`, `torque_body`, `torque_space`",
+             `force`, `run`, `method`, `ensemble`, `torque_body`, `torque_space`",
             "3:1: missing field in [body], expected one of `density`, `mass`",
             "4:9: unknown solid `bx`, expected one of `box`, `ellipsoid`, `sphere`, `hollow_sphere`, \
              `cylinder`, `cone`, `rod`, `disc`, `torus`, `capsule`",

@@ -1,0 +1,254 @@
+//! Random numbers, each of which has its own place: what a body draws depends on the seed, on the name of what is
+//! drawn and on the number of the body, and on nothing else.
+//!
+//! ChaCha with eight rounds makes of a key and a counter 64 bytes that are as good as random. The key is the seed
+//! and the name, the counter is the body: body i owns the i-th block, eight words of 64 bits, whoever draws it, and
+//! in whichever order.
+//!
+//! All arithmetic here is that of `+ − × ÷ √`, so that the numbers have the same bits on every machine.
+
+use crate::free::lanes::{exp_minus, horner};
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
+
+/// No number of [`normal`] is larger: that of the smallest probability, 2⁻⁵³, is 8.2095.
+pub(crate) const LARGEST_NORMAL: f64 = 8.21;
+
+/// The words of bodies, one after the other.
+pub(crate) struct Words(ChaCha8Rng);
+
+impl Words {
+    /// For what has this name, from this body on.
+    pub fn new(seed: u64, name: &str, first: u64) -> Words {
+        let mut key = [0; 32];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        key[8..16].copy_from_slice(&hash(name).to_le_bytes());
+        let mut words = ChaCha8Rng::from_seed(key);
+        words.set_block_pos(first);
+        Words(words)
+    }
+}
+
+impl Iterator for Words {
+    type Item = [u64; 8];
+
+    fn next(&mut self) -> Option<[u64; 8]> {
+        Some(std::array::from_fn(|_| self.0.next_u64()))
+    }
+}
+
+/// The hash FNV-1a.
+fn hash(name: &str) -> u64 {
+    name.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// A number between −½ and ½, of 2⁵² that lie evenly and alike on both sides of 0, which is none of them.
+fn centered(word: u64) -> f64 {
+    ((word >> 12) as f64 + 0.5) / (1u64 << 52) as f64 - 0.5
+}
+
+/// A number between −1 and 1, all alike.
+pub(crate) fn uniform(word: u64) -> f64 {
+    2.0 * centered(word)
+}
+
+/// A number of the normal distribution with mean 0 and standard deviation 1: the one that as many are below as the
+/// word says, by Wichura's rational functions (algorithm AS 241, Appl. Statist. 37, 1988), to 1e-15 of it.
+///
+/// Near the middle they are of the distance q of the probability from ½, in the tails of `r = √(−ln p)`, p the
+/// smaller of the probabilities on both sides. Never 0, and never larger than [`LARGEST_NORMAL`].
+#[allow(clippy::excessive_precision)]
+pub(crate) fn normal(word: u64) -> f64 {
+    const MIDDLE: [[f64; 8]; 2] = [
+        [
+            3.387132872796366608,
+            133.14166789178437745,
+            1971.5909503065514427,
+            13731.693765509461125,
+            45921.953931549871457,
+            67265.770927008700853,
+            33430.575583588128105,
+            2509.0809287301226727,
+        ],
+        [
+            1.0,
+            42.313330701600911252,
+            687.1870074920579083,
+            5394.1960214247511077,
+            21213.794301586595867,
+            39307.89580009271061,
+            28729.085735721942674,
+            5226.495278852545925,
+        ],
+    ];
+    const TAIL: [[f64; 8]; 2] = [
+        [
+            1.42343711074968357734,
+            4.6303378461565452959,
+            5.7694972214606914055,
+            3.64784832476320460504,
+            1.27045825245236838258,
+            0.24178072517745061177,
+            0.0227238449892691845833,
+            7.7454501427834140764e-4,
+        ],
+        [
+            1.0,
+            2.05319162663775882187,
+            1.6763848301838038494,
+            0.68976733498510000455,
+            0.14810397642748007459,
+            0.0151986665636164571966,
+            5.475938084995344946e-4,
+            1.05075007164441684324e-9,
+        ],
+    ];
+    const FAR_TAIL: [[f64; 8]; 2] = [
+        [
+            6.6579046435011037772,
+            5.4637849111641143699,
+            1.7848265399172913358,
+            0.29656057182850489123,
+            0.026532189526576123093,
+            0.0012426609473880784386,
+            2.71155556874348757815e-5,
+            2.01033439929228813265e-7,
+        ],
+        [
+            1.0,
+            0.59983220655588793769,
+            0.13692988092273580531,
+            0.0148753612908506148525,
+            7.868691311456132591e-4,
+            1.8463183175100546818e-5,
+            1.4215117583164458887e-7,
+            2.04426310338993978564e-15,
+        ],
+    ];
+    let quotient = |[above, below]: &[[f64; 8]; 2], x: f64| horner(above, x) / horner(below, x);
+    let q = centered(word);
+    if q.abs() <= 0.425 {
+        return q * quotient(&MIDDLE, 0.180625 - q * q);
+    }
+    let r = (-ln(0.5 - q.abs())).sqrt();
+    let size = if r <= 5.0 { quotient(&TAIL, r - 1.6) } else { quotient(&FAR_TAIL, r - 5.0) };
+    size.copysign(q)
+}
+
+/// The logarithm of a normal number > 0, to a few roundings of the larger of it and 1.
+///
+/// `x = m 2^e` with m from √½ to √2, and `ln m = 2 artanh s`, `s = (m − 1)/(m + 1)`, |s| < 0.172: the terms
+/// `s^(2k+1)/(2k + 1)` of its series sink below 2⁻⁵³ s for k = 10.
+fn ln(x: f64) -> f64 {
+    /// 1/(2k + 1).
+    const SERIES: [f64; 11] = {
+        let mut series = [0.0; 11];
+        let mut k = 0;
+        while k < 11 {
+            series[k] = 1.0 / (2 * k + 1) as f64;
+            k += 1;
+        }
+        series
+    };
+    let bits = x.to_bits();
+    let (mut exponent, mut m) =
+        ((bits >> 52) as f64 - 1023.0, f64::from_bits(bits & ((1 << 52) - 1) | 1023 << 52));
+    if m > std::f64::consts::SQRT_2 {
+        (exponent, m) = (exponent + 1.0, 0.5 * m);
+    }
+    let s = (m - 1.0) / (m + 1.0);
+    exponent * std::f64::consts::LN_2 + 2.0 * s * horner(&SERIES, s * s)
+}
+
+/// `e^x`, for |x| < 700.
+pub(crate) fn exp(x: f64) -> f64 {
+    let small = exp_minus(x.abs()).0;
+    if x > 0.0 { 1.0 / small } else { small }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By RFC 8439's pseudocode with four double rounds, in Python.
+    #[test]
+    fn words_are_those_of_the_cipher() {
+        let table = [
+            (0, "spin", 0, 0x7355_a009_2232_f08a, 0xae47_a47a_5324_4872),
+            (7, "attitude", 3, 0x4909_d109_1d64_11ee, 0x8a84_b7c3_ecaa_f150),
+            (1 << 53, "torque.damping", 99_999_999, 0x22fa_2d48_6904_589c, 0xf1bf_e8ae_27b2_164c),
+        ];
+        for (seed, name, body, first, last) in table {
+            let words = Words::new(seed, name, body).next().unwrap();
+            assert_eq!((words[0], words[7]), (first, last), "{name}");
+            // From any body before it the words are the same.
+            for before in 1..=body.min(5) {
+                let from_there = Words::new(seed, name, body - before).nth(before as usize);
+                assert_eq!(from_there, Some(words), "{name}");
+            }
+        }
+    }
+
+    /// To 20 digits by mpmath.
+    #[test]
+    fn normal_numbers_are_quantiles() {
+        let table = [
+            (0, -8.209_536_151_601_387),
+            (1 << 12, -8.076_571_004_130_125),
+            (1 << 63, 2.782_916_424_671_766_7e-16),
+            ((1 << 63) - 1, -2.782_916_424_671_766_7e-16),
+            (0x7355_a009_2232_f08a, -0.124_334_323_549_359_77),
+            (0x4a66_625d_863f_dd9a, -0.551_560_480_148_623_1),
+            (0x1353_f7ce_d916_8700, -1.436_008_227_944_182),
+            // On both sides of q = 0.425 and of r = 5.
+            (0x1333_3333_3333_2000, -1.439_531_470_938_457),
+            (0x1333_3333_3333_4000, -1.439_531_470_938_454),
+            (0x0f45_0000, -6.657_907_555_407_399),
+            (0x0f45_2000, -6.657_902_854_320_481),
+            (0x0afe_bff0, -6.706_024_764_388_672),
+            (0x0119_7998, -7.034_486_910_047_835_2),
+        ];
+        for (word, expected) in table {
+            let found = normal(word);
+            assert!((found - expected).abs() <= 1e-15 * f64::abs(expected), "{found} {expected}");
+            assert_eq!(normal(!word), -found);
+        }
+        assert!(normal(u64::MAX) < LARGEST_NORMAL);
+    }
+
+    #[test]
+    fn logarithm_and_exponential_are_those_of_the_library() {
+        for k in 1..1000 {
+            let x = 0.037 * k as f64 - 18.0;
+            assert!((exp(x) / x.exp() - 1.0).abs() < 4.0 * f64::EPSILON, "{x}");
+            let y = x.exp();
+            assert!((ln(y) - y.ln()).abs() <= 2.0 * f64::EPSILON * y.ln().abs().max(1.0), "{y}");
+        }
+        assert_eq!((exp(0.0), ln(1.0)), (1.0, 0.0));
+    }
+
+    /// Of n numbers the mean is off by 1/√n, the mean square by √(2/n): five times as much
+    /// happens with one seed in a million, and this is one seed.
+    #[test]
+    fn numbers_are_distributed_as_they_should() {
+        let n = 1 << 17;
+        let words: Vec<[u64; 8]> = Words::new(1, "test", 0).take(n).collect();
+        let root = (n as f64).sqrt();
+        for k in 0..8 {
+            let z: Vec<f64> = words.iter().map(|w| normal(w[k])).collect();
+            let moment = |power| z.iter().map(|x| x.powi(power)).sum::<f64>() / n as f64;
+            assert!(moment(1).abs() < 5.0 / root, "{}", moment(1));
+            assert!((moment(2) - 1.0).abs() < 5.0 * 2f64.sqrt() / root, "{}", moment(2));
+            // ⟨z⁶⟩ = 15 and ⟨z⁸⟩ − 9 = 96 are the variances of z³ and z⁴.
+            assert!(moment(3).abs() < 5.0 * 15f64.sqrt() / root, "{}", moment(3));
+            assert!((moment(4) - 3.0).abs() < 5.0 * 96f64.sqrt() / root, "{}", moment(4));
+            let mut u: Vec<f64> = words.iter().map(|w| uniform(w[k])).collect();
+            u.sort_by(f64::total_cmp);
+            let below = |i: usize| (u[i] - (2.0 * (i as f64 + 0.5) / n as f64 - 1.0)).abs() / 2.0;
+            let distance = (0..n).map(below).fold(0.0, f64::max);
+            // Kolmogorov: a distance beyond x/√n has the probability 2 exp(−2x²), 3e-6 for x = 2.6.
+            assert!(distance < 2.6 / root, "{}", distance * root);
+        }
+    }
+}

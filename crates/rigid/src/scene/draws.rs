@@ -1,0 +1,202 @@
+//! The bodies of an ensemble.
+//!
+//! Each is drawn by itself: its numbers follow from the seed and from its own number alone ([`crate::random`]), so
+//! that a run by blocks or by threads, a longer one, or one that varies one thing more, has the same bodies.
+
+use super::{Attitudes, Ensemble, Gravity, Law, Parameter, Scene, SpinFrame, Spread};
+use crate::body::Body;
+use crate::inertia::Inertia;
+use crate::random::{Words, normal};
+use crate::torque::Torque;
+use polhode_ga::{Bivector, Rotor, Vector};
+use std::array::from_fn;
+use std::fmt;
+use std::ops::Range;
+
+/// Bodies, one per row. What all have in common has one row.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The rotors that carry body axes to space axes.
+    pub rotors: Vec<[f64; 4]>,
+    /// The angular velocities in body axes, in rad/s.
+    pub omegas: Vec<[f64; 3]>,
+    /// The places and the velocities of the centre of mass, or of the fixed point.
+    pub centers: Vec<[f64; 6]>,
+    /// The inertia maps, about the centre of mass or about the fixed point.
+    pub inertias: Vec<Inertia>,
+    /// The laws in the order of [`Scene::build`].
+    pub laws: Vec<Vec<Torque>>,
+}
+
+impl Ensemble {
+    /// Some of the bodies of a scene, from the body and the laws that [`Scene::build`] makes of it. An error only
+    /// where one leaves the range of floating point.
+    pub fn draw(
+        &self,
+        scene: &Scene,
+        (body, laws): (&Body, &[Law]),
+        bodies: Range<usize>,
+    ) -> Result<Drawn, DrawError> {
+        let draw = Draw { ensemble: self, bodies };
+        let rotors = draw.rotors(scene.attitude);
+        let omegas = draw.omegas(scene, &rotors);
+        let held = scene.is_held();
+        let places = draw.spread("position", self.position, scene.center.position);
+        let velocities = draw.spread("velocity", self.velocity, scene.center.velocity);
+        let center = |([x, y, z], [u, v, w]): ([f64; 3], [f64; 3])| [x, y, z, u, v, w];
+        Ok(Drawn {
+            rotors: rotors.iter().map(|rotor| rotor.components()).collect(),
+            omegas: omegas.iter().map(|omega| omega.0).collect(),
+            centers: places.into_iter().zip(velocities).map(center).collect(),
+            inertias: draw.inertias(body, held)?,
+            laws: laws.iter().map(|law| draw.law(law, body, scene.gravity)).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+/// Some bodies of an ensemble.
+struct Draw<'e> {
+    ensemble: &'e Ensemble,
+    bodies: Range<usize>,
+}
+
+impl Draw<'_> {
+    /// The words of what has this name, for each of the bodies.
+    fn words(&self, name: &str) -> impl Iterator<Item = [u64; 8]> {
+        Words::new(self.ensemble.seed, name, self.bodies.start as u64).take(self.bodies.len())
+    }
+
+    /// What is drawn of the words of this name, for each of the bodies; the nominal one where nothing is.
+    fn each<T: Clone>(&self, name: &str, nominal: T, draw: Option<impl Fn([u64; 8]) -> T>) -> Vec<T> {
+        match draw {
+            Some(draw) => self.words(name).map(draw).collect(),
+            None => vec![nominal; self.bodies.len()],
+        }
+    }
+
+    /// Vectors that spread about one.
+    fn spread(&self, name: &str, spread: Option<Spread>, Vector(vector): Vector) -> Vec<[f64; 3]> {
+        self.each(name, vector, spread.map(|spread| move |words| spread.draw(vector, &words)))
+    }
+
+    /// Four normal numbers point in every direction of their space alike, so their rotor turns to every attitude
+    /// alike.
+    fn rotors(&self, nominal: Rotor) -> Vec<Rotor> {
+        let draw = |attitudes| {
+            move |words: [u64; 8]| match attitudes {
+                Attitudes::Turned(spread) => {
+                    nominal * Rotor::exp(Bivector(spread.draw([0.0; 3], &words)) * -0.5)
+                }
+                Attitudes::Uniform => Rotor::from_unit_components(unit(from_fn(|k| normal(words[k])))),
+            }
+        };
+        self.each("attitude", nominal, self.ensemble.attitude.map(draw))
+    }
+
+    /// In body axes, whatever the axes in which they are drawn.
+    fn omegas(&self, scene: &Scene, rotors: &[Rotor]) -> Vec<Bivector> {
+        let size = scene.spin.norm();
+        let direction = |words: [u64; 8]| unit(from_fn(|k| normal(words[k]))).map(|x| size * x);
+        let directions = self.ensemble.directions.then_some(direction);
+        let mut spins = self.each("spin.direction", scene.spin.0, directions);
+        if let Some(spread) = self.ensemble.spin {
+            let draw = |(spin, words): (&mut [f64; 3], _)| *spin = spread.draw(*spin, &words);
+            spins.iter_mut().zip(self.words("spin")).for_each(draw);
+        }
+        let omega = |(spin, rotor): ([f64; 3], &Rotor)| match scene.spin_frame {
+            SpinFrame::Body => Bivector(spin),
+            SpinFrame::Space => rotor.reverse().apply_bivector(Bivector(spin)),
+        };
+        spins.into_iter().zip(rotors).map(omega).collect()
+    }
+
+    /// A body is possible if and only if none of the integrals `c_k = ∫ x_k² dm` along its principal axes is
+    /// negative, and its moments are `i_1 = c_2 + c_3` and alike. A factor on each c_k makes a possible body of a
+    /// possible one; factors on the moments would not.
+    fn inertias(&self, body: &Body, held: bool) -> Result<Vec<Inertia>, DrawError> {
+        let about_the_point = |inertia: Inertia| match held {
+            true => Body { inertia, ..*body }.inertia_about(Vector::default()),
+            false => Ok(inertia),
+        };
+        let Some(spread) = self.ensemble.moments else {
+            return Ok(vec![about_the_point(body.inertia).map_err(self.failed(0))?]);
+        };
+        let frame = body.inertia.principal_frame();
+        let [a, b, c] = body.inertia.principal_moments();
+        // Of a flat body one is 0, or less by rounding.
+        let integrals = [b + c - a, c + a - b, a + b - c].map(|twice| (0.5 * twice).max(0.0));
+        let inertia = |words| {
+            let [x, y, z] = spread.draw(integrals, &words);
+            let inertia = Inertia::from_principal_moments([y + z, z + x, x + y])?;
+            about_the_point(if frame == Rotor::IDENTITY { inertia } else { inertia.rotated(frame) })
+        };
+        let words = self.words("moments").enumerate();
+        words.map(|(row, words)| inertia(words).map_err(self.failed(row))).collect()
+    }
+
+    /// The law of each body, or that of all.
+    fn law(&self, law: &Law, body: &Body, gravity: Option<Gravity>) -> Result<Vec<Torque>, DrawError> {
+        let mut torques = vec![law.torque.clone()];
+        for (parameter, spread) in self.ensemble.parameters.iter().filter(|(p, _)| p.law == law.name) {
+            torques = match gravity {
+                Some(gravity) if law.name == "gravity" => self.weights(parameter, *spread, body, gravity),
+                _ => self.varied(parameter, *spread, torques)?,
+            };
+        }
+        Ok(torques)
+    }
+
+    /// The laws of gravity whose acceleration spreads.
+    fn weights(&self, parameter: &Parameter, spread: Spread, body: &Body, gravity: Gravity) -> Vec<Torque> {
+        let weight = |words| {
+            let [acceleration, ..] = spread.draw([gravity.acceleration, 0.0, 0.0], &words);
+            Gravity { acceleration, ..gravity }.law(body).torque
+        };
+        self.words(&parameter.name()).map(weight).collect()
+    }
+
+    /// Laws, of each body or of all, whose parameter spreads about its value.
+    fn varied(
+        &self,
+        parameter: &Parameter,
+        spread: Spread,
+        torques: Vec<Torque>,
+    ) -> Result<Vec<Torque>, DrawError> {
+        let torque = |row: usize| torques.get(row).unwrap_or(&torques[0]);
+        let draw = |(row, words): (usize, [u64; 8])| {
+            let torque = torque(row);
+            let Some((numbers, _)) = parameter.of(torque) else { return Ok(torque.clone()) };
+            parameter.set(torque, spread.draw(numbers, &words)).map_err(self.failed(row))
+        };
+        self.words(&parameter.name()).enumerate().map(draw).collect()
+    }
+
+    /// Why there is no body in this row.
+    fn failed<E: fmt::Display>(&self, row: usize) -> impl Fn(E) -> DrawError {
+        let body = self.bodies.start + row;
+        move |error| DrawError { body, message: error.to_string() }
+    }
+}
+
+/// What is drawn is no body, or no law.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DrawError {
+    /// Which, from 0.
+    pub body: usize,
+    /// Why.
+    pub message: String,
+}
+
+impl fmt::Display for DrawError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "body {}: {}", self.body, self.message)
+    }
+}
+
+impl std::error::Error for DrawError {}
+
+/// The direction of normal numbers, which are never 0 and never large.
+fn unit<const N: usize>(numbers: [f64; N]) -> [f64; N] {
+    let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
+    numbers.map(|x| x / size)
+}

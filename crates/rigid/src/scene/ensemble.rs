@@ -1,0 +1,292 @@
+//! The table `[ensemble]`: how many bodies, and in what they differ.
+//!
+//! ```toml
+//! [ensemble]
+//! number = 100_000
+//! seed = 7
+//! attitude = { normal = "2 deg" }
+//! spin = { relative = 0.01 }
+//! torque.damping = { relative = 0.1 }
+//! ```
+
+use super::initial::Initial;
+use super::parameters::{Limit, PARAMETERS, Parameter};
+use super::reader::{Reader, Table, Value};
+use super::spread::{self, FORMS, Shape, Spread};
+use super::{Gravity, Law};
+use crate::units::Quantity;
+use std::f64::consts::PI;
+use toml::de::DeValue;
+
+const MOST_BODIES: i128 = 100_000_000;
+const LARGEST_SEED: i128 = 1 << 53;
+
+/// Bodies that differ at random from the one that the scene describes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ensemble {
+    /// How many bodies.
+    pub number: usize,
+    /// What the random numbers follow from.
+    pub seed: u64,
+    /// How the attitude differs.
+    pub attitude: Option<Attitudes>,
+    /// Whether the direction of the spin is drawn, every one alike.
+    pub directions: bool,
+    /// How the spin differs, in the axes in which it is given, after its direction is drawn.
+    pub spin: Option<Spread>,
+    /// How the integrals `∫ x_k² dm` along the principal axes through the centre of mass differ.
+    pub moments: Option<Spread>,
+    /// How the place of the centre of mass differs.
+    pub position: Option<Spread>,
+    /// How its velocity differs.
+    pub velocity: Option<Spread>,
+    /// How parameters of laws differ.
+    pub parameters: Vec<(&'static Parameter, Spread)>,
+}
+
+/// What differs from body to body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Varied {
+    /// Its name in `[ensemble]`, dotted; `spin.direction` for directions.
+    pub name: String,
+    /// How it spreads; none where all that it can be is alike.
+    pub spread: Option<Spread>,
+    /// The unit of the widths, but for factors.
+    pub unit: &'static str,
+}
+
+impl Ensemble {
+    /// All that differs.
+    pub fn varied(&self) -> Vec<Varied> {
+        let turned = match self.attitude {
+            Some(Attitudes::Turned(spread)) => Some(spread),
+            _ => None,
+        };
+        let own = [
+            ("attitude", self.attitude.is_some(), turned, Quantity::Angle.si_unit()),
+            ("spin.direction", self.directions, None, ""),
+            ("spin", self.spin.is_some(), self.spin, Quantity::AngularRate.si_unit()),
+            ("moments", self.moments.is_some(), self.moments, ""),
+            ("position", self.position.is_some(), self.position, Quantity::Length.si_unit()),
+            ("velocity", self.velocity.is_some(), self.velocity, Quantity::Speed.si_unit()),
+        ];
+        let own = own.into_iter().filter(|(_, differs, ..)| *differs);
+        let own = own.map(|(name, _, spread, unit)| Varied { name: name.to_owned(), spread, unit });
+        let parameters = self.parameters.iter().map(|(parameter, spread)| Varied {
+            name: parameter.name(),
+            spread: Some(*spread),
+            unit: parameter.quantity.map_or("", Quantity::si_unit),
+        });
+        own.chain(parameters).collect()
+    }
+}
+
+/// How attitudes differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Attitudes {
+    /// Every attitude alike.
+    Uniform,
+    /// Turned by a rotation vector, along the body axes, that spreads about 0.
+    Turned(Spread),
+}
+
+/// What the rest of the scene says, as far as it could be read.
+pub struct Nominal<'s> {
+    pub initial: Option<Initial>,
+    pub gravity: Option<Option<Gravity>>,
+    pub laws: Option<&'s [Law]>,
+}
+
+impl Nominal<'_> {
+    /// The numbers of a parameter, and whether they are one: the scene has none, or has them but they could not be
+    /// read.
+    fn numbers(&self, parameter: &Parameter) -> Result<Option<([f64; 3], bool)>, Absent> {
+        if parameter.law == "gravity" {
+            let Some(gravity) = self.gravity else { return Ok(None) };
+            return gravity.map(|gravity| Some(([gravity.acceleration, 0.0, 0.0], true))).ok_or(Absent);
+        }
+        let Some(laws) = self.laws else { return Ok(None) };
+        let law = laws.iter().find(|law| law.name == parameter.law).ok_or(Absent)?;
+        Ok(parameter.of(&law.torque))
+    }
+}
+
+/// The scene has no such law.
+struct Absent;
+
+/// Reads the table.
+pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ensemble> {
+    let table = &reader.table(value, "[ensemble]")?;
+    let varied = ["attitude", "spin", "moments", "position", "velocity", "gravity", "torque"];
+    reader.only(table, &[&["number", "seed"], &varied[..]].concat());
+    let number = reader.field(table, "number", |reader, value| whole(reader, value, 1, MOST_BODIES));
+    let seed = reader.optional(table, "seed", |reader, value| whole(reader, value, 0, LARGEST_SEED));
+    if table.fields.keys().all(|key| matches!(key.get_ref().as_ref(), "number" | "seed")) {
+        let message =
+            "all bodies are the same; give at least one of `attitude`, `spin`, `moments`, `torque`, …";
+        reader.report(table.span.clone(), message);
+    }
+    let attitude = reader.optional(table, "attitude", attitude);
+    let spin = reader.optional(table, "spin", |reader, value| spin(reader, value, nominal));
+    let moments = reader.optional(table, "moments", moments);
+    let position = reader.optional(table, "position", |reader, value| {
+        let numbers = nominal.initial.map(|initial| initial.center.position.0);
+        place(reader, value, Quantity::Length, numbers)
+    });
+    let velocity = reader.optional(table, "velocity", |reader, value| {
+        let numbers = nominal.initial.map(|initial| initial.center.velocity.0);
+        place(reader, value, Quantity::Speed, numbers)
+    });
+    let parameters = parameters(reader, table, nominal);
+    let (directions, spin) = spin?.unwrap_or_default();
+    Some(Ensemble {
+        number: number? as usize,
+        seed: seed?.unwrap_or(0),
+        attitude: attitude?,
+        directions,
+        spin,
+        moments: moments?,
+        position: position?,
+        velocity: velocity?,
+        parameters: parameters?,
+    })
+}
+
+/// A whole number that is neither too small nor too large.
+fn whole(reader: &mut Reader, value: &Value, least: i128, most: i128) -> Option<u64> {
+    let number = reader.integer(value)?;
+    match u64::try_from(number) {
+        Ok(whole) if (least..=most).contains(&number) => Some(whole),
+        _ => {
+            reader.report(value.span(), format!("must be from {least} to {most}, found {number}"));
+            None
+        }
+    }
+}
+
+fn attitude(reader: &mut Reader, value: &Value) -> Option<Attitudes> {
+    if let DeValue::String(_) = value.get_ref() {
+        return reader.word(value, "attitude", &["uniform"]).map(|_| Attitudes::Uniform);
+    }
+    let shape = Shape { quantity: Some(Quantity::Angle), size: 3, alike: false };
+    let turned = spread::read(reader, value, &["normal"], shape)?;
+    if turned.widths.iter().any(|width| *width > PI) {
+        let message =
+            "turns by more than half a turn; for every attitude alike write `attitude = \"uniform\"`";
+        reader.report(value.span(), message);
+        return None;
+    }
+    Some(Attitudes::Turned(turned))
+}
+
+/// Whether the direction is drawn, and how the spin then spreads.
+fn spin(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<(bool, Option<Spread>)> {
+    let table = &spread::table(reader, value, "a table such as `{ relative = 0.01 }`")?;
+    let fields = [&["direction"], &FORMS[..]].concat();
+    let form = spread::form(reader, table, &FORMS, &fields);
+    let direction =
+        reader.optional(table, "direction", |reader, value| reader.word(value, "direction", &["uniform"]));
+    let directions = direction?.is_some();
+    let spin = nominal.initial.map(|initial| initial.spin);
+    if directions && spin.is_some_and(|spin| spin.0 == [0.0; 3]) {
+        reader.report(value.span(), "a spin of 0 has no direction; give it one in [initial]");
+    }
+    let Some(form) = form else { return directions.then_some((true, None)) };
+    let shape = Shape { quantity: Some(Quantity::AngularRate), size: 3, alike: false };
+    let spread = spread::field(reader, table, form, shape)?;
+    if let Some(spin) = spin {
+        // Where its direction is drawn, each component may be as large as the spin.
+        let numbers = if directions { [spin.norm(); 3] } else { spin.0 };
+        spread.check(reader, value.span(), &numbers, Limit::Finite);
+    }
+    Some((directions, Some(spread)))
+}
+
+/// Of the three integrals `∫ x_k² dm` each has a factor of its own.
+fn moments(reader: &mut Reader, value: &Value) -> Option<Spread> {
+    let shape = Shape { quantity: None, size: 3, alike: false };
+    let spread = spread::read(reader, value, &["relative"], shape)?;
+    Some(Spread { alike: false, ..spread })
+}
+
+fn place(
+    reader: &mut Reader,
+    value: &Value,
+    quantity: Quantity,
+    numbers: Option<[f64; 3]>,
+) -> Option<Spread> {
+    let shape = Shape { quantity: Some(quantity), size: 3, alike: false };
+    let spread = spread::read(reader, value, &FORMS[..2], shape)?;
+    if let Some(numbers) = numbers {
+        spread.check(reader, value.span(), &numbers, Limit::Finite);
+    }
+    Some(spread)
+}
+
+/// The parameters of gravity and of the laws, in the order of [`PARAMETERS`].
+fn parameters(
+    reader: &mut Reader,
+    table: &Table,
+    nominal: &Nominal,
+) -> Option<Vec<(&'static Parameter, Spread)>> {
+    let mut found = Vec::new();
+    if let Some(value) = table.get("gravity") {
+        found.extend(fields(reader, value, "`gravity`", "gravity", nominal));
+    }
+    if let Some(value) = table.get("torque") {
+        let torque = &reader.table(value, "`torque`")?;
+        let mut laws: Vec<&str> = PARAMETERS.iter().map(|parameter| parameter.law).collect();
+        laws.dedup();
+        reader.only(torque, &laws[1..]);
+        for law in &laws[1..] {
+            let Some(value) = torque.get(law) else { continue };
+            match PARAMETERS.iter().find(|parameter| parameter.law == *law && parameter.field.is_empty()) {
+                Some(parameter) => found.push(spread_of(reader, torque, value, parameter, nominal)),
+                None => found.extend(fields(reader, value, "the law", law, nominal)),
+            }
+        }
+    }
+    found.into_iter().collect()
+}
+
+/// The parameters of a law that has fields.
+fn fields(
+    reader: &mut Reader,
+    value: &Value,
+    title: &'static str,
+    law: &str,
+    nominal: &Nominal,
+) -> Vec<Option<(&'static Parameter, Spread)>> {
+    let Some(table) = &reader.table(value, title) else { return vec![None] };
+    let parameters: Vec<&'static Parameter> =
+        PARAMETERS.iter().filter(|parameter| parameter.law == law).collect();
+    let names: Vec<&'static str> = parameters.iter().map(|parameter| parameter.field).collect();
+    reader.only(table, &names);
+    reader.at_most_one(table, &["rate", "period"]);
+    let given = parameters.into_iter().filter_map(|parameter| Some((parameter, table.get(parameter.field)?)));
+    given.map(|(parameter, value)| spread_of(reader, table, value, parameter, nominal)).collect()
+}
+
+/// How one parameter spreads.
+fn spread_of(
+    reader: &mut Reader,
+    table: &Table,
+    value: &Value,
+    parameter: &'static Parameter,
+    nominal: &Nominal,
+) -> Option<(&'static Parameter, Spread)> {
+    let Ok(known) = nominal.numbers(parameter) else {
+        let name = if parameter.field.is_empty() { parameter.law } else { parameter.field };
+        let message =
+            format!("what varies needs a value in the scene, and this has no {}", parameter.place());
+        reader.report(table.name_span(name).unwrap_or(value.span()), message);
+        return None;
+    };
+    let alike = known.is_some_and(|(_, one)| one);
+    let shape = Shape { quantity: parameter.quantity, size: parameter.size, alike };
+    let spread = spread::read(reader, value, &FORMS, shape)?;
+    if let Some((numbers, _)) = known {
+        spread.check(reader, value.span(), &numbers[..parameter.size], parameter.limit);
+    }
+    Some((parameter, spread))
+}

@@ -1,0 +1,170 @@
+//! How numbers spread about those that a scene gives.
+
+use super::parameters::Limit;
+use super::reader::{Reader, Table, Value};
+use crate::random::{LARGEST_NORMAL, exp, normal, uniform};
+use crate::units::Quantity;
+use std::array::from_fn;
+use std::ops::Range;
+use toml::de::DeValue;
+
+/// No factor spreads more than this: e¹⁰ is 22026.
+const WIDEST_FACTOR: f64 = 10.0;
+
+/// How three numbers, or one, spread about those of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// The distribution.
+    pub form: Form,
+    /// Of each number: the standard deviation, or half the width.
+    pub widths: [f64; 3],
+    /// Whether one draw serves all numbers.
+    pub alike: bool,
+}
+
+/// The distribution of a number x of width w.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// `x + w n`, n of mean 0 and standard deviation 1.
+    Normal,
+    /// `x + w u`, all u between −1 and 1 alike.
+    Uniform,
+    /// `x exp(w n)`: it keeps its sign.
+    Relative,
+}
+
+/// The names of the distributions.
+pub const FORMS: [&str; 3] = ["normal", "uniform", "relative"];
+
+impl Form {
+    /// Its name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Normal => FORMS[0],
+            Form::Uniform => FORMS[1],
+            Form::Relative => FORMS[2],
+        }
+    }
+
+    fn of(name: &str) -> Form {
+        match name {
+            "normal" => Form::Normal,
+            "uniform" => Form::Uniform,
+            _ => Form::Relative,
+        }
+    }
+}
+
+impl Spread {
+    /// The numbers that these words draw.
+    pub fn draw(&self, numbers: [f64; 3], words: &[u64; 8]) -> [f64; 3] {
+        from_fn(|k| {
+            let word = words[if self.alike { 0 } else { k }];
+            let (x, w) = (numbers[k], self.widths[k]);
+            match self.form {
+                Form::Normal => x + w * normal(word),
+                Form::Uniform => x + w * uniform(word),
+                Form::Relative => x * exp(w * normal(word)),
+            }
+        })
+    }
+
+    /// The smallest and the largest that a number can become.
+    fn reach(&self, number: f64, width: f64) -> [f64; 2] {
+        match self.form {
+            Form::Normal => [-1.0, 1.0].map(|side| number + side * LARGEST_NORMAL * width),
+            Form::Uniform => [-1.0, 1.0].map(|side| number + side * width),
+            Form::Relative => [-1.0, 1.0].map(|side| number * exp(side * LARGEST_NORMAL * width)),
+        }
+    }
+
+    /// Reports, at this place, what could be drawn and must not be. No draw is ever repeated or cut, so that the
+    /// distribution is the one that the file says.
+    pub fn check(&self, reader: &mut Reader, span: Range<usize>, numbers: &[f64], limit: Limit) {
+        if self.form == Form::Relative && numbers.iter().all(|x| *x == 0.0) {
+            let message = "any multiple of 0 is 0; write `normal` or `uniform`";
+            return reader.report(span, message);
+        }
+        for (number, width) in numbers.iter().zip(self.widths) {
+            for end in self.reach(*number, width) {
+                if let Some(why) = limit.refuses(end) {
+                    let message = format!("may draw {end:.2e}, but {why}; make it narrower");
+                    return reader.report(span, message);
+                }
+            }
+        }
+    }
+}
+
+/// What a width may be.
+#[derive(Clone, Copy)]
+pub struct Shape {
+    /// What it measures, but for a factor; none is a pure number.
+    pub quantity: Option<Quantity>,
+    /// How many numbers spread.
+    pub size: usize,
+    /// Whether a single width stands for a single draw, as that of a factor always does.
+    pub alike: bool,
+}
+
+/// The table of a spread.
+pub fn table<'t>(reader: &mut Reader, value: &'t Value<'t>, example: &str) -> Option<Table<'t>> {
+    match value.get_ref() {
+        DeValue::Table(fields) => Some(Table { title: "the table", span: value.span(), fields }),
+        _ => {
+            reader.wrong_type(value, example);
+            None
+        }
+    }
+}
+
+/// The one spread of a table that has no other fields.
+pub fn read(reader: &mut Reader, value: &Value, forms: &[&'static str], shape: Shape) -> Option<Spread> {
+    let example = format!("a table such as `{{ {} = … }}`", forms[forms.len() - 1]);
+    let table = &table(reader, value, &example)?;
+    let form = form(reader, table, forms, forms)?;
+    field(reader, table, form, shape)
+}
+
+/// The one of the forms that is there. None at all is reported, unless there is a field that may be a misspelt one,
+/// or another of those that the table may have.
+pub fn form(
+    reader: &mut Reader,
+    table: &Table,
+    forms: &[&'static str],
+    fields: &[&'static str],
+) -> Option<&'static str> {
+    reader.only(table, fields);
+    if table.fields.is_empty() { reader.exactly_one(table, fields) } else { reader.at_most_one(table, forms) }
+}
+
+/// The spread in this field of a table.
+pub fn field(reader: &mut Reader, table: &Table, form: &'static str, shape: Shape) -> Option<Spread> {
+    let value = table.get(form)?;
+    let form = Form::of(form);
+    let single = value.get_ref().as_array().is_none();
+    let widths = match (single, shape.size) {
+        (false, 3) => reader.array(value, "numbers", |reader, item| width(reader, item, form, shape))?,
+        _ => [width(reader, value, form, shape)?; 3],
+    };
+    Some(Spread { form, widths, alike: single && (shape.alike || form == Form::Relative) })
+}
+
+fn width(reader: &mut Reader, value: &Value, form: Form, shape: Shape) -> Option<f64> {
+    let quantity = if form == Form::Relative { None } else { shape.quantity };
+    let number = match quantity {
+        Some(quantity) => reader.quantity(value, quantity)?,
+        None => reader.number(value)?,
+    };
+    if number < 0.0 {
+        reader.report(value.span(), format!("must not be negative, found {number}"));
+        return None;
+    }
+    if form == Form::Relative && number > WIDEST_FACTOR {
+        let message =
+            format!("must be from 0 to {WIDEST_FACTOR}, the deviation of a logarithm, found {number}");
+        reader.report(value.span(), message);
+        return None;
+    }
+    Some(number)
+}

@@ -1,5 +1,6 @@
 //! Equal steps of bodies side by side.
 
+use super::advance::{Advance, Stretch};
 use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
 use super::laws::{Laws, Nothing};
 use crate::certificate::{Certificate, Watch};
@@ -11,7 +12,7 @@ use crate::simulate::Progress;
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
 use crate::walk::is_finite;
-use polhode_ga::lanes::{Lanes, Work};
+use polhode_ga::lanes::{Lanes, Work, fastest};
 use std::array;
 
 const W: usize = SIDE_BY_SIDE;
@@ -24,31 +25,6 @@ pub(super) struct FixedSteps<'a, 'b> {
     pub crew: &'b Crew<'a>,
     pub members: Vec<Member<'a>>,
     pub progress: &'b mut dyn FnMut(Progress) -> bool,
-}
-
-/// Equal steps from one time to another.
-#[derive(Clone, Copy)]
-struct Stretch {
-    from: f64,
-    to: f64,
-    count: u64,
-}
-
-impl Stretch {
-    /// Where a step ends. The differences of these rounded times are the steps, so that they add up to the time.
-    #[inline(always)]
-    fn end(&self, step: u64) -> f64 {
-        if step + 1 == self.count {
-            self.to
-        } else {
-            self.from + (self.to - self.from) * ((step + 1) as f64 / self.count as f64)
-        }
-    }
-
-    #[inline(always)]
-    fn begin(&self, step: u64) -> f64 {
-        if step == 0 { self.from } else { self.end(step - 1) }
-    }
 }
 
 impl Work for FixedSteps<'_, '_> {
@@ -104,10 +80,8 @@ impl FixedSteps<'_, '_> {
                     for first in (0..stretch.count).step_by(BETWEEN_LOOKS as usize) {
                         let last = stretch.count.min(first + BETWEEN_LOOKS);
                         let before = state;
-                        for i in first..last {
-                            let (from, to) = (stretch.begin(i), stretch.end(i));
-                            classical::step(bodies, exert, &mut state, from, to - from);
-                        }
+                        let steps_now = first..last;
+                        fastest(Advance { bodies, exert, state: &mut state, stretch, steps: steps_now });
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
                             if failures[l].is_none() && !lane(&state, l).iter().all(|x| x.is_finite()) {
@@ -116,7 +90,7 @@ impl FixedSteps<'_, '_> {
                                 failures[l] = Some(diagnose(member, &torques[l], from, part));
                             }
                         }
-                        let gone = stretch.end(last - 1);
+                        let gone = stretch.begin(last);
                         let walked = if side == 0 { -gone } else { gone - begin };
                         crew.count(&mut so_far, walked / total, members.len());
                         if !crew.report(progress) {
@@ -217,7 +191,7 @@ fn diagnose(
     let alone = Classical::new(member.gyrostat, torques.to_vec(), None);
     let mut at = Carried::new(from, Center::default());
     for i in steps {
-        let (begin, end) = (stretch.begin(i), stretch.end(i));
+        let (begin, end) = (stretch.begin(i), stretch.begin(i + 1));
         match alone.step(&at, end - begin) {
             Ok(next) if is_finite(&next) => at = next,
             Ok(_) => return (begin, SimulateError::Diverged { time: end }),

@@ -153,10 +153,11 @@ fn turn<const W: usize, const F: bool>(
 /// `R/|R|` to the third power of what |R|² − 1 is.
 #[inline(always)]
 pub(crate) fn renormalize<const N: usize, const W: usize, const F: bool>(y: &mut State<N, W, F>) {
-    let mut excess = y[0].times_plus(y[0], Lanes::all(-1.0));
+    let mut square = y[0] * y[0];
     for k in 1..4 {
-        excess = y[k].times_plus(y[k], excess);
+        square = y[k].times_plus(y[k], square);
     }
+    let excess = square - Lanes::all(1.0);
     // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
     let missing = excess * excess.times_plus(Lanes::all(0.375), Lanes::all(-0.5));
     for k in 0..4 {

@@ -17,8 +17,8 @@ pub(super) trait Stepper<const F: bool> {
     /// The bodies at time 0; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
-    /// One step of length h.
-    fn step(&mut self, state: &mut Self::State, time: f64, h: f64);
+    /// Steps from each of these times to the next.
+    fn walk(&mut self, state: &mut Self::State, times: &[f64]);
 
     /// Where the body of a lane is.
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase;
@@ -59,8 +59,13 @@ impl<E: Exert<W, F>, const F: bool> Stepper<F> for Components<E, F> {
     }
 
     #[inline(always)]
-    fn step(&mut self, state: &mut Self::State, time: f64, h: f64) {
-        classical::step(&self.bodies, &mut self.exert, state, time, h);
+    fn walk(&mut self, state: &mut Self::State, times: &[f64]) {
+        // Copies, which the compiler may keep in registers.
+        let (bodies, mut now) = (self.bodies, *state);
+        for k in 1..times.len() {
+            classical::step(&bodies, &mut self.exert, &mut now, times[k - 1], times[k] - times[k - 1]);
+        }
+        *state = now;
     }
 
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
@@ -88,8 +93,12 @@ impl<E: Exert<W, F>, const F: bool> Stepper<F> for Kicks<'_, E, F> {
     }
 
     #[inline(always)]
-    fn step(&mut self, state: &mut Self::State, time: f64, h: f64) {
-        self.turns.step(self.stages, &mut self.exert, state, time, h);
+    fn walk(&mut self, state: &mut Self::State, times: &[f64]) {
+        let mut now = *state;
+        for k in 1..times.len() {
+            self.turns.step(self.stages, &mut self.exert, &mut now, times[k - 1], times[k] - times[k - 1]);
+        }
+        *state = now;
     }
 
     fn phase(&self, _: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {

@@ -1,5 +1,6 @@
 //! Body-steps per second of ensembles, beside what the machine can do at most: `cargo run --release --example ensemble`.
 
+use polhode_ga::formula::Names;
 use polhode_ga::lanes::{Work, fastest};
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -40,7 +41,7 @@ fn best(runs: u32, mut run: impl FnMut()) -> f64 {
 }
 
 fn formula(text: &str) -> Torque {
-    Torque::Formula(FormulaTorque::new(text, Axes::Body, names(), |_| None).unwrap())
+    Torque::Formula(FormulaTorque::new(text, Axes::Body, Names::new([]), |_| None).unwrap())
 }
 
 fn main() {
@@ -63,7 +64,10 @@ fn main() {
         ("magnetic", vec![magnetic]),
         ("torsion spring", vec![spring]),
         ("Larmor", vec![Torque::Larmor(Vector([0.1, 0.2, 0.3]))]),
-        ("formula -(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)", vec![formula("-(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)")]),
+        (
+            "formula -(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)",
+            vec![formula("-(0.1 e1 + 0.2 e2 + 0.3 e3) ∧ (~R e3 R)")],
+        ),
         ("formula -0.01 Ω", vec![formula("-0.01 Ω")]),
     ];
     for (name, laws) in laws {

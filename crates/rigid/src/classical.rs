@@ -51,6 +51,9 @@ pub(crate) trait Exert<const W: usize, const F: bool> {
     /// Whether there are torques at all, a wheel or damping.
     const ACTS: bool;
 
+    /// Whether there may be wheels.
+    const WHEELS: bool = true;
+
     /// The torque in principal axes at a point of the motion, without the part `−g I(Ω)` and that of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 
@@ -138,10 +141,12 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     }
     if E::ACTS {
         let mut torque = exert.torque(&Place { rotor: r, omega: w, time });
-        let h = bodies.wheel;
-        torque[0] += h[2].times_from(w[1], h[1] * w[2]);
-        torque[1] += h[0].times_from(w[2], h[2] * w[0]);
-        torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+        if E::WHEELS {
+            let h = bodies.wheel;
+            torque[0] += h[2].times_from(w[1], h[1] * w[2]);
+            torque[1] += h[0].times_from(w[2], h[2] * w[0]);
+            torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+        }
         for k in 0..3 {
             let driven = torque[k].times_plus(bodies.inverse[k], slope[4 + k]);
             slope[4 + k] = bodies.damping.times_from(w[k], driven);

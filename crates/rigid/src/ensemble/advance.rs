@@ -48,12 +48,20 @@ struct Times([f64; TIMED + 1]);
 impl<E: Exert<W, F>, const F: bool> Work for Advance<'_, E, F> {
     type Output = ();
 
-    /// Fused as the caller is, who is on the same path.
     #[inline(always)]
-    fn run<const SAME: bool>(self) {
+    fn run<const FUSED: bool>(self) {
+        // The caller is on the same path; nothing need be compiled for others.
+        if FUSED == F {
+            self.steps();
+        }
+    }
+}
+
+impl<E: Exert<W, F>, const F: bool> Advance<'_, E, F> {
+    #[inline(always)]
+    fn steps(self) {
         let Advance { bodies, exert, state, stretch, steps } = self;
-        let bodies = *bodies;
-        let mut now = *state;
+        let (bodies, mut now) = (*bodies, *state);
         for first in steps.clone().step_by(TIMED) {
             let mut times = Times([0.0; TIMED + 1]);
             for k in 0..=TIMED {

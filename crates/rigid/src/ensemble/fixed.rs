@@ -2,9 +2,9 @@
 
 use super::advance::{Advance, Stretch};
 use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
-use super::laws::{Laws, Nothing};
+use super::laws::{Acting, Nothing};
 use crate::certificate::{Certificate, Watch};
-use crate::classical::{self, Bodies, Classical, Exert, State};
+use crate::classical::{self, Bodies, Classical, State};
 use crate::force::Center;
 use crate::phase::Phase;
 use crate::runge_kutta::Carried;
@@ -14,6 +14,7 @@ use crate::torque::Torque;
 use crate::walk::is_finite;
 use polhode_ga::lanes::{Lanes, Work, fastest};
 use std::array;
+use std::ops::Range;
 
 const W: usize = SIDE_BY_SIDE;
 
@@ -32,7 +33,6 @@ impl Work for FixedSteps<'_, '_> {
 
     #[inline(always)]
     fn run<const F: bool>(mut self) {
-        let free = self.members.iter().all(|member| member.torques.is_empty());
         let torques: Vec<Vec<Torque>> =
             self.members.iter_mut().map(|m| std::mem::take(&mut m.torques)).collect();
         // Lanes without a body hold another one's.
@@ -40,24 +40,14 @@ impl Work for FixedSteps<'_, '_> {
         let damping = |l: usize| torques[of(l)].iter().map(Torque::damping_rate).sum();
         let bodies: Bodies<W, F> =
             Bodies::new(array::from_fn(|l| (self.members[of(l)].gyrostat, damping(l))));
-        if free {
-            self.walk(&bodies, &mut Nothing, &torques);
-        } else {
-            let gyrostats = array::from_fn(|l| self.members[of(l)].gyrostat);
-            let mut laws = Laws::new(gyrostats, array::from_fn(|l| &torques[of(l)][..]));
-            self.walk(&bodies, &mut laws, &torques);
-        }
+        let gyrostats = array::from_fn(|l| self.members[of(l)].gyrostat);
+        let mut acting = Acting::new(gyrostats, array::from_fn(|l| &torques[of(l)][..]));
+        self.walk(&bodies, &mut acting, &torques);
     }
 }
 
 impl FixedSteps<'_, '_> {
-    #[inline(always)]
-    fn walk<const F: bool, E: Exert<W, F>>(
-        self,
-        bodies: &Bodies<W, F>,
-        exert: &mut E,
-        torques: &[Vec<Torque>],
-    ) {
+    fn walk<const F: bool>(self, bodies: &Bodies<W, F>, acting: &mut Acting<W, F>, torques: &[Vec<Torque>]) {
         let FixedSteps { crew, mut members, progress } = self;
         let Some((step, method)) = crew.fixed_steps(members[0].body) else { return };
         let times = crew.times;
@@ -80,8 +70,7 @@ impl FixedSteps<'_, '_> {
                     for first in (0..stretch.count).step_by(BETWEEN_LOOKS as usize) {
                         let last = stretch.count.min(first + BETWEEN_LOOKS);
                         let before = state;
-                        let steps_now = first..last;
-                        fastest(Advance { bodies, exert, state: &mut state, stretch, steps: steps_now });
+                        advance((bodies, acting), &mut state, stretch, first..last);
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
                             if failures[l].is_none() && !lane(&state, l).iter().all(|x| x.is_finite()) {
@@ -130,6 +119,21 @@ impl FixedSteps<'_, '_> {
             },
             failure,
         }));
+    }
+}
+
+/// Some of the steps of a stretch.
+fn advance<const F: bool>(
+    (bodies, acting): (&Bodies<W, F>, &mut Acting<W, F>),
+    state: &mut State<7, W, F>,
+    stretch: Stretch,
+    steps: Range<u64>,
+) {
+    match acting {
+        Acting::Nothing => fastest(Advance { bodies, exert: &mut Nothing, state, stretch, steps }),
+        Acting::Weight(exert) => fastest(Advance { bodies, exert, state, stretch, steps }),
+        Acting::Gradient(exert) => fastest(Advance { bodies, exert, state, stretch, steps }),
+        Acting::Laws(exert) => fastest(Advance { bodies, exert, state, stretch, steps }),
     }
 }
 
@@ -186,7 +190,7 @@ fn diagnose(
     member: &Member,
     torques: &[Torque],
     from: Phase,
-    (stretch, steps): (&Stretch, std::ops::Range<u64>),
+    (stretch, steps): (&Stretch, Range<u64>),
 ) -> (f64, SimulateError) {
     let alone = Classical::new(member.gyrostat, torques.to_vec(), None);
     let mut at = Carried::new(from, Center::default());

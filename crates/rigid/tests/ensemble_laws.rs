@@ -89,7 +89,12 @@ fn laws(body: usize) -> Vec<(&'static str, Torque)> {
         ("spline", table(Axes::Space, Kind::Cubic)),
         (
             "formula",
-            formula("k t (~R c R)·e1 I(Ω) + exp(0.1 L_B) I∧c − Ω/norm(L)", Axes::Body, c, number(body, 2)),
+            formula(
+                "⟨k t ((~R c R)·e1) I(Ω) + exp(0.1 L_B) I c − 0.1 Ω/norm(L)⟩_2",
+                Axes::Body,
+                c,
+                number(body, 2),
+            ),
         ),
         ("formula_space", formula("c∧(R e1 ~R) − 0.1 k Ω", Axes::Space, c, number(body, 2))),
         ("function", Torque::Function(FunctionTorque::new(function))),
@@ -212,17 +217,20 @@ fn a_body_does_not_know_who_is_beside_it() {
     }
 }
 
-/// `γ∧c`, `−k |Ω| Ω` and `L x b`, whose parameters differ from body to body, as formulas and as laws.
+/// Laws whose parameters differ from body to body, as formulas and as laws. Between the stages of a step a rotor is not of
+/// norm 1 by `(hω/2)²` at most, and the weight of a formula is another function of it there: a difference in the error of
+/// the method, `h⁴`.
 #[test]
 fn formulas_are_the_laws_they_say() {
-    let pairs: [(&str, Axes, fn([f64; 3], f64) -> Torque); 4] = [
-        ("(~R e3 R) ∧ c", Axes::Body, |c, _| Torque::Heavy(Vector(c))),
-        ("−k norm(Ω) Ω", Axes::Body, |_, k| Torque::QuadraticDamping(k)),
-        ("I c", Axes::Body, |c, _| Torque::ConstantBody(Bivector(c))),
-        ("I c", Axes::Space, |c, _| Torque::ConstantSpace(Bivector(c))),
+    let rounding = 16.0 * f64::EPSILON * STEPS;
+    let pairs: [(&str, Axes, f64, fn([f64; 3], f64) -> Torque); 4] = [
+        ("(~R e3 R) ∧ c", Axes::Body, 0.01 * STEP.powi(4), |c, _| Torque::Heavy(Vector(c))),
+        ("−k norm(Ω) Ω", Axes::Body, rounding, |_, k| Torque::QuadraticDamping(k)),
+        ("I c", Axes::Body, rounding, |c, _| Torque::ConstantBody(Bivector(c))),
+        ("I c", Axes::Space, rounding, |c, _| Torque::ConstantSpace(Bivector(c))),
     ];
     let all: Vec<usize> = (0..BODIES).collect();
-    for (text, axes, law) in pairs {
+    for (text, axes, allowed, law) in pairs {
         let mut ensemble = ensemble(&all, &[], true);
         let values = |body: usize| (three(body, 1), 1.0 + 0.5 * number(body, 2));
         ensemble.laws = vec![Rows::new(all.iter().map(|&i| law(values(i).0, values(i).1)).collect())];
@@ -233,7 +241,7 @@ fn formulas_are_the_laws_they_say() {
         for body in 0..BODIES {
             for (x, y) in found.rows[body].iter().take(2).flatten().zip(expected.rows[body].iter().flatten())
             {
-                assert!((x - y).abs() <= 16.0 * f64::EPSILON * STEPS, "{text}, body {body}: {x} {y}");
+                assert!((x - y).abs() <= allowed, "{text}, body {body}: {x} {y}");
             }
         }
     }
@@ -264,7 +272,7 @@ fn a_body_that_fails_fails_alone() {
         ensemble
     };
     // A quotient without a value at one time; the whole block stumbles over it.
-    let quotient = |at: f64| formula("I c/(k − t) + exp(t I c)·(e1e2) I c", Axes::Body, [0.1, 0.2, 0.3], at);
+    let quotient = |at: f64| formula("⟨I c/(k − t) + exp(t I c) I c⟩_2", Axes::Body, [0.1, 0.2, 0.3], at);
     let healthy = with(&|_| quotient(2.0));
     let failing = with(&|body| quotient(if ill.contains(&body) { 0.5 * STEP } else { 2.0 }));
     assert_only_these_fail(&healthy, &failing, &ill);

@@ -1,5 +1,6 @@
 //! Body-steps per second of ensembles, beside what the machine can do at most: `cargo run --release --example ensemble`.
 
+use polhode_ga::formula::Names;
 use polhode_ga::lanes::{Work, fastest};
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -40,7 +41,7 @@ fn best(runs: u32, mut run: impl FnMut()) -> f64 {
 }
 
 fn formula(text: &str) -> Torque {
-    Torque::Formula(FormulaTorque::new(text, Axes::Body, names(), |_| None).unwrap())
+    Torque::Formula(FormulaTorque::new(text, Axes::Body, Names::new([]), |_| None).unwrap())
 }
 
 fn main() {

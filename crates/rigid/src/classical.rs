@@ -116,10 +116,12 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     }
     if E::ACTS {
         let mut torque = exert.torque(&Place { rotor: r, omega: w, time });
-        let h = bodies.wheel;
-        torque[0] += h[2].times_from(w[1], h[1] * w[2]);
-        torque[1] += h[0].times_from(w[2], h[2] * w[0]);
-        torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+        if E::WHEELS {
+            let h = bodies.wheel;
+            torque[0] += h[2].times_from(w[1], h[1] * w[2]);
+            torque[1] += h[0].times_from(w[2], h[2] * w[0]);
+            torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+        }
         for k in 0..3 {
             let driven = torque[k].times_plus(bodies.inverse[k], slope[4 + k]);
             slope[4 + k] = bodies.damping.times_from(w[k], driven);

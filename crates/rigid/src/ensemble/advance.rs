@@ -1,6 +1,5 @@
 //! Equal steps of bodies side by side, one after the other.
 
-use super::steppers::Stepper;
 use polhode_ga::lanes::Work;
 use std::ops::Range;
 
@@ -30,31 +29,37 @@ impl Stretch {
 
 /// Some of the steps of a stretch. Apart from what is done between them, so that the compiler has the registers for the
 /// steps alone.
-pub(super) struct Advance<'a, S: Stepper<F>, const F: bool> {
-    pub stepper: &'a mut S,
-    pub state: &'a mut S::State,
+pub(super) struct Advance<'a, M, const F: bool> {
+    pub method: M,
     pub stretch: Stretch,
-    pub steps: Range<u64>,
+    pub steps: &'a Range<u64>,
+}
+
+/// A method that goes from each of some times to the next.
+pub(super) trait Steps {
+    /// `#[inline(always)]`.
+    fn walk(&mut self, times: &[f64]);
 }
 
 /// Times in whole registers: memory that is aligned makes all of the function's so.
 #[repr(align(64))]
 struct Times([f64; TIMED + 1]);
 
-impl<S: Stepper<F>, const F: bool> Work for Advance<'_, S, F> {
+impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
     type Output = ();
 
-    /// Fused as the caller is, who is on the same path.
     #[inline(always)]
-    fn run<const SAME: bool>(self) {
-        let Advance { stepper, state, stretch, steps } = self;
-        for first in steps.clone().step_by(TIMED) {
-            let mut times = Times([0.0; TIMED + 1]);
-            for k in 0..=TIMED {
-                times.0[k] = stretch.begin(first + k as u64);
+    fn run<const FUSED: bool>(mut self) {
+        // The caller is on the same path; nothing need be compiled for others.
+        if FUSED == F {
+            for first in self.steps.clone().step_by(TIMED) {
+                let mut times = Times([0.0; TIMED + 1]);
+                for k in 0..=TIMED {
+                    times.0[k] = self.stretch.begin(first + k as u64);
+                }
+                let count = TIMED.min((self.steps.end - first) as usize);
+                self.method.walk(&times.0[..count + 1]);
             }
-            let count = TIMED.min((steps.end - first) as usize);
-            stepper.walk(state, &times.0[..count + 1]);
         }
     }
 }

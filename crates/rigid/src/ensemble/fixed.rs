@@ -1,8 +1,8 @@
 //! Equal steps of bodies side by side.
 
-use super::advance::{Advance, Stretch};
+use super::advance::Stretch;
 use super::block::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
-use super::laws::{Laws, Nothing};
+use super::laws::{Acting, Laws};
 use super::steppers::{Components, Kicks, Stepper, of};
 use crate::certificate::{Certificate, Watch};
 use crate::classical::Bodies;
@@ -16,7 +16,7 @@ use crate::simulate_error::SimulateError;
 use crate::splitting::turns::Turns;
 use crate::torque::Torque;
 use crate::walk::is_finite;
-use polhode_ga::lanes::{Work, fastest};
+use polhode_ga::lanes::Work;
 use std::array;
 
 /// Steps between looks at whether all is finite, and whether to go on.
@@ -45,25 +45,17 @@ impl Work for FixedSteps<'_, '_> {
             let (stages, last) = sequence.stages();
             let fixed = |l: usize| fixed_momentum(laws(l), &of(members, l).start).map(|momentum| momentum.0);
             let turns = Turns::new(array::from_fn(|l| (gyrostats[l], damping(l), fixed(l))));
-            let (stages, exert) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
-            self.walk(&mut Kicks::<_, F> { turns, stages, exert }, &torques);
+            let (stages, laws) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
+            self.walk(&mut Kicks::<F> { turns, stages, laws }, &torques);
         } else {
             let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
-            if torques.iter().all(Vec::is_empty) {
-                self.walk(&mut Components::<_, F> { bodies, exert: Nothing }, &torques);
-            } else {
-                let exert = Laws::new(gyrostats, array::from_fn(laws));
-                match exert.weight() {
-                    Some(exert) => self.walk(&mut Components::<_, F> { bodies, exert }, &torques),
-                    None => self.walk(&mut Components::<_, F> { bodies, exert }, &torques),
-                }
-            }
+            let acting = Acting::new(gyrostats, array::from_fn(laws));
+            self.walk(&mut Components::<F> { bodies, acting }, &torques);
         }
     }
 }
 
 impl FixedSteps<'_, '_> {
-    #[inline(always)]
     fn walk<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
         let FixedSteps { crew, plan, mut members, progress } = self;
         let Plan { step, method, .. } = plan;
@@ -87,13 +79,7 @@ impl FixedSteps<'_, '_> {
                     for first in (0..stretch.count).step_by(BETWEEN_LOOKS as usize) {
                         let last = stretch.count.min(first + BETWEEN_LOOKS);
                         let before = state;
-                        let steps_now = first..last;
-                        fastest(Advance {
-                            stepper: &mut *stepper,
-                            state: &mut state,
-                            stretch,
-                            steps: steps_now,
-                        });
+                        stepper.advance(&mut state, stretch, &(first..last));
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
                             let now = stepper.phase(&member.gyrostat, &state, l, stretch.begin(last));

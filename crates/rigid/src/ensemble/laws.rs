@@ -9,7 +9,7 @@ use crate::phase::{Gyrostat, Phase};
 use crate::torque::lanes::{Three, gradient, quadratic, seen, turn_from, vertical};
 use crate::torque::{Axes, Gains, Orbit, Table, Torque};
 use polhode_ga::lanes::{Lanes, Work, cross, fastest, mapped};
-use polhode_ga::{Bivector, Rotor};
+use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 use std::sync::Arc;
 
@@ -30,13 +30,14 @@ impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
     }
 }
 
-/// Weight alone.
+/// Nothing but weights and damping, without wheels: what stays in registers.
 pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
 
 impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
     const ACTS: bool = true;
+    const WHEELS: bool = false;
 
-    /// `γ∧c`: its axial vector is γ x c.
+    /// γ∧c: its axial vector is γ x c.
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
         cross(&vertical(&at.rotor), &self.0)
@@ -45,6 +46,56 @@ impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
     #[inline(always)]
     fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
         [Lanes::ZERO; 3]
+    }
+}
+
+/// Nothing but the gradient along one orbit and damping, without wheels.
+pub(super) struct Gradient<const W: usize, const F: bool> {
+    moments: Three<W, F>,
+    orbits: Orbits<W>,
+}
+
+impl<const W: usize, const F: bool> Exert<W, F> for Gradient<W, F> {
+    const ACTS: bool = true;
+    const WHEELS: bool = false;
+
+    #[inline(always)]
+    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+        self.orbits.torque(&self.moments, at)
+    }
+
+    #[inline(always)]
+    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
+        [Lanes::ZERO; 3]
+    }
+}
+
+/// What turns bodies side by side, by how much of it there is.
+pub(super) enum Acting<'t, const W: usize, const F: bool> {
+    Nothing,
+    Weight(Weight<W, F>),
+    Gradient(Gradient<W, F>),
+    Laws(Laws<'t, W, F>),
+}
+
+impl<'t, const W: usize, const F: bool> Acting<'t, W, F> {
+    /// Every body has laws of the same kinds in the same order.
+    pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> Acting<'t, W, F> {
+        if torques[0].is_empty() {
+            return Acting::Nothing;
+        }
+        let mut laws = Laws::new(gyrostats, torques);
+        let wheels = gyrostats.iter().any(|body| body.wheel != Bivector::default());
+        match laws.laws.pop() {
+            Some(Law::Heavy(c)) if laws.laws.is_empty() && !wheels => Acting::Weight(Weight(c)),
+            Some(Law::GravityGradient(orbits)) if laws.laws.is_empty() && !wheels => {
+                Acting::Gradient(Gradient { moments: laws.moments, orbits })
+            }
+            last => {
+                laws.laws.extend(last);
+                Acting::Laws(laws)
+            }
+        }
     }
 }
 
@@ -239,22 +290,42 @@ impl<const W: usize> Orbits<W> {
         Some(Orbits { orbits, shared, times: [f64::NAN; W], places: [[0.0; W]; 3] })
     }
 
+    #[inline(always)]
+    fn torque<const F: bool>(&mut self, moments: &Three<W, F>, at: &Place<W, F>) -> Three<W, F> {
+        let mut elsewhere = false;
+        for l in 0..W {
+            elsewhere |= at.time.0[l] != self.times[l];
+        }
+        if elsewhere {
+            self.go_to(&at.time.0);
+        }
+        let [x, y, strength] = self.places;
+        gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
+    }
+
     /// Brings the places to these times.
     fn go_to(&mut self, times: &[f64; W]) {
         self.times = *times;
-        for l in 0..W {
-            if l > 0 && self.shared && times[l] == times[0] {
-                for place in &mut self.places {
-                    place[l] = place[0];
-                }
-                continue;
+        if self.shared && times.iter().all(|time| *time == times[0]) {
+            let place = place(&self.orbits[0], times[0]);
+            for k in 0..3 {
+                self.places[k] = [place[k]; W];
             }
-            let (u, nearness) = self.orbits[l].place(times[l]);
-            let [x, y, strength] = &mut self.places;
-            (x[l], y[l]) = (u.0[0], u.0[1]);
-            strength[l] = 3.0 * self.orbits[l].rate() * self.orbits[l].rate() * nearness;
+            return;
+        }
+        for l in 0..W {
+            let place = place(&self.orbits[l], times[l]);
+            for k in 0..3 {
+                self.places[k][l] = place[k];
+            }
         }
     }
+}
+
+/// Two components of u, and the strength of the field.
+fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
+    let (Vector([x, y, _]), nearness) = orbit.place(time);
+    [x, y, 3.0 * orbit.rate() * orbit.rate() * nearness]
 }
 
 impl Latest<'_> {
@@ -288,11 +359,6 @@ impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
         }
         Laws { gyrostats, moments, wheel, laws }
     }
-
-    /// The weight, if there is nothing else but damping and wheels.
-    pub fn weight(&self) -> Option<Weight<W, F>> {
-        if let [Law::Heavy(c)] = &self.laws[..] { Some(Weight(*c)) } else { None }
-    }
 }
 
 /// By the law of each body; NaN where one has no torque.
@@ -319,31 +385,15 @@ fn lane_by_lane<const W: usize, const F: bool>(
     torques
 }
 
-/// The torques of all laws. Apart from the steps, in whose stages its code would stand many times.
-struct Total<'a, 't, const W: usize, const F: bool> {
-    laws: &'a mut Laws<'t, W, F>,
-    at: &'a Place<W, F>,
-}
-
-impl<const W: usize, const F: bool> Work for Total<'_, '_, W, F> {
-    type Output = Three<W, F>;
-
-    /// Fused as the caller is, who is on the same path.
+impl<const W: usize, const F: bool> Laws<'_, W, F> {
     #[inline(always)]
-    fn run<const SAME: bool>(self) -> Three<W, F> {
-        let Total { laws, at } = self;
+    fn total(&mut self, at: &Place<W, F>) -> Three<W, F> {
         let mut sum = [Lanes::ZERO; 3];
-        for law in &mut laws.laws {
+        for law in &mut self.laws {
             let torque = match law {
+                // γ∧c: its axial vector is γ x c.
                 Law::Heavy(c) => cross(&vertical(&at.rotor), c),
-                Law::GravityGradient(orbits) => {
-                    if orbits.times != at.time.0 {
-                        orbits.go_to(&at.time.0);
-                    }
-                    let [x, y, strength] = orbits.places;
-                    let u = seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]);
-                    gradient(&laws.moments, &u, Lanes(strength))
-                }
+                Law::GravityGradient(orbits) => orbits.torque(&self.moments, at),
                 Law::ConstantBody(torque) => *torque,
                 Law::ConstantSpace(torque) => seen(&at.rotor, torque),
                 Law::QuadraticDamping(k) => quadratic(*k, &at.omega),
@@ -357,23 +407,44 @@ impl<const W: usize, const F: bool> Work for Total<'_, '_, W, F> {
                     [-x, -y, -z]
                 }
                 Law::Larmor(b) => {
-                    let mut momentum = laws.wheel;
+                    let mut momentum = self.wheel;
                     for k in 0..3 {
-                        momentum[k] = laws.moments[k].times_plus(at.omega[k], laws.wheel[k]);
+                        momentum[k] = self.moments[k].times_plus(at.omega[k], self.wheel[k]);
                     }
                     cross(&momentum, &seen(&at.rotor, b))
                 }
                 Law::Tabulated(latest) => {
-                    let [x, y, z] = latest.at(at.time.0[0]);
-                    let torque = [Lanes::all(x), Lanes::all(y), Lanes::all(z)];
+                    let mut torque = [Lanes::ZERO; 3];
+                    for l in 0..W {
+                        let numbers = latest.at(at.time.0[l]);
+                        for k in 0..3 {
+                            torque[k].0[l] = numbers[k];
+                        }
+                    }
                     if latest.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
                 }
                 Law::Formula(formulas) => formulas.torque(at),
-                Law::Other(each) => lane_by_lane(&laws.gyrostats, each, at),
+                Law::Other(each) => lane_by_lane(&self.gyrostats, each, at),
             };
             add(&mut sum, &torque);
         }
         sum
+    }
+}
+
+/// The torques of all laws. Apart from the steps, in whose stages the code would stand many times.
+struct Total<'a, 't, const W: usize, const F: bool> {
+    laws: &'a mut Laws<'t, W, F>,
+    at: &'a Place<W, F>,
+}
+
+impl<const W: usize, const F: bool> Work for Total<'_, '_, W, F> {
+    type Output = Three<W, F>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Three<W, F> {
+        // The caller is on the same path; nothing need be compiled for others.
+        if FUSED == F { self.laws.total(self.at) } else { [Lanes::ZERO; 3] }
     }
 }
 

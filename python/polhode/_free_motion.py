@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,11 +14,14 @@ from polhode import _native
 from polhode._arrays import Array, Shape, as_float, as_floats, frozen
 from polhode._bodies import Inertia
 from polhode._coefficients import as_coefficients
+from polhode._memory import require
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State, angular_velocity
 from polhode._values import bivector
 
+_STATE = 7 * 8  # bytes
+_MANY = 64  # bodies that fill the lanes
 
 class FreeMotion:
     """The torque-free motion of any body, exact at any time; or of a batch of bodies.
@@ -95,10 +99,53 @@ class FreeMotion:
         state = self._core.once(t)
         if state is None:
             times = as_floats(t, "time")
-            rotors, omegas = self._core.at(np.ravel(times))
             shape = self.shape + times.shape
+            require(_STATE * math.prod(shape), f"states of batch shape {shape}")
+            rotors, omegas = self._core.at(np.ravel(times))
             state = Rotor._from_rows(rotors.reshape(*shape, 4)), _bivectors(omegas, shape)
         return State._at_origin(*state)
+
+    def at_each(self, t: Any) -> State:
+        """Return the state of each body at its own time t in s, or at its own times.
+
+        Times broadcast with the batch of bodies, to the batch shape of the state: bodies (N,) and times (N,)
+        give (N,), one time for each body; times (T, N), or bodies (N, 1) and times (N, T), T for each. Each
+        state is the same to the last bit as that of one motion at one time. A ValueError as in `at`.
+        """
+        times = as_floats(t, "time")
+        try:
+            shape = np.broadcast_shapes(self.shape, times.shape)
+        except ValueError:
+            raise ValueError(
+                f"times of shape {times.shape} do not broadcast with bodies of batch shape {self.shape}; `at` "
+                "takes all times for each body"
+            ) from None
+        order, each = _order(self.shape, shape)
+        require(2 * _STATE * math.prod(shape), f"states of batch shape {shape}")
+        self._check_each(times, shape)
+        mine = np.ascontiguousarray(np.broadcast_to(times, shape).transpose(order))
+        rotors, omegas = self._core.at_each(mine.ravel(), each)
+        back = (*np.argsort(order), len(order))
+        rows, rates = (
+            np.ascontiguousarray(x.reshape(*mine.shape, x.shape[-1]).transpose(back)) for x in (rotors, omegas)
+        )
+        return State._at_origin(Rotor._from_rows(rows), _bivectors(rates, shape))
+
+    def _check_each(self, times: Array, shape: Shape) -> None:
+        """Times must be finite and within the horizon of their bodies."""
+        if not math.prod(shape) or np.abs(times).max() <= self._core.horizon:
+            return
+        for index in np.argwhere(~np.isfinite(times)):
+            raise ValueError(f"time {times[tuple(index)]} at index {_index(index)} is not finite")
+        horizons = np.broadcast_to(self._core.horizons().reshape(self.shape), shape)
+        for index in np.argwhere(np.abs(times) > horizons):
+            own = index[len(shape) - len(self.shape) :]
+            body = _index(np.minimum(own, np.array(self.shape) - 1))
+            time, horizon = np.broadcast_to(times, shape)[tuple(index)], horizons[tuple(index)]
+            raise ValueError(
+                f"at index {_index(index)}: time {time:g} s of body {body} lies beyond {horizon:.1e} s, where "
+                "the phase of its rotation is no longer known to rounding; take times nearer to 0"
+            )
 
     def describe(self) -> dict[str, Any]:
         """Say what the invariants tell.
@@ -254,6 +301,28 @@ def _inertias(values: Any) -> Any:
         if not isinstance(value, Inertia):
             raise TypeError(f"at index {index}: inertia must be an Inertia, got {type(value).__name__}")
     return array
+
+
+def _order(bodies: Shape, shape: Shape) -> tuple[Shape, int]:
+    """Return the order of the axes of the states that is the fastest, and how many times each body has in turn.
+
+    Bodies are computed side by side: they are to follow each other, with few or many times of each between, and
+    all of them again if they are many enough.
+    """
+    own = (1,) * (len(shape) - len(bodies)) + bodies
+    axes = [k for k, length in enumerate(own) if length != 1]
+    if not axes:
+        return tuple(range(len(shape))), math.prod(shape)
+    first, end = axes[0], axes[-1] + 1
+    are_together = math.prod(shape[first:end]) == math.prod(bodies)
+    if are_together and (math.prod(bodies) >= _MANY or math.prod(shape[:first]) == 1):
+        return tuple(range(len(shape))), math.prod(shape[end:])
+    times = [k for k, length in enumerate(own) if length == 1]
+    return (*axes, *times), math.prod(shape[k] for k in times)
+
+
+def _index(index: Array) -> Shape:
+    return tuple(int(k) for k in index)
 
 
 def _bivectors(numbers: Array, shape: Shape) -> Multivector:

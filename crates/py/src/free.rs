@@ -160,7 +160,7 @@ impl FreeMotion {
     ) -> PyResult<(Array<'py>, Array<'py>)> {
         let times = numbers(&times)?;
         let turn = self.starts.len() * each;
-        if !times.is_empty() && !times.len().checked_rem(turn).is_some_and(|rest| rest == 0) {
+        if !times.is_empty() && times.len().checked_rem(turn).is_none_or(|rest| rest != 0) {
             return Err(bad(format!(
                 "{} times for {} motions of {each} each",
                 times.len(),

@@ -67,13 +67,15 @@ impl<S: Series<C>, const C: usize> Flow<S, C> {
 
     /// Puts a motion into lane l.
     pub fn put(&mut self, l: usize, motion: &Flow<S::One>) {
-        self.coefficients_mut().zip(motion.coefficients()).for_each(|(lanes, &[c])| lanes[l] = c);
+        let numbers: Vec<f64> = motion.coefficients().map(|&[c]| c).collect();
+        self.coefficients_mut().enumerate().for_each(|(k, lanes)| lanes[l] = numbers[k]);
     }
 
     /// The motion in lane l.
     pub fn take(&self, l: usize) -> Flow<S::One> {
+        let numbers: Vec<f64> = self.coefficients().map(|lanes| lanes[l]).collect();
         let mut motion = Flow::empty();
-        motion.coefficients_mut().zip(self.coefficients()).for_each(|(c, lanes)| *c = [lanes[l]]);
+        motion.coefficients_mut().enumerate().for_each(|(k, c)| *c = [numbers[k]]);
         motion
     }
 

@@ -70,6 +70,8 @@ impl Tile {
                 AnyFlow::Hyperbolic(flow) => add(&mut tile.hyperbolic, place, flow),
             }
         }
+        tile.circular.shrink_to_fit();
+        tile.hyperbolic.shrink_to_fit();
         Ok(tile)
     }
 

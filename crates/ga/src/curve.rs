@@ -90,6 +90,12 @@ fn blocks<const W: usize, const A: usize, const B: usize>(
 /// Curves that [`together`] evaluates at a time.
 pub const TOGETHER: usize = 16;
 
+/// Asks for what is read soon: a hint, for much that lies in memory. The machine's own prefetching stops at the
+/// end of each page.
+pub fn expect<T>(soon: &T) {
+    Path::best().prefetch(soon, 0..size_of::<T>().div_ceil(64));
+}
+
 /// Values of as many curves as there are lanes, each for its own argument, as rows: `curves` has coefficients of
 /// its own for each lane. The same bits as [`value`] of each.
 pub fn together<const A: usize, const B: usize>(

@@ -8,7 +8,7 @@
 use super::FreeMotion;
 use super::flow::{AnyFlow, Flow};
 use super::series::{Circular, Hyperbolic, Series};
-use polhode_ga::curve::{TOGETHER, sample, together};
+use polhode_ga::curve::{TOGETHER, expect, sample, together};
 use polhode_ga::threads::{Threads, for_each};
 use std::ops::Range;
 
@@ -42,8 +42,10 @@ pub struct Tile {
 #[derive(Clone, Debug)]
 struct Block<S> {
     flows: Flow<S, TOGETHER>,
-    /// Their places in the tile, rising; there may be fewer than lanes.
-    places: Vec<u16>,
+    /// Their places in the tile, rising.
+    places: [u16; TOGETHER],
+    /// There may be fewer than lanes.
+    count: usize,
 }
 
 /// Some states of the motions of a tile: `rows` of them, motion by motion, of `each` times.
@@ -81,19 +83,30 @@ impl Tile {
     }
 
     fn fill(&self, mut part: Part<'_>) {
-        self.circular.iter().for_each(|block| block.fill(&mut part));
-        self.hyperbolic.iter().for_each(|block| block.fill(&mut part));
+        fill(&self.circular, &mut part);
+        fill(&self.hyperbolic, &mut part);
+    }
+}
+
+/// Fills in what states the part has of all blocks. To have them from memory takes longer than to compute.
+fn fill<S: Series<TOGETHER>>(blocks: &[Block<S>], part: &mut Part<'_>) {
+    for (i, block) in blocks.iter().enumerate() {
+        if let Some(next) = blocks.get(i + 1) {
+            expect(next);
+        }
+        block.fill(part);
     }
 }
 
 /// Puts a motion into the next lane.
 fn add<S: Series<TOGETHER>>(blocks: &mut Vec<Block<S>>, place: usize, flow: &Flow<S::One>) {
-    if blocks.last().is_none_or(|block| block.places.len() == TOGETHER) {
-        blocks.push(Block { flows: Flow::empty(), places: Vec::with_capacity(TOGETHER) });
+    if blocks.last().is_none_or(|block| block.count == TOGETHER) {
+        blocks.push(Block { flows: Flow::empty(), places: [0; TOGETHER], count: 0 });
     }
     if let Some(block) = blocks.last_mut() {
-        block.flows.put(block.places.len(), flow);
-        block.places.push(place as u16);
+        block.flows.put(block.count, flow);
+        block.places[block.count] = place as u16;
+        block.count += 1;
     }
 }
 
@@ -153,15 +166,19 @@ fn in_order(
 }
 
 impl<S: Series<TOGETHER>> Block<S> {
+    fn places(&self) -> &[u16] {
+        &self.places[..self.count]
+    }
+
     /// Fills in what states the part has of these motions.
     fn fill(&self, part: &mut Part<'_>) {
-        let (Some(&first), Some(&last)) = (self.places.first(), self.places.last()) else { return };
+        let (Some(&first), Some(&last)) = (self.places().first(), self.places().last()) else { return };
         let rows = usize::from(first) * part.each..(usize::from(last) + 1) * part.each;
         if rows.start >= part.rows.end || rows.end <= part.rows.start {
             return;
         }
         if part.each >= TIMES_IN_LANES {
-            for (l, &place) in self.places.iter().enumerate() {
+            for (l, &place) in self.places().iter().enumerate() {
                 part.one(usize::from(place), &self.flows.take(l));
             }
         } else {
@@ -176,7 +193,7 @@ impl<S: Series<TOGETHER>> Block<S> {
         let first = part.rows.start;
         let row = |place: &u16| usize::from(*place) * part.each + k;
         let mut times = [0.0; TOGETHER];
-        for (time, place) in times.iter_mut().zip(&self.places) {
+        for (time, place) in times.iter_mut().zip(self.places()) {
             *time = match part.times {
                 Times::Common(times) => times[k],
                 Times::Own(times, _) => times.get(row(place).wrapping_sub(first)).copied().unwrap_or(0.0),
@@ -184,7 +201,7 @@ impl<S: Series<TOGETHER>> Block<S> {
         }
         let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
         together(&self.flows, &times, &mut rotors, &mut omegas);
-        for (l, place) in self.places.iter().enumerate() {
+        for (l, place) in self.places().iter().enumerate() {
             let row = row(place);
             if part.rows.contains(&row) {
                 part.rotors[row - first] = rotors[l];

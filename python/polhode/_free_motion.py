@@ -132,7 +132,9 @@ class FreeMotion:
                 "`at` takes all times for each body"
             ) from None
         order, each = _order(self.shape, shape)
-        require(2 * _STATE * math.prod(shape), f"states of batch shape {shape}")
+        # The times, and the states once more where they are put into another order.
+        size = 8 + _STATE * (1 if order == tuple(range(len(shape))) else 2)
+        require(size * math.prod(shape), f"states of batch shape {shape}")
         self._check_each(times, shape)
         computed = np.broadcast_to(times, shape).transpose(order)
         rotors, omegas = self._core.at_each(computed.ravel(), each)

@@ -8,6 +8,8 @@ mod batches;
 mod bodies;
 mod calls;
 mod closed_forms;
+mod columns;
+mod ensemble;
 mod formula;
 mod free;
 mod laws;
@@ -37,6 +39,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
+    #[pymodule_export]
+    use crate::ensemble::simulate_many;
     #[pymodule_export]
     use crate::free::FreeMotion;
     #[pymodule_export]

@@ -16,7 +16,7 @@ from polhode._bodies import Body, Inertia
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State
-from polhode._trajectory import Certificate, Failure, Trajectory
+from polhode._trajectory import Certificate, Drift, Failure, Trajectory
 
 # Of a point: rotor, angular velocity, momentum and energy; place and velocity, where forces move bodies.
 _BYTES_OF_POINT = 8 * (4 + 3 + 3 + 1)
@@ -56,11 +56,7 @@ class Ensemble:
     @property
     def bytes(self) -> int:
         """What the results take, and what is needed on the way."""
-        point = _BYTES_OF_POINT
-        if self.forces:
-            point += _BYTES_OF_CENTER
-        elif self.velocities.any():
-            point += _BYTES_OF_CENTER // 2
+        point = _BYTES_OF_POINT + (_BYTES_OF_CENTER if self.forces else 0)
         return self.bodies * (point * len(self.times) + _BYTES_OF_BODY)
 
     def block(self, rows: slice) -> Ensemble:
@@ -118,7 +114,7 @@ class Ensemble:
         )
         n = len(self.times)
         arrays = [frozen(x.reshape(*self.shape, *x.shape[1:])[..., :n, :]) for x in arrays]
-        return self._trajectory(arrays, _certificate(told, self.shape), self._failures(told))
+        return self._trajectory(arrays, self._certificate(told), self._failures(told))
 
     def _nothing(self) -> Trajectory:
         sizes = (4, 3, 3, 1, 3, 3) if self.forces else (4, 3, 3, 1)
@@ -132,28 +128,50 @@ class Ensemble:
         self, arrays: list[Array], certificate: Certificate, failures: tuple[Failure, ...]
     ) -> Trajectory:
         rotors, omegas, momenta, energies, *centers = arrays
-        places, velocities = centers or self._uniform_motion()
         inertias = self.inertias
+        center = [Multivector._of(rows, _VECTOR) for rows in centers] or [None, None]
         return Trajectory(
             frozen(self.times.copy()),
             Rotor._from_rows(rotors),
             Multivector._of(omegas, _BIVECTOR),
             Multivector._of(momenta, _BIVECTOR),
             energies[..., 0],
-            Multivector._of(places, _VECTOR),
-            Multivector._of(velocities, _VECTOR),
+            *center,
             np.broadcast_to(inertias, self.shape) if inertias.ndim else inertias[()],
             certificate,
             failures=failures,
+            _drift=None if centers else self._drift(),
         )
 
-    def _uniform_motion(self) -> tuple[Array, Array]:
-        """Places and velocities without forces: views, where they do not differ."""
-        shape = (*self.shape, len(self.times), 3)
-        places, velocities = (x[..., np.newaxis, :] for x in (self.places, self.velocities))
-        if velocities.any():
-            places = frozen(places + velocities * self.times[:, np.newaxis])
-        return np.broadcast_to(places, shape), np.broadcast_to(velocities, shape)
+    def _drift(self) -> Drift:
+        shape = (*self.shape, 3)
+        return Drift(np.broadcast_to(self.places, shape), np.broadcast_to(self.velocities, shape))
+
+    def _certificate(self, told: dict[str, Any]) -> Certificate:
+        """Return what the core tells of each body; of those that failed no drift and no error."""
+        names, codes = told["methods"]
+        failed = np.zeros(len(codes), bool)
+        failed[told["failed"]] = True
+
+        def column(numbers: Array) -> Array:
+            return frozen(numbers.reshape(self.shape))
+
+        def finished(numbers: Array) -> Array:
+            return column(np.where(failed, np.nan, numbers))
+
+        # A body that failed before it had a method is told the one that was asked for.
+        names = np.array([name or self.method for name in names])
+        used = np.unique(codes if failed.all() else codes[~failed])
+        return Certificate(
+            str(names[used[0]]) if len(used) == 1 else column(names[codes]),
+            column(told["step"]),
+            column(told["steps"]),
+            column(told["evaluations"]),
+            finished(told["error_estimate"]),
+            {name: column(numbers) for name, numbers in told["conserved"].items()},
+            {name: finished(numbers) for name, numbers in told["drift"].items()},
+            finished(told["norm_drift"]),
+        )
 
     def _failures(self, told: dict[str, Any]) -> tuple[Failure, ...]:
         if not told["failed"]:
@@ -161,33 +179,6 @@ class Ensemble:
         indices = np.stack(np.unravel_index(told["failed"], self.shape), axis=-1).tolist()
         rows = zip(indices, told["failure_times"], told["messages"], strict=True)
         return tuple(Failure(tuple(index), time, message) for index, time, message in rows)
-
-
-def _certificate(told: dict[str, Any], shape: Shape) -> Certificate:
-    """Return what the core tells of each body; NaN for those that failed, but for what they began with."""
-    names, codes = told["methods"]
-    failed = np.zeros(len(codes), bool)
-    failed[told["failed"]] = True
-
-    def column(numbers: Array) -> Array:
-        return frozen(numbers.reshape(shape))
-
-    def finished(numbers: Array) -> Array:
-        return column(np.where(failed, np.nan, numbers))
-
-    used = np.unique(codes if failed.all() else codes[~failed])
-    method = names[used[0]] if len(used) == 1 else frozen(np.array(names)[codes].reshape(shape))
-    estimate = finished(told["error_estimate"])
-    return Certificate(
-        method,
-        column(told["step"]),
-        column(told["steps"]),
-        column(told["evaluations"]),
-        estimate,
-        {name: column(numbers) for name, numbers in told["conserved"].items()},
-        {name: finished(numbers) for name, numbers in told["drift"].items()},
-        finished(told["norm_drift"]),
-    )
 
 
 def _rows_of(argument: Any, rows: slice) -> Any:

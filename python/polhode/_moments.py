@@ -72,7 +72,8 @@ class Moments:
         with np.errstate(invalid="ignore", over="ignore"):  # infinite values have no deviation
             change = other._mean - self._mean
             self._squares = self._squares + other._squares + change * change * self._count * share
-            self._mean = np.where(share == 1, other._mean, self._mean + change * share)
+            mean = np.where(share == 1, other._mean, self._mean + change * share)
+            self._mean = np.where(np.isfinite(change), mean, self._mean + other._mean)
         self._count, self._missing = count, self._missing + other._missing
         self._minimum = np.fmin(self._minimum, other._minimum)
         self._maximum = np.fmax(self._maximum, other._maximum)

@@ -69,6 +69,20 @@ class Trajectory:
     failures: tuple[Failure, ...] = ()
     attributes: dict[str, Any] = field(default_factory=dict)
     _motion: _native.Motion | None = field(default=None, repr=False)
+    # Of a batch that no force moves: places and velocities are found when they are asked for.
+    _drift: Drift | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self._drift is not None:
+            del self.__dict__["position"], self.__dict__["velocity"]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            drift = self.__dict__.get("_drift")
+            if drift is None or name not in ("position", "velocity"):
+                raise AttributeError(f"a Trajectory has no attribute {name!r}")
+            return getattr(drift, name)(self.time)
 
     @staticmethod
     def _of(
@@ -137,8 +151,9 @@ class Trajectory:
             omega_body=self.omega_body[rows],
             momentum_space=self.momentum_space[rows],
             energy=self.energy[rows],
-            position=self.position[rows],
-            velocity=self.velocity[rows],
+            position=self.position[rows] if self._drift is None else None,
+            velocity=self.velocity[rows] if self._drift is None else None,
+            _drift=self._drift[parts] if self._drift is not None else None,
             inertia=self.inertia if isinstance(self.inertia, Inertia) else self.inertia[parts],
             certificate=self.certificate._of(parts),
             failures=self._failures_at(parts, picked),
@@ -233,6 +248,30 @@ class Trajectory:
         bodies = f"bodies {self.shape}, " if self.shape else ""
         failed = f"; {len(self.failures)} failed, the first {self.failures[0]}" if self.failures else ""
         return f"Trajectory({bodies}{n} times{span}, {named}{failed})"
+
+
+@dataclass(frozen=True, eq=False)
+class Drift:
+    """The uniform motion of centres of mass: places and velocities at time 0, (*shape, 3)."""
+
+    places: Array
+    velocities: Array
+
+    def __getitem__(self, index: tuple[Any, ...]) -> Drift:
+        rest: tuple[Any, ...] = (slice(None),) if any(part is Ellipsis for part in index) else ()
+        return Drift(self.places[(*index, *rest)], self.velocities[(*index, *rest)])
+
+    def position(self, times: Array) -> Multivector:
+        """Places at times (n,), vectors of batch (*shape, n)."""
+        return vector(self.places[..., np.newaxis, :] + self._rates(times) * times[:, np.newaxis])
+
+    def velocity(self, times: Array) -> Multivector:
+        """The velocities, at each time the same."""
+        return vector(self._rates(times))
+
+    def _rates(self, times: Array) -> Array:
+        rates = self.velocities[..., np.newaxis, :]
+        return np.broadcast_to(rates, (*rates.shape[:-2], len(times), 3))
 
 
 @dataclass(frozen=True)

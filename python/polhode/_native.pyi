@@ -60,6 +60,7 @@ __all__ = [
     "rotor_to_quaternion",
     "rotor_to_rotation_vector",
     "simulate",
+    "simulate_many",
     "subspaces",
     "symmetric_top",
     "to_pauli",

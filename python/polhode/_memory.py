@@ -19,15 +19,13 @@ def available() -> int | None:
     return min([*_of_machine(), *_of_groups()], default=None)
 
 
-def require(bytes_wanted: int, what: str) -> None:
+def require(bytes_wanted: int, what: str, remedy: str = "ask for fewer at a time") -> None:
     """Raise a MemoryError if so many bytes are not to be had; ``what`` is its subject, in the plural."""
     if bytes_wanted < _SMALL:
         return
     free = available()
     if free is not None and bytes_wanted > free:
-        raise MemoryError(
-            f"{what} take {_size(bytes_wanted)}; {_size(free)} are free: ask for fewer at a time"
-        )
+        raise MemoryError(f"{what} take {_size(bytes_wanted)}; {_size(free)} are free: {remedy}")
 
 
 def _size(count: int) -> str:

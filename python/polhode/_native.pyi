@@ -61,6 +61,7 @@ __all__ = [
     "rotor_to_quaternion",
     "rotor_to_rotation_vector",
     "simulate",
+    "simulate_many",
     "subspaces",
     "symmetric_top",
     "to_pauli",
@@ -247,6 +248,8 @@ class Made:
 @final
 class Law(Made):
     def __new__(cls, name: str, *arguments: Any) -> Law: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
 
 def orbit_directions(rate: float, eccentricity: float, anomaly: float, times: Array) -> Array: ...
 def torque_at(laws: list[Law], inertia: Inertia, rotor_row: Array, omega: Array, time: float) -> Array: ...
@@ -331,6 +334,22 @@ class Draws:
         self, first: int, count: int
     ) -> tuple[Array, Array, Array, Array, list[Inertia], list[Law | tuple[str, tuple[Array, ...]]]]: ...
 
+def simulate_many(
+    shape: tuple[int, ...],
+    inertias: tuple[list[Inertia], tuple[int, ...]],
+    rotors: Array,
+    omegas: Array,
+    laws: list[Law],
+    centers: Array,
+    masses: Array,
+    forces: list[Force],
+    times: Array,
+    method: str,
+    step: float | None,
+    rtol: float | None,
+    threads: int | None,
+    progress: Callable[[int, float], object] | None,
+) -> tuple[list[Array], dict[str, Any]]: ...
 def read_scene(path: str) -> dict[str, Any]: ...
 def diagnostic(source: str, number: int, line: str, start: int, end: int, message: str) -> str: ...
 def near_unit(word: str) -> str | None: ...

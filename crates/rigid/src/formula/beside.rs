@@ -8,6 +8,7 @@ use crate::torque::lanes::{Three, reversed, seen, turned};
 use polhode_ga::Rotor;
 use polhode_ga::formula::{Beside, Given};
 use polhode_ga::lanes::{Lanes, composed};
+use std::sync::Arc;
 
 /// A torque for each body.
 pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
@@ -24,15 +25,20 @@ pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
 impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
     /// `None` where they are not one program, or where a step has no value whatever the motion gives.
     pub fn new(each: [&'f Formula; W], bodies: &[Gyrostat; W]) -> Option<Formulas<'f, W, F>> {
-        let Compiled { program, runner, sources, purpose, .. } = &*each[0].compiled;
-        if each.iter().any(|formula| formula.compiled.program != *program || formula.purpose() != *purpose) {
+        let Compiled { program, runner, purpose, .. } = &*each[0].compiled;
+        let sources = &each[0].sources;
+        let same = |other: &Formula| {
+            Arc::ptr_eq(&other.compiled, &each[0].compiled)
+                || other.compiled.program == *program && other.purpose() == *purpose
+        };
+        if !each.iter().all(|formula| same(formula)) {
             return None;
         }
         let still = |input: usize| -> Option<[Given; W]> {
             let mut values = [Given::Determinant(0.0); W];
             for l in 0..W {
-                values[l] = match &each[l].compiled.sources[input] {
-                    Source::Known(given) => *given,
+                values[l] = match each[l].sources[input] {
+                    Source::Known(given) => given,
                     Source::Motion(Motion::Inertia) => inertia(&bodies[l], each[l].frame),
                     Source::Motion(_) => return None,
                 };

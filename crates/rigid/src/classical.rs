@@ -68,15 +68,30 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
             damping: Lanes::ZERO,
         };
         for (l, (body, damping)) in bodies.into_iter().enumerate() {
-            for k in 0..3 {
-                let [i, j, n] = [0, 1, 2].map(|next| body.moments[(k + next) % 3]);
-                all.inverse[k].0[l] = 1.0 / i;
-                all.coupling[k].0[l] = (j - n) / i;
-                all.wheel[k].0[l] = body.wheel.0[k];
-            }
-            all.damping.0[l] = damping;
+            all.set(l, &body, damping);
         }
         all
+    }
+
+    /// Puts a body with the g of its dampings into a lane.
+    pub fn set(&mut self, l: usize, body: &Gyrostat, damping: f64) {
+        for k in 0..3 {
+            let [i, j, n] = [0, 1, 2].map(|next| body.moments[(k + next) % 3]);
+            self.inverse[k].0[l] = 1.0 / i;
+            self.coupling[k].0[l] = (j - n) / i;
+            self.wheel[k].0[l] = body.wheel.0[k];
+        }
+        self.damping.0[l] = damping;
+    }
+
+    /// `Ω = I⁻¹(m − h)`.
+    #[inline(always)]
+    pub fn omega(&self, momentum: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
+        let mut omega = *momentum;
+        for k in 0..3 {
+            omega[k] = (momentum[k] - self.wheel[k]) * self.inverse[k];
+        }
+        omega
     }
 }
 
@@ -206,7 +221,7 @@ impl Classical {
     pub fn step(&self, from: &Carried, h: f64) -> Result<Carried, SimulateError> {
         let omega = self.body.omega(from.phase.momentum).0;
         let (rotor, time) = (from.phase.rotor.components(), from.phase.time);
-        let mut acting = Acting { of: self, failure: None };
+        let mut acting = Acting::new(&self.body, &self.torques, self.translation.as_ref());
         let rotation: [f64; 7] = array::from_fn(|k| if k < 4 { rotor[k] } else { omega[k - 4] });
         let (rotation, center) = if self.translation.is_none() {
             let mut state = One::each(rotation);
@@ -239,12 +254,24 @@ pub(crate) fn phase(body: &Gyrostat, state: &[f64], time: f64) -> Phase {
 }
 
 /// What acts on a single body; the first failure to say how.
-struct Acting<'a> {
-    of: &'a Classical,
-    failure: Option<SimulateError>,
+pub(crate) struct Acting<'a> {
+    body: &'a Gyrostat,
+    torques: &'a [Torque],
+    translation: Option<&'a Translation>,
+    /// Why something has no value.
+    pub failure: Option<SimulateError>,
 }
 
-impl Acting<'_> {
+impl<'a> Acting<'a> {
+    /// Laws and forces in principal axes.
+    pub fn new(
+        body: &'a Gyrostat,
+        torques: &'a [Torque],
+        translation: Option<&'a Translation>,
+    ) -> Acting<'a> {
+        Acting { body, torques, translation, failure: None }
+    }
+
     fn noted(&mut self, value: Result<[f64; 3], SimulateError>) -> [One; 3] {
         let value = value.unwrap_or_else(|failure| {
             self.failure.get_or_insert(failure);
@@ -255,7 +282,7 @@ impl Acting<'_> {
 
     fn phase(&self, at: &Place<1, false>) -> Phase {
         let rotor = Rotor::from_unit_components(One::alone(at.rotor));
-        let momentum = self.of.body.momentum(Bivector(One::alone(at.omega)));
+        let momentum = self.body.momentum(Bivector(One::alone(at.omega)));
         Phase { rotor, momentum, time: at.time.0[0] }
     }
 }
@@ -264,15 +291,18 @@ impl Exert<1, false> for Acting<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
-        let torque = exerted(&self.of.torques, &self.of.body, &self.phase(at));
+        if self.torques.is_empty() {
+            return [One::ZERO; 3];
+        }
+        let torque = exerted(self.torques, self.body, &self.phase(at));
         self.noted(torque.map(|torque| torque.0))
     }
 
     fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
-        let Some(translation) = &self.of.translation else { return [One::ZERO; 3] };
+        let Some(translation) = self.translation else { return [One::ZERO; 3] };
         let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
         let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
-        let acceleration = translation.acceleration(&self.of.body, &phase, &center);
+        let acceleration = translation.acceleration(self.body, &phase, &center);
         let failed = |error: TorqueError| SimulateError::Torque { time: phase.time, message: error.0 };
         self.noted(acceleration.map(|a| a.0).map_err(failed))
     }

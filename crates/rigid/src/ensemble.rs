@@ -1,11 +1,14 @@
 //! Many bodies at once: each as alone, many side by side in lanes.
 //!
 //! A body has its own inertia, start and laws, or shares them with the others. What becomes of one never depends on the
-//! others, on how many there are, or on how many threads share them. A motion in closed form is known at any time;
-//! others are stepped in the lanes where the method has a form for them, the rest one by one. A body that fails is
-//! told, and the others go on.
+//! others, on how many there are, or on how many threads share them. Without a step and a method, a
+//! motion in closed form is known at any time, and others are stepped by `dop853`, each by its own steps to its own
+//! tolerance: in the lanes, where the drifts of what is conserved are looked at at the output times. What the lanes have
+//! no form for is followed one by one. A body that fails is told, and the others go on.
 
+mod adaptive;
 mod block;
+mod exact;
 mod fixed;
 mod laws;
 mod output;
@@ -140,12 +143,19 @@ impl Ensemble {
         })
     }
 
-    /// Whether lanes have a form for this method with these laws.
-    fn in_lanes(&self, method: Method) -> bool {
+    /// Whether lanes have a form for this method with these laws, by equal steps or by steps of the bodies' own.
+    fn in_lanes(&self, method: Method, equal: bool) -> bool {
         // A table of its own gives each body its own steps.
         let own_breaks =
             |law: &Rows<Torque>| !law.is_one() && law.all().iter().any(|law| !law.breaks().is_empty());
+        // A function is called for one body at a time.
+        let function = |law: &Rows<Torque>| law.all().iter().any(|law| matches!(law, Torque::Function(_)));
         let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
-        matches!(method, Method::Classical) && !moved && !self.laws.iter().any(own_breaks)
+        let fit = match method {
+            Method::Classical => equal && !self.laws.iter().any(own_breaks),
+            Method::RungeKutta(_) => !equal && !self.laws.iter().any(function),
+            _ => false,
+        };
+        fit && !moved
     }
 }

@@ -1,21 +1,21 @@
 //! The work on an ensemble, shared by threads: each takes bodies that nobody has taken yet.
 
+use super::adaptive::{AdaptedSteps, METHOD};
 use super::fixed::FixedSteps;
 use super::output::{Outputs, Own, Summary};
 use super::{Ensemble, Failure};
 use crate::certificate::Certificate;
-use crate::closed_form::Fall;
+use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::Conserved;
 use crate::force::{Center, Force};
-use crate::method::Method;
 use crate::phase::{Gyrostat, Phase};
-use crate::simulate::{Options, Progress};
+use crate::simulate::{Options, Progress, check_body};
 use crate::simulate_error::SimulateError;
 use crate::torque::{Torque, wheel};
 use polhode_ga::lanes::fastest;
 use polhode_ga::threads::Threads;
-use polhode_ga::{Rotor, Vector};
-use std::iter::Enumerate;
+use polhode_ga::{Bivector, Rotor, Vector};
+use std::iter::{self, Enumerate};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -35,8 +35,20 @@ pub(super) struct Member<'a> {
     pub frame: Rotor,
     pub gyrostat: Gyrostat,
     pub torques: Vec<Torque>,
+    /// At the start, rad/s.
+    pub omega: Bivector,
     pub start: Phase,
     pub own: Own<'a>,
+}
+
+/// How a body is followed.
+enum Way {
+    /// In the lanes.
+    Lanes,
+    /// It is free: known at all times.
+    Free,
+    /// As a single one.
+    Alone,
 }
 
 /// What is told of a body.
@@ -120,32 +132,65 @@ impl<'a> Crew<'a> {
 
     /// Takes bodies and follows them, until there are no more.
     fn take_turns(&self, progress: &mut dyn FnMut(Progress) -> bool) {
-        let mut side_by_side = Vec::with_capacity(SIDE_BY_SIDE);
-        loop {
-            let next = if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() };
-            let more = next.is_some();
-            if let Some((body, own)) = next {
-                match self.fixed_steps(body) {
-                    Some(_) => side_by_side.push(self.member(body, own)),
-                    None => self.alone(body, own, progress),
+        if self.options.step.is_none() {
+            fastest(AdaptedSteps { crew: self, progress });
+        } else {
+            loop {
+                let next = iter::from_fn(|| self.next(progress));
+                let members: Vec<Member> = next.take(SIDE_BY_SIDE).collect();
+                if members.is_empty() {
+                    break;
                 }
-            }
-            if side_by_side.len() == SIDE_BY_SIDE || !more && !side_by_side.is_empty() {
-                let members = std::mem::take(&mut side_by_side);
                 fastest(FixedSteps { crew: self, members, progress });
-            }
-            if !more {
-                break;
             }
         }
         self.running.fetch_sub(1, Ordering::Relaxed);
     }
 
-    /// The step and the method of a body that is to be stepped by equal steps in lanes.
-    pub fn fixed_steps(&self, body: usize) -> Option<(f64, Method)> {
-        let step = self.options.step?;
-        let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
-        self.ensemble.in_lanes(method).then_some((step, method))
+    /// The next body for the lanes. Those before it that are not for them are followed at once.
+    pub fn next(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
+        while !self.stopped.load(Ordering::Relaxed) {
+            let (body, own) = lock(&self.queue).next()?;
+            if !self.may_be_in_lanes(body) {
+                self.alone(body, own, progress);
+                continue;
+            }
+            let member = self.member(body, own);
+            if self.options.step.is_some() {
+                return Some(member);
+            }
+            match self.way(&member) {
+                Way::Lanes => return Some(member),
+                Way::Free => self.free(member),
+                Way::Alone => self.alone(body, member.own, progress),
+            }
+        }
+        None
+    }
+
+    /// Whether the lanes have a form for the method and the laws of a body.
+    fn may_be_in_lanes(&self, body: usize) -> bool {
+        let equal = self.options.step.is_some();
+        let best = || if equal { self.ensemble.problem(body).best() } else { METHOD };
+        self.ensemble.in_lanes(self.options.method.unwrap_or_else(best), equal)
+    }
+
+    /// How a body is followed without a step.
+    fn way(&self, member: &Member) -> Way {
+        let Member { gyrostat, torques, start, omega, .. } = member;
+        let chosen = self.options.method.is_some() && !self.options.exact;
+        if check_body(gyrostat, *omega, torques).is_err() {
+            // What is wrong is told as for a single body.
+            Way::Alone
+        } else if chosen {
+            Way::Lanes
+        } else if torques.is_empty() {
+            Way::Free
+        } else {
+            let fall = Fall { start: Center::default(), acceleration: Vector::default() };
+            let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
+            if closed.is_some() || self.options.exact { Way::Alone } else { Way::Lanes }
+        }
     }
 
     fn member(&self, body: usize, own: Own<'a>) -> Member<'a> {
@@ -156,7 +201,7 @@ impl<'a> Crew<'a> {
         let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(start.omega);
         let start = Phase { rotor: start.rotor * frame, momentum: gyrostat.momentum(omega), time: 0.0 };
-        Member { body, frame, gyrostat, torques, start, own }
+        Member { body, frame, gyrostat, torques, omega, start, own }
     }
 
     /// Follows a body alone.
@@ -167,19 +212,23 @@ impl<'a> Crew<'a> {
             self.count(&mut so_far, at.fraction, 1);
             self.report(progress)
         };
-        let told = match problem.simulate(self.times, self.options.clone(), &mut go_on) {
+        let found = problem.simulate(self.times, self.options.clone(), &mut go_on);
+        self.count(&mut so_far, 1.0, 1);
+        match found {
             Ok(motion) => {
                 motion.write(&mut own);
-                Told { body, certificate: motion.certificate, failure: None }
+                self.tell([Told { body, certificate: motion.certificate, failure: None }]);
             }
-            Err(error) => {
-                (0..self.times.len()).for_each(|index| own.unknown(index));
-                let time = error.time().unwrap_or(0.0);
-                Told { body, certificate: Certificate::default(), failure: Some((time, error)) }
-            }
-        };
-        self.count(&mut so_far, 1.0, 1);
-        self.tell([told]);
+            Err(error) => self.fail(body, &mut own, "", error),
+        }
+    }
+
+    /// Tells that a body could not be followed by a method; nothing is known of it.
+    pub fn fail(&self, body: usize, own: &mut Own<'a>, method: &'static str, error: SimulateError) {
+        (0..self.times.len()).for_each(|index| own.unknown(index));
+        let time = error.time().unwrap_or(0.0);
+        let certificate = Certificate { method, ..Certificate::default() };
+        self.tell([Told { body, certificate, failure: Some((time, error)) }]);
     }
 
     /// Where the centre of mass of a body that only constant forces move is at a time.

@@ -2,9 +2,10 @@
 
 use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
 use super::laws::{Laws, Nothing};
-use crate::certificate::{Certificate, Watch};
+use crate::certificate::{Certificate, Watch, off_unit};
 use crate::classical::{self, Bodies, Classical, Exert, State};
 use crate::force::Center;
+use crate::method::Method;
 use crate::phase::Phase;
 use crate::runge_kutta::Carried;
 use crate::simulate::Progress;
@@ -83,7 +84,7 @@ impl FixedSteps<'_, '_> {
         torques: &[Vec<Torque>],
     ) {
         let FixedSteps { crew, mut members, progress } = self;
-        let Some((step, method)) = crew.fixed_steps(members[0].body) else { return };
+        let Some(step) = crew.options.step else { return };
         let times = crew.times;
         let mut watches: Vec<Watch> =
             members.iter().zip(torques).map(|(m, t)| Watch::new(m.gyrostat, t, m.start)).collect();
@@ -131,8 +132,7 @@ impl FixedSteps<'_, '_> {
                         continue;
                     }
                     let phase = phase(member, &state, l, time);
-                    let size = phase.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt();
-                    norm_drifts[l] = norm_drifts[l].max((size - 1.0).abs());
+                    norm_drifts[l] = norm_drifts[l].max(off_unit(phase.rotor));
                     watches[l].look(&phase);
                     let center = crew.center(member.body, time);
                     let of = (member.frame, &member.gyrostat, &torques[l][..]);
@@ -146,7 +146,7 @@ impl FixedSteps<'_, '_> {
         crew.tell(told.map(|(((member, watch), failure), norm_drift)| Told {
             body: member.body,
             certificate: Certificate {
-                method: method.name(),
+                method: Method::Classical.name(),
                 step: longest,
                 steps,
                 evaluations: 4 * steps,

@@ -55,7 +55,8 @@ fn in_order(
 }
 
 impl FreeMotion {
-    fn fill(&self, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
+    /// The states at the times, by the calling thread.
+    pub(crate) fn fill(&self, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
         if times.len() >= IN_LANES {
             return match &self.flow {
                 AnyFlow::Circular(flow) => sample(flow, Threads::ONE, times, rotors, omegas),

@@ -1,0 +1,361 @@
+//! Bodies side by side, each by steps of its own that keep to its tolerance.
+//!
+//! In every round each body attempts a step of its own length and takes it or not, by the rules of a single body: its
+//! passes, its stops at output times and where its laws are not smooth. A body that is done gives its lane to the next
+//! one, so that a hard one does not hold up the others.
+
+use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
+use super::laws::{Laws, Nothing};
+use crate::certificate::{Certificate, Watch, off_unit};
+use crate::classical::{Bodies, Exert};
+use crate::converge::{Aim, Converged, Convergence};
+use crate::force::Center;
+use crate::method::{Method, fastest_rate};
+use crate::phase::Gyrostat;
+use crate::runge_kutta::{Carried, DOP853, Points, RungeKutta, step};
+use crate::simulate::Progress;
+use crate::simulate_error::SimulateError;
+use crate::torque::Torque;
+use crate::walk::{Pace, Pass, Stride, check_count, next_stop};
+use polhode_ga::lanes::{Lanes, Work};
+use std::{array, mem};
+
+const W: usize = SIDE_BY_SIDE;
+
+/// The method that the bodies are stepped by.
+pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
+
+/// Rounds between looks at whether to go on.
+const BETWEEN_LOOKS: u32 = 256;
+
+/// All bodies that no one has taken yet.
+pub(super) struct AdaptedSteps<'a, 'b> {
+    pub crew: &'b Crew<'a>,
+    pub progress: &'b mut dyn FnMut(Progress) -> bool,
+}
+
+/// A body in a lane, on its way through its passes.
+struct Seat<'a> {
+    member: Member<'a>,
+    /// Times at which its laws are not smooth, rising.
+    breaks: Vec<f64>,
+    /// A guess of the first step of a pass, in s.
+    first: f64,
+    passes: Convergence,
+    /// The one under way, with its points in the order of the walk.
+    pass: Pass,
+    /// Where it began.
+    begin: Carried,
+    stride: Stride,
+    /// The largest estimate of the error of a step that may stand.
+    tolerance: f64,
+    /// Where to stop next.
+    stop: f64,
+    /// Parts of the way that were counted.
+    so_far: u64,
+}
+
+/// Bodies in lanes and how far they are.
+struct Deck<'a, const F: bool> {
+    seats: [Option<Seat<'a>>; W],
+    bodies: Bodies<W, F>,
+    at: Points<W, F>,
+    /// The largest angular velocities on the way, and rates below which they do not count, in rad/s.
+    fastest: Lanes<W, F>,
+    least: Lanes<W, F>,
+}
+
+impl Work for AdaptedSteps<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const F: bool>(self) {
+        let AdaptedSteps { crew, progress } = self;
+        let nobody = Gyrostat::rigid([1.0; 3]);
+        let mut deck = Deck::<F> {
+            seats: [const { None }; W],
+            bodies: Bodies::new([(nobody, 0.0); W]),
+            at: Points::NONE,
+            fastest: Lanes::ZERO,
+            least: Lanes::ZERO,
+        };
+        let mut torques: [Vec<Torque>; W] = [const { Vec::new() }; W];
+        let mut gyrostats = [nobody; W];
+        loop {
+            for l in 0..W {
+                while deck.seats[l].is_none()
+                    && let Some(mut member) = crew.next(progress)
+                {
+                    (torques[l], gyrostats[l]) = (mem::take(&mut member.torques), member.gyrostat);
+                    deck.sit(l, Seat::new(member, &torques[l], crew), &torques[l], crew);
+                }
+            }
+            let Some(taken) = deck.seats.iter().position(Option::is_some) else { return };
+            // An empty lane has laws of the same kinds.
+            let of = |l: usize| if torques[l].is_empty() { taken } else { l };
+            let torques = array::from_fn(|l| &torques[of(l)][..]);
+            let go_on = if crew.ensemble.laws.is_empty() {
+                deck.rounds(crew, &torques, &mut Nothing, progress)
+            } else {
+                deck.rounds(crew, &torques, &mut Laws::new(gyrostats, torques), progress)
+            };
+            if !go_on {
+                return;
+            }
+        }
+    }
+}
+
+impl<'a, const F: bool> Deck<'a, F> {
+    /// Puts a body into an empty lane, unless it is done at once.
+    fn sit(&mut self, l: usize, mut seat: Seat<'a>, torques: &[Torque], crew: &Crew<'a>) {
+        let gyrostat = seat.member.gyrostat;
+        self.bodies.set(l, &gyrostat, torques.iter().map(Torque::damping_rate).sum());
+        self.least.0[l] = gyrostat.least_rate();
+        let at = seat.begin_pass();
+        self.fastest.0[l] = seat.rate(&at);
+        self.proceed(l, seat, at, torques, crew);
+    }
+
+    /// Goes on with a body from where it stopped. Empties its lane where it is done.
+    fn proceed(
+        &mut self,
+        l: usize,
+        mut seat: Seat<'a>,
+        mut at: Carried,
+        torques: &[Torque],
+        crew: &Crew<'a>,
+    ) {
+        let mut fastest = self.fastest.0[l];
+        match seat.proceed(&mut at, &mut fastest, crew.times) {
+            Ok(None) => {
+                self.at.set(l, &at);
+                self.fastest.0[l] = fastest;
+                self.seats[l] = Some(seat);
+            }
+            Ok(Some(converged)) => seat.done(converged, torques, crew),
+            Err(error) => seat.failed(error, crew),
+        }
+    }
+
+    /// Rounds until a lane is empty that was not. Whether to go on.
+    #[inline(always)]
+    fn rounds<E: Exert<W, F>>(
+        &mut self,
+        crew: &Crew<'a>,
+        torques: &[&[Torque]; W],
+        exert: &mut E,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> bool {
+        let before = self.taken();
+        let mut rounds = 0;
+        while self.taken() == before {
+            let (h, ends) = self.plan(crew);
+            let fastest = self.fastest.max(self.least);
+            let (mut next, error) = step::<6, W, F, E>(&DOP853, &self.bodies, exert, &self.at, h, fastest);
+            next.time = ends;
+            let rates = next.rates(&self.bodies);
+            let stands = self.judge(crew, torques, &h, &next, &error);
+            self.at.take(&stands, &next);
+            self.fastest = rates.max(self.fastest).or(&stands, self.fastest);
+            for l in 0..W {
+                if stands[l]
+                    && let Some(seat) = self.seats[l].take_if(|seat| seat.stop == self.at.time.0[l])
+                {
+                    self.proceed(l, seat, self.at.get(l), torques[l], crew);
+                }
+            }
+            rounds += 1;
+            if rounds % BETWEEN_LOOKS == 0 {
+                for (l, seat) in self.seats.iter_mut().enumerate() {
+                    seat.iter_mut().for_each(|seat| seat.count(self.at.time.0[l], crew));
+                }
+                if !crew.report(progress) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    fn taken(&self) -> usize {
+        self.seats.iter().filter(|seat| seat.is_some()).count()
+    }
+
+    /// The lengths of the next steps and where they end; empty lanes stay where they are.
+    fn plan(&mut self, crew: &Crew<'a>) -> (Lanes<W, F>, Lanes<W, F>) {
+        let (mut h, mut ends) = (Lanes::ZERO, self.at.time);
+        for l in 0..W {
+            let Some(seat) = &mut self.seats[l] else { continue };
+            let from = self.at.time.0[l];
+            match seat.stride.end(from, seat.stop) {
+                Ok(to) => (h.0[l], ends.0[l]) = (to - from, to),
+                Err(error) => self.fail(l, error, crew),
+            }
+        }
+        (h, ends)
+    }
+
+    /// Which steps may stand.
+    fn judge(
+        &mut self,
+        crew: &Crew<'a>,
+        torques: &[&[Torque]; W],
+        h: &Lanes<W, F>,
+        next: &Points<W, F>,
+        error: &Lanes<W, F>,
+    ) -> [bool; W] {
+        let mut stands = [false; W];
+        for l in 0..W {
+            let Some(seat) = &mut self.seats[l] else { continue };
+            let (h, error) = (h.0[l], error.0[l] / seat.tolerance);
+            seat.pass.evaluations += DOP853.rows.len() as u64;
+            if error.is_nan()
+                && let Err(error) = seat.diagnose(&self.at.get(l), h, torques[l])
+            {
+                self.fail(l, error, crew);
+                continue;
+            }
+            if seat.stride.judge(h, error) {
+                match seat.arrive(h, next, l) {
+                    Ok(()) => stands[l] = true,
+                    Err(error) => self.fail(l, error, crew),
+                }
+            }
+        }
+        stands
+    }
+
+    #[cold]
+    fn fail(&mut self, l: usize, error: SimulateError, crew: &Crew<'a>) {
+        if let Some(seat) = self.seats[l].take() {
+            seat.failed(error, crew);
+        }
+    }
+}
+
+impl<'a> Seat<'a> {
+    fn new(member: Member<'a>, torques: &[Torque], crew: &Crew<'a>) -> Seat<'a> {
+        let start = Carried::new(member.start, Center::default());
+        let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
+        breaks.sort_by(f64::total_cmp);
+        let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
+        let aim = Aim::new(METHOD.order(), crew.options.rtol);
+        Seat {
+            member,
+            breaks,
+            first,
+            passes: Convergence::new(start, aim.tolerance(), aim),
+            pass: Pass::default(),
+            begin: start,
+            stride: Stride::new(first),
+            tolerance: aim.goal,
+            stop: 0.0,
+            so_far: 0,
+        }
+    }
+
+    /// Begins the next pass: where it starts.
+    fn begin_pass(&mut self) -> Carried {
+        let (pace, begin, _) = self.passes.next();
+        if let Pace::Tolerance(tolerance) = pace {
+            self.tolerance = tolerance;
+        }
+        (self.begin, self.stride) = (begin, Stride::new(self.first));
+        begin
+    }
+
+    /// The size of the angular velocity, rad/s.
+    fn rate(&self, at: &Carried) -> f64 {
+        self.member.gyrostat.omega(at.phase.momentum).norm()
+    }
+
+    /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and
+    /// in the next pass too. The last pass, once it is good enough.
+    fn proceed(
+        &mut self,
+        at: &mut Carried,
+        fastest: &mut f64,
+        times: &[f64],
+    ) -> Result<Option<Converged>, SimulateError> {
+        let early = times.partition_point(|&t| t < 0.0);
+        loop {
+            let taken = self.pass.states.len();
+            self.pass.meet(*fastest, &at.center);
+            if taken == times.len() {
+                let mut pass = mem::take(&mut self.pass);
+                pass.states[..early].reverse();
+                if let Some(found) = self.passes.take(pass, &self.member.gyrostat, &|from, _| *from)? {
+                    return Ok(Some(found));
+                }
+                *at = self.begin_pass();
+                *fastest = self.rate(at);
+                continue;
+            }
+            let time = times[if taken < early { early - 1 - taken } else { taken }];
+            if at.phase.time != time {
+                self.stop = next_stop(&self.breaks, at.phase.time, time);
+                return Ok(None);
+            }
+            self.pass.states.push(*at);
+            if taken + 1 == early {
+                (*at, self.stride) = (self.begin, Stride::new(self.first));
+                *fastest = self.rate(at);
+            }
+        }
+    }
+
+    /// Counts a step that may stand.
+    fn arrive<const F: bool>(&mut self, h: f64, next: &Points<W, F>, l: usize) -> Result<(), SimulateError> {
+        self.pass.steps += 1;
+        self.pass.longest = self.pass.longest.max(h.abs());
+        if !next.is_finite(l) {
+            return Err(SimulateError::Diverged { time: next.time.0[l] });
+        }
+        check_count(&self.pass)
+    }
+
+    /// Why a step has no error: it is too long, or a law has no torque on the way, which the step of a single body
+    /// tells.
+    #[cold]
+    fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
+        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
+        alone.step(at, h, self.rate(at)).map(|_| ())
+    }
+
+    /// Counts the way gone in a pass.
+    fn count(&mut self, time: f64, crew: &Crew<'a>) {
+        let begin = crew.times.first().map_or(0.0, |t| t.min(0.0));
+        let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
+        let walked = if self.stop < 0.0 { -time } else { time - begin };
+        crew.count(&mut self.so_far, walked / total, 1);
+    }
+
+    /// Writes and tells what was found.
+    fn done(mut self, found: Converged, torques: &[Torque], crew: &Crew<'a>) {
+        let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
+        let mut watch = Watch::new(gyrostat, torques, start);
+        let mut norm_drift = 0.0_f64;
+        for (index, Carried { phase, .. }) in found.pass.states.iter().enumerate() {
+            watch.look(phase);
+            norm_drift = norm_drift.max(off_unit(phase.rotor));
+            own.write(index, (frame, &gyrostat, torques), phase, &crew.center(body, phase.time));
+        }
+        let certificate = Certificate {
+            method: METHOD.name(),
+            step: found.pass.longest,
+            steps: found.pass.steps,
+            evaluations: found.pass.evaluations,
+            error_estimate: Some(found.error),
+            drifts: watch.finish(),
+            norm_drift,
+        };
+        crew.count(&mut self.so_far, 1.0, 1);
+        crew.tell([Told { body, certificate, failure: None }]);
+    }
+
+    fn failed(mut self, error: SimulateError, crew: &Crew<'a>) {
+        crew.count(&mut self.so_far, 1.0, 1);
+        crew.fail(self.member.body, &mut self.member.own, METHOD.name(), error);
+    }
+}

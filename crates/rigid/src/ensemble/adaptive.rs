@@ -2,7 +2,7 @@
 //!
 //! In every round each body attempts a step of its own length and takes it or not, by the rules of a single body: its
 //! passes, its stops at output times and where its laws are not smooth. A body that is done gives its lane to the next
-//! one, so that a hard one does not hold up the others.
+//! one, so that a hard one does not hold up the others. The last few go on in fewer lanes, to the same bits.
 
 use super::block::{Crew, Member, SIDE_BY_SIDE, Told};
 use super::laws::{Laws, Nothing};
@@ -20,7 +20,8 @@ use crate::walk::{Pace, Pass, Stride, check_count, next_stop};
 use polhode_ga::lanes::{Lanes, Work};
 use std::{array, mem};
 
-const W: usize = SIDE_BY_SIDE;
+/// So many lanes hold the last bodies: one register of most machines.
+const LAST: usize = 4;
 
 /// The method that the bodies are stepped by.
 pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
@@ -55,8 +56,17 @@ struct Seat<'a> {
     so_far: u64,
 }
 
+/// A body on its way that has no lane.
+struct Standing<'a> {
+    seat: Seat<'a>,
+    torques: Vec<Torque>,
+    at: Carried,
+    /// The largest angular velocity on the way, rad/s.
+    fastest: f64,
+}
+
 /// Bodies in lanes and how far they are.
-struct Deck<'a, const F: bool> {
+struct Deck<'a, const W: usize, const F: bool> {
     seats: [Option<Seat<'a>>; W],
     bodies: Bodies<W, F>,
     at: Points<W, F>,
@@ -71,50 +81,84 @@ impl Work for AdaptedSteps<'_, '_> {
     #[inline(always)]
     fn run<const F: bool>(self) {
         let AdaptedSteps { crew, progress } = self;
-        let nobody = Gyrostat::rigid([1.0; 3]);
-        let mut deck = Deck::<F> {
-            seats: [const { None }; W],
-            bodies: Bodies::new([(nobody, 0.0); W]),
-            at: Points::NONE,
-            fastest: Lanes::ZERO,
-            least: Lanes::ZERO,
-        };
-        let mut torques: [Vec<Torque>; W] = [const { Vec::new() }; W];
-        let mut gyrostats = [nobody; W];
-        loop {
-            for l in 0..W {
-                while deck.seats[l].is_none()
-                    && let Some(mut member) = crew.next(progress)
-                {
-                    (torques[l], gyrostats[l]) = (mem::take(&mut member.torques), member.gyrostat);
-                    deck.sit(l, Seat::new(member, &torques[l], crew), &torques[l], crew);
-                }
+        let last = follow::<SIDE_BY_SIDE, F>(crew, Vec::new(), LAST, progress);
+        follow::<LAST, F>(crew, last, 0, progress);
+    }
+}
+
+/// Follows bodies, those that stand first, until no more than so many are left, which stand then.
+#[inline(always)]
+fn follow<'a, const W: usize, const F: bool>(
+    crew: &Crew<'a>,
+    mut standing: Vec<Standing<'a>>,
+    enough: usize,
+    progress: &mut dyn FnMut(Progress) -> bool,
+) -> Vec<Standing<'a>> {
+    let nobody = Gyrostat::rigid([1.0; 3]);
+    let mut deck = Deck::<W, F> {
+        seats: [const { None }; W],
+        bodies: Bodies::new([(nobody, 0.0); W]),
+        at: Points::NONE,
+        fastest: Lanes::ZERO,
+        least: Lanes::ZERO,
+    };
+    let mut torques: [Vec<Torque>; W] = [const { Vec::new() }; W];
+    let mut gyrostats = [nobody; W];
+    loop {
+        for l in 0..W {
+            while deck.seats[l].is_none()
+                && let Some(next) = standing.pop().or_else(|| Some(Standing::new(crew.next(progress)?, crew)))
+            {
+                gyrostats[l] = next.seat.member.gyrostat;
+                torques[l] = deck.sit(l, next, crew);
             }
-            let Some(taken) = deck.seats.iter().position(Option::is_some) else { return };
+        }
+        if deck.taken() <= enough {
+            return deck.stand(torques);
+        }
+        let go_on = if crew.ensemble.laws.is_empty() {
+            deck.rounds(crew, &torques, &mut Nothing, progress)
+        } else {
             // An empty lane has laws of the same kinds.
+            let taken = deck.seats.iter().position(Option::is_some).unwrap_or(0);
             let of = |l: usize| if torques[l].is_empty() { taken } else { l };
-            let torques = array::from_fn(|l| &torques[of(l)][..]);
-            let go_on = if crew.ensemble.laws.is_empty() {
-                deck.rounds(crew, &torques, &mut Nothing, progress)
-            } else {
-                deck.rounds(crew, &torques, &mut Laws::new(gyrostats, torques), progress)
-            };
-            if !go_on {
-                return;
-            }
+            let laws = &mut Laws::new(gyrostats, array::from_fn(|l| &torques[of(l)][..]));
+            deck.rounds(crew, &torques, laws, progress)
+        };
+        if !go_on {
+            return Vec::new();
         }
     }
 }
 
-impl<'a, const F: bool> Deck<'a, F> {
-    /// Puts a body into an empty lane, unless it is done at once.
-    fn sit(&mut self, l: usize, mut seat: Seat<'a>, torques: &[Torque], crew: &Crew<'a>) {
+impl<'a> Standing<'a> {
+    fn new(mut member: Member<'a>, crew: &Crew<'a>) -> Standing<'a> {
+        let torques = mem::take(&mut member.torques);
+        let mut seat = Seat::new(member, &torques, crew);
+        let at = seat.begin_pass();
+        Standing { fastest: seat.rate(&at), seat, torques, at }
+    }
+}
+
+impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
+    /// Puts a body into an empty lane, unless it is done at once. Gives its laws.
+    fn sit(&mut self, l: usize, body: Standing<'a>, crew: &Crew<'a>) -> Vec<Torque> {
+        let Standing { seat, torques, at, fastest } = body;
         let gyrostat = seat.member.gyrostat;
         self.bodies.set(l, &gyrostat, torques.iter().map(Torque::damping_rate).sum());
-        self.least.0[l] = gyrostat.least_rate();
-        let at = seat.begin_pass();
-        self.fastest.0[l] = seat.rate(&at);
-        self.proceed(l, seat, at, torques, crew);
+        (self.least.0[l], self.fastest.0[l]) = (gyrostat.least_rate(), fastest);
+        self.proceed(l, seat, at, &torques, crew);
+        torques
+    }
+
+    /// Empties all lanes.
+    fn stand(&mut self, torques: [Vec<Torque>; W]) -> Vec<Standing<'a>> {
+        let mut all = Vec::new();
+        for (l, torques) in torques.into_iter().enumerate() {
+            let (at, fastest) = (self.at.get(l), self.fastest.0[l]);
+            all.extend(self.seats[l].take().map(|seat| Standing { seat, torques, at, fastest }));
+        }
+        all
     }
 
     /// Goes on with a body from where it stopped. Empties its lane where it is done.
@@ -126,11 +170,9 @@ impl<'a, const F: bool> Deck<'a, F> {
         torques: &[Torque],
         crew: &Crew<'a>,
     ) {
-        let mut fastest = self.fastest.0[l];
-        match seat.proceed(&mut at, &mut fastest, crew.times) {
+        match seat.proceed(&mut at, &mut self.fastest.0[l], crew.times) {
             Ok(None) => {
                 self.at.set(l, &at);
-                self.fastest.0[l] = fastest;
                 self.seats[l] = Some(seat);
             }
             Ok(Some(converged)) => seat.done(converged, torques, crew),
@@ -143,7 +185,7 @@ impl<'a, const F: bool> Deck<'a, F> {
     fn rounds<E: Exert<W, F>>(
         &mut self,
         crew: &Crew<'a>,
-        torques: &[&[Torque]; W],
+        torques: &[Vec<Torque>; W],
         exert: &mut E,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> bool {
@@ -162,7 +204,7 @@ impl<'a, const F: bool> Deck<'a, F> {
                 if stands[l]
                     && let Some(seat) = self.seats[l].take_if(|seat| seat.stop == self.at.time.0[l])
                 {
-                    self.proceed(l, seat, self.at.get(l), torques[l], crew);
+                    self.proceed(l, seat, self.at.get(l), &torques[l], crew);
                 }
             }
             rounds += 1;
@@ -200,7 +242,7 @@ impl<'a, const F: bool> Deck<'a, F> {
     fn judge(
         &mut self,
         crew: &Crew<'a>,
-        torques: &[&[Torque]; W],
+        torques: &[Vec<Torque>; W],
         h: &Lanes<W, F>,
         next: &Points<W, F>,
         error: &Lanes<W, F>,
@@ -211,7 +253,7 @@ impl<'a, const F: bool> Deck<'a, F> {
             let (h, error) = (h.0[l], error.0[l] / seat.tolerance);
             seat.pass.evaluations += DOP853.rows.len() as u64;
             if error.is_nan()
-                && let Err(error) = seat.diagnose(&self.at.get(l), h, torques[l])
+                && let Err(error) = seat.diagnose(&self.at.get(l), h, &torques[l])
             {
                 self.fail(l, error, crew);
                 continue;
@@ -306,7 +348,12 @@ impl<'a> Seat<'a> {
     }
 
     /// Counts a step that may stand.
-    fn arrive<const F: bool>(&mut self, h: f64, next: &Points<W, F>, l: usize) -> Result<(), SimulateError> {
+    fn arrive<const W: usize, const F: bool>(
+        &mut self,
+        h: f64,
+        next: &Points<W, F>,
+        l: usize,
+    ) -> Result<(), SimulateError> {
         self.pass.steps += 1;
         self.pass.longest = self.pass.longest.max(h.abs());
         if !next.is_finite(l) {

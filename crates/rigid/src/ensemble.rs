@@ -12,6 +12,7 @@ mod exact;
 mod fixed;
 mod laws;
 mod output;
+mod seat;
 
 use crate::force::{Center, Force};
 use crate::inertia::Inertia;

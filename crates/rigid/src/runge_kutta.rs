@@ -18,6 +18,8 @@
 //!
 //! Bodies are stepped side by side in lanes, each by its own step; a single body is lanes of one.
 
+mod exponential;
+mod points;
 mod tableau;
 
 use crate::classical::{Acting, Bodies, Exert, Place, renormalize};
@@ -25,8 +27,10 @@ use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
+use exponential::exponential;
+pub(crate) use points::Points;
+use polhode_ga::Bivector;
 use polhode_ga::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
-use polhode_ga::{Bivector, Rotor, Vector};
 pub use tableau::{DOP853, Tableau};
 
 /// Beyond this angle in rad of one step the exponential's differential comes near its pole at 2π.
@@ -47,94 +51,6 @@ impl Carried {
     /// From a point of the motion.
     pub fn new(phase: Phase, center: Center) -> Carried {
         Carried { phase, momentum_space: phase.rotor.apply_bivector(phase.momentum), center }
-    }
-}
-
-/// Where bodies are, side by side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Points<const W: usize, const F: bool> {
-    /// From principal axes to space.
-    pub rotor: [Lanes<W, F>; 4],
-    /// L in space, kg m²/s.
-    pub momentum: [Lanes<W, F>; 3],
-    /// Place and velocity of the centre of mass: m and m/s.
-    pub center: [Lanes<W, F>; 6],
-    /// In s.
-    pub time: Lanes<W, F>,
-}
-
-impl<const W: usize, const F: bool> Points<W, F> {
-    /// Nowhere yet.
-    pub const NONE: Self = Points {
-        rotor: [Lanes::ZERO; 4],
-        momentum: [Lanes::ZERO; 3],
-        center: [Lanes::ZERO; 6],
-        time: Lanes::ZERO,
-    };
-
-    /// Puts a body's point into a lane.
-    #[inline(always)]
-    pub fn set(&mut self, l: usize, at: &Carried) {
-        let (rotor, Center { position, velocity }) = (at.phase.rotor.components(), at.center);
-        for k in 0..4 {
-            self.rotor[k].0[l] = rotor[k];
-        }
-        for k in 0..3 {
-            self.momentum[k].0[l] = at.momentum_space.0[k];
-            self.center[k].0[l] = position.0[k];
-            self.center[3 + k].0[l] = velocity.0[k];
-        }
-        self.time.0[l] = at.phase.time;
-    }
-
-    /// The point of a body in a lane.
-    #[inline(always)]
-    pub fn get(&self, l: usize) -> Carried {
-        let [r, m, c] = [&self.rotor[..], &self.momentum, &self.center].map(|lanes| {
-            let mut all = [0.0; 6];
-            for (x, lanes) in all.iter_mut().zip(lanes) {
-                *x = lanes.0[l];
-            }
-            all
-        });
-        let rotor = Rotor::from_unit_components([r[0], r[1], r[2], r[3]]);
-        let momentum_space = Bivector([m[0], m[1], m[2]]);
-        let momentum = rotor.reverse().apply_bivector(momentum_space);
-        let center = Center { position: Vector([c[0], c[1], c[2]]), velocity: Vector([c[3], c[4], c[5]]) };
-        Carried { phase: Phase { rotor, momentum, time: self.time.0[l] }, momentum_space, center }
-    }
-
-    /// Whether all is finite in a lane.
-    #[inline(always)]
-    pub fn is_finite(&self, l: usize) -> bool {
-        let mut sum = 0.0;
-        for lanes in self.rotor.iter().chain(&self.momentum).chain(&self.center) {
-            sum += 0.0 * lanes.0[l];
-        }
-        sum == 0.0
-    }
-
-    /// Takes over the points of other bodies where the mask says so.
-    #[inline(always)]
-    pub fn take(&mut self, mask: &[bool; W], other: &Self) {
-        for k in 0..4 {
-            self.rotor[k] = other.rotor[k].or(mask, self.rotor[k]);
-        }
-        for k in 0..3 {
-            self.momentum[k] = other.momentum[k].or(mask, self.momentum[k]);
-        }
-        for k in 0..6 {
-            self.center[k] = other.center[k].or(mask, self.center[k]);
-        }
-        self.time = other.time.or(mask, self.time);
-    }
-
-    /// The sizes of the angular velocities, rad/s.
-    #[inline(always)]
-    pub fn rates(&self, bodies: &Bodies<W, F>) -> Lanes<W, F> {
-        let momentum = mapped_back(&matrix(&self.rotor), &self.momentum);
-        let omega = bodies.omega(&momentum);
-        dot(&omega, &omega).sqrt()
     }
 }
 
@@ -349,59 +265,6 @@ fn combined<const N: usize, const W: usize, const F: bool>(
     sum
 }
 
-/// `exp(−½σ)` and `c(θ)` for `θ² = square`, to a few roundings up to the longest turn.
-///
-/// With `x = ½θ` and `z = x²` two series have all that is needed, `s = sin x/x` and `p = (s − cos x)/z`:
-/// `cos x = s − z p` and `c = (1 − x cot x)/4z = p/4s`. Nothing cancels in `c`. Terms left out are below 1e-19.
-#[inline(always)]
-fn exponential<const W: usize, const F: bool>(
-    turn: &[Lanes<W, F>; 3],
-    square: Lanes<W, F>,
-) -> ([Lanes<W, F>; 4], Lanes<W, F>) {
-    let z = Lanes::all(0.25) * square;
-    let (sinc, rest) = (series(&SINC, z), series(&REST, z));
-    let cos = z.times_from(rest, sinc);
-    let half = Lanes::all(-0.5) * sinc;
-    let rotor = [cos, half * turn[0], half * turn[1], half * turn[2]];
-    (rotor, Lanes::all(0.25) * rest / sinc)
-}
-
-/// Of `sin x/x` by powers of x²: `(−1)ⁿ/(2n+1)!`.
-const SINC: [f64; 12] = coefficients(false);
-
-/// Of `(sin x/x − cos x)/x²`: `(−1)ⁿ (2n+2)/(2n+3)!`.
-const REST: [f64; 12] = coefficients(true);
-
-const fn coefficients(rest: bool) -> [f64; 12] {
-    let mut all = [0.0; 12];
-    // (2n+1)!, exact up to 22! and rounded once or twice beyond.
-    let (mut n, mut factorial, mut sign) = (0, 1.0, 1.0);
-    while n < 12 {
-        let next = factorial * ((2 * n + 2) * (2 * n + 3)) as f64;
-        all[n] = sign * if rest { (2 * n + 2) as f64 / next } else { 1.0 / factorial };
-        (n, factorial, sign) = (n + 1, next, -sign);
-    }
-    all
-}
-
-/// A polynomial in z; adjacent terms are added first, so that many multiplications run at once.
-#[inline(always)]
-fn series<const W: usize, const F: bool>(c: &[f64; 12], z: Lanes<W, F>) -> Lanes<W, F> {
-    let z2 = z * z;
-    let z4 = z2 * z2;
-    let mut quads = [Lanes::ZERO; 3];
-    for (i, quad) in quads.iter_mut().enumerate() {
-        let [a, b, c, d] = [
-            Lanes::all(c[4 * i]),
-            Lanes::all(c[4 * i + 1]),
-            Lanes::all(c[4 * i + 2]),
-            Lanes::all(c[4 * i + 3]),
-        ];
-        *quad = z2.times_plus(d.times_plus(z, c), b.times_plus(z, a));
-    }
-    z4.times_plus(z4.times_plus(quads[2], quads[1]), quads[0])
-}
-
 #[inline(always)]
 fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
     dot(a, a).sqrt()
@@ -450,33 +313,5 @@ impl RungeKutta {
             Some(failure) => Err(failure),
             None => Ok((to.get(0), error.0[0])),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn exponentials_are_those_of_the_library() {
-        for i in 0..=3000 {
-            let angle = f64::from(i) * 0.001;
-            let turn = [0.6 * angle, 0.0, -0.8 * angle];
-            let ([cos, x, y, z], cotangent) = exponential(&One::each(turn), Lanes([angle * angle]));
-            let half = 0.5 * angle;
-            assert!((cos.0[0] - half.cos()).abs() <= 4.0 * f64::EPSILON, "{angle}");
-            let planes = [x, y, z].map(|lanes| lanes.0[0]);
-            for (found, part) in planes.into_iter().zip([-0.6, 0.0, 0.8]) {
-                assert!((found - part * half.sin()).abs() <= 4.0 * f64::EPSILON, "{angle}");
-            }
-            // The plain form loses what is 1/θ² of it.
-            let plain = (1.0 - half * (half.cos() / half.sin())) / (angle * angle);
-            if angle > 0.1 {
-                let rounding = 4.0 * f64::EPSILON * (1.0 + 1.0 / (angle * angle));
-                assert!((cotangent.0[0] - plain).abs() <= rounding, "{angle}");
-            }
-        }
-        let still = exponential(&[One::ZERO; 3], One::ZERO).1.0[0];
-        assert!((still - 1.0 / 12.0).abs() <= f64::EPSILON);
     }
 }

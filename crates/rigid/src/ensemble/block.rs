@@ -1,8 +1,9 @@
 //! The work on an ensemble, shared by threads: each takes bodies that nobody has taken yet.
 
-use super::adaptive::{AdaptedSteps, METHOD};
+use super::adaptive::AdaptedSteps;
 use super::fixed::FixedSteps;
 use super::output::{Outputs, Own, Summary};
+use super::seat::METHOD;
 use super::{Ensemble, Failure};
 use crate::certificate::Certificate;
 use crate::closed_form::{ClosedForm, Fall};

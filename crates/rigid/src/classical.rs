@@ -46,15 +46,30 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
             damping: Lanes::ZERO,
         };
         for (l, (body, damping)) in bodies.into_iter().enumerate() {
-            for k in 0..3 {
-                let [i, j, n] = [0, 1, 2].map(|next| body.moments[(k + next) % 3]);
-                all.inverse[k].0[l] = 1.0 / i;
-                all.coupling[k].0[l] = (j - n) / i;
-                all.wheel[k].0[l] = body.wheel.0[k];
-            }
-            all.damping.0[l] = damping;
+            all.set(l, &body, damping);
         }
         all
+    }
+
+    /// Puts a body with the g of its dampings into a lane.
+    pub fn set(&mut self, l: usize, body: &Gyrostat, damping: f64) {
+        for k in 0..3 {
+            let [i, j, n] = [0, 1, 2].map(|next| body.moments[(k + next) % 3]);
+            self.inverse[k].0[l] = 1.0 / i;
+            self.coupling[k].0[l] = (j - n) / i;
+            self.wheel[k].0[l] = body.wheel.0[k];
+        }
+        self.damping.0[l] = damping;
+    }
+
+    /// `Ω = I⁻¹(m − h)`.
+    #[inline(always)]
+    pub fn omega(&self, momentum: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
+        let mut omega = *momentum;
+        for k in 0..3 {
+            omega[k] = (momentum[k] - self.wheel[k]) * self.inverse[k];
+        }
+        omega
     }
 }
 

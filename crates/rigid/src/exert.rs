@@ -71,6 +71,9 @@ impl Exert<1, false> for Alone<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
+        if self.torques.is_empty() {
+            return [One::ZERO; 3];
+        }
         let torque = exerted(self.torques, self.body, &self.phase(at));
         self.noted(torque.map(|torque| torque.0))
     }

@@ -248,7 +248,7 @@ pub(crate) fn phase(body: &Gyrostat, state: &[f64], time: f64) -> Phase {
     Phase { rotor, momentum: body.momentum(omega), time }
 }
 
-/// What acts on a single body; the first failure to say how.
+/// What acts on a single body: the first failure to say how, after which nothing is asked.
 pub(crate) struct Acting<'a> {
     body: &'a Gyrostat,
     torques: &'a [Torque],
@@ -286,7 +286,7 @@ impl Exert<1, false> for Acting<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
-        if self.torques.is_empty() {
+        if self.torques.is_empty() || self.failure.is_some() {
             return [One::ZERO; 3];
         }
         let torque = exerted(self.torques, self.body, &self.phase(at));
@@ -294,7 +294,9 @@ impl Exert<1, false> for Acting<'_> {
     }
 
     fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
-        let Some(translation) = self.translation else { return [One::ZERO; 3] };
+        let Some(translation) = self.translation.filter(|_| self.failure.is_none()) else {
+            return [One::ZERO; 3];
+        };
         let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
         let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
         let acceleration = translation.acceleration(self.body, &phase, &center);

@@ -10,7 +10,7 @@ use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
 use polhode_rigid::force::Center;
 use polhode_rigid::method::Method;
 use polhode_rigid::simulate::Options;
-use polhode_rigid::torque::{Orbit, Torque};
+use polhode_rigid::torque::{Axes, FormulaTorque, Gains, Orbit, Torque};
 use std::time::Instant;
 
 /// Independent chains of products with sums.

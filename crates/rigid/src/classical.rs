@@ -121,10 +121,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     let (r, w) = ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]]);
     let [a, b, c] = [w[0] * minus_half, w[1] * minus_half, w[2] * minus_half];
     let mut slope = *y;
-    let turned = turn(&r, [a, b, c]);
-    for k in 0..4 {
-        slope[k] = turned[k];
-    }
+    slope[..4].copy_from_slice(&turn(&r, [a, b, c]));
     let products = [w[1] * w[2], w[2] * w[0], w[0] * w[1]];
     for k in 0..3 {
         slope[4 + k] = bodies.coupling[k] * products[k];
@@ -145,10 +142,8 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     if N == 13 {
         let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
         let acceleration = exert.acceleration(&Place { rotor: r, omega: w, time }, &center);
-        for k in 0..3 {
-            slope[7 + k] = y[10 + k];
-            slope[10 + k] = acceleration[k];
-        }
+        slope[7..10].copy_from_slice(&y[10..]);
+        slope[10..].copy_from_slice(&acceleration);
     }
     slope
 }

@@ -151,18 +151,12 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
             let carried = momentum[k] - bodies.wheel[k];
             torque[k] = bodies.damping.times_from(carried, torque[k]);
         }
-        let torque = mapped(&axes, &torque);
-        for k in 0..3 {
-            slope[3 + k] = torque[k];
-        }
+        slope[3..6].copy_from_slice(&mapped(&axes, &torque));
     }
     if N == 12 {
-        let acceleration = exert.acceleration(&place, &at.center);
-        for k in 0..3 {
-            // The place beside that of the uniform motion from the start of the step.
-            slope[6 + k] = change[9 + k];
-            slope[9 + k] = acceleration[k];
-        }
+        // The place beside that of the uniform motion from the start of the step.
+        slope[6..9].copy_from_slice(&part(change, 9));
+        slope[9..12].copy_from_slice(&exert.acceleration(&place, &at.center));
     }
     slope
 }

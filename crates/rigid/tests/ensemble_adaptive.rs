@@ -183,7 +183,7 @@ fn bodies_do_not_know_of_each_other() {
     order.sort_by_cached_key(|_| (1e9 * random(&mut seed)) as u64);
     order.truncate(21);
     let some = Ensemble {
-        inertias: Rows::new(order.iter().map(|&body| all.inertias.of(body).clone()).collect()),
+        inertias: Rows::new(order.iter().map(|&body| *all.inertias.of(body)).collect()),
         starts: order.iter().map(|&body| all.starts[body]).collect(),
         ..all
     };
@@ -264,7 +264,11 @@ fn steps_end_where_a_table_bends() {
             .map(|i: i32| 0.5 * f64::from(i) + if i.abs() < 12 { 0.01 * body as f64 } else { 0.0 })
             .collect();
         let torque = |i: usize| {
-            Bivector([if i % 2 == 0 { 0.5 } else { -0.4 }, 0.1, if i % 3 == 0 { 0.7 } else { 0.0 }])
+            Bivector([
+                if i.is_multiple_of(2) { 0.5 } else { -0.4 },
+                0.1,
+                if i.is_multiple_of(3) { 0.7 } else { 0.0 },
+            ])
         };
         let torques = (0..bends.len()).map(torque).collect();
         Torque::Tabulated(Arc::new(Table::new(bends, torques, Axes::Space, Kind::Linear).unwrap()))

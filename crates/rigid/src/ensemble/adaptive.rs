@@ -120,7 +120,9 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
         let gyrostat = seat.member.gyrostat;
         self.bodies.set(l, &gyrostat, torques.iter().map(Torque::damping_rate).sum());
         (self.least.0[l], self.fastest.0[l]) = (gyrostat.least_rate(), fastest);
-        self.proceed(l, seat, at, &torques, crew);
+        self.at.set(l, &at);
+        self.seats[l] = Some(seat);
+        self.proceed(l, &torques, crew);
         torques
     }
 
@@ -134,22 +136,18 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
         all
     }
 
-    /// Goes on with a body from where it stopped. Empties its lane where it is done.
-    fn proceed(
-        &mut self,
-        l: usize,
-        mut seat: Seat<'a>,
-        mut at: Carried,
-        torques: &[Torque],
-        crew: &Crew<'a>,
-    ) {
+    /// Goes on with the body of a lane from where it stopped. Empties the lane where it is done.
+    fn proceed(&mut self, l: usize, torques: &[Torque], crew: &Crew<'a>) {
+        let Some(seat) = &mut self.seats[l] else { return };
+        let mut at = self.at.get(l);
         match seat.proceed(&mut at, &mut self.fastest.0[l], crew.times) {
-            Ok(None) => {
-                self.at.set(l, &at);
-                self.seats[l] = Some(seat);
+            Ok(None) => self.at.set(l, &at),
+            Ok(Some(converged)) => {
+                if let Some(seat) = self.seats[l].take() {
+                    seat.done(converged, torques, crew);
+                }
             }
-            Ok(Some(converged)) => seat.done(converged, torques, crew),
-            Err(error) => seat.failed(error, crew),
+            Err(error) => self.fail(l, error, crew),
         }
     }
 
@@ -174,10 +172,9 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
             self.at.take(&stands, &next);
             self.fastest = rates.max(self.fastest).or(&stands, self.fastest);
             for l in 0..W {
-                if stands[l]
-                    && let Some(seat) = self.seats[l].take_if(|seat| seat.stop == self.at.time.0[l])
-                {
-                    self.proceed(l, seat, self.at.get(l), &torques[l], crew);
+                let stops = |seat: &Seat| seat.stop == self.at.time.0[l];
+                if stands[l] && self.seats[l].as_ref().is_some_and(stops) {
+                    self.proceed(l, &torques[l], crew);
                 }
             }
             rounds += 1;

@@ -41,10 +41,6 @@ pub(super) struct Advance<'a, E, const F: bool> {
     pub steps: Range<u64>,
 }
 
-/// Times in whole registers: memory that is aligned makes all of the function's so.
-#[repr(align(64))]
-struct Times([f64; TIMED + 1]);
-
 impl<E: Exert<W, F>, const F: bool> Work for Advance<'_, E, F> {
     type Output = ();
 
@@ -63,13 +59,13 @@ impl<E: Exert<W, F>, const F: bool> Advance<'_, E, F> {
         let Advance { bodies, exert, state, stretch, steps } = self;
         let (bodies, mut now) = (*bodies, *state);
         for first in steps.clone().step_by(TIMED) {
-            let mut times = Times([0.0; TIMED + 1]);
+            let mut times = [0.0; TIMED + 1];
             for k in 0..=TIMED {
-                times.0[k] = stretch.begin(first + k as u64);
+                times[k] = stretch.begin(first + k as u64);
             }
             let count = TIMED.min((steps.end - first) as usize);
             for k in 0..count {
-                let (from, to) = (times.0[k], times.0[k + 1]);
+                let (from, to) = (times[k], times[k + 1]);
                 classical::step(&bodies, exert, &mut now, from, to - from);
             }
         }

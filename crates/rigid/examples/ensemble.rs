@@ -161,11 +161,11 @@ fn equal_steps() {
         for method in ["rk4", "strang", "kahan_li8"] {
             for threads in [1, 2] {
                 // Short runs, of which the best was not disturbed.
-                let (bodies, steps) = (64, 4096);
+                let (bodies, steps) = (64, 1024);
                 let ensemble = ensemble(bodies, &laws);
                 let options =
                     Options { method: Method::from_name(method), step: Some(0.01), ..Options::default() };
-                let runs = if method == "rk4" { 40 } else { 3 };
+                let runs = if method == "rk4" { 100 } else { 10 };
                 let end = [0.01 * steps as f64];
                 let Some((_, time)) = run(runs, &ensemble, &end, &options, threads) else { continue };
                 let rate = (bodies * steps) as f64 / time;

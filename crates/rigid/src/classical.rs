@@ -82,8 +82,9 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>
     time: f64,
     h: f64,
 ) {
-    let [half, whole, sixth, third] = [0.5 * h, h, h / 6.0, h / 3.0].map(Lanes::all);
-    let [begin, middle, end] = [time, time + 0.5 * h, time + h].map(Lanes::all);
+    let (half, whole) = (Lanes::all(0.5 * h), Lanes::all(h));
+    let (sixth, third) = (Lanes::all(h / 6.0), Lanes::all(h / 3.0));
+    let (begin, middle, end) = (Lanes::all(time), Lanes::all(time + 0.5 * h), Lanes::all(time + h));
     let k = slope(bodies, exert, y, begin);
     let mut sum = moved(y, &k, sixth);
     let k = slope(bodies, exert, &moved(y, &k, half), middle);

@@ -45,7 +45,7 @@ fn components<const N: usize>(value: &Bound<'_, PyAny>, grades: Grades) -> Optio
 }
 
 /// Rows, in pieces between which Python may interrupt.
-fn pieces<T: Clone + Default + Send>(
+pub(crate) fn pieces<T: Clone + Default + Send>(
     py: Python<'_>,
     count: usize,
     work: impl Fn(usize) -> T + Sync,
@@ -257,7 +257,7 @@ const NUMBERS: [Number; 12] = [
 ];
 
 /// A matrix row by row.
-fn flat<const N: usize, const ALL: usize>(rows: &[[f64; 3]; N]) -> [f64; ALL] {
+pub(crate) fn flat<const N: usize, const ALL: usize>(rows: &[[f64; 3]; N]) -> [f64; ALL] {
     std::array::from_fn(|k| rows[k / 3][k % 3])
 }
 

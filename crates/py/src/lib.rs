@@ -8,6 +8,7 @@ mod batches;
 mod bodies;
 mod calls;
 mod closed_forms;
+mod flow;
 mod formula;
 mod free;
 mod laws;
@@ -37,6 +38,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
+    #[pymodule_export]
+    use crate::flow::{free_flow, free_flow_derivatives};
     #[pymodule_export]
     use crate::free::FreeMotion;
     #[pymodule_export]

@@ -1,0 +1,4 @@
+"""Motion for JAX."""
+
+from polhode.jax import torque as torque
+from polhode.jax._simulate import simulate as simulate

@@ -2,3 +2,4 @@
 
 from polhode.jax import torque as torque
 from polhode.jax._simulate import simulate as simulate
+from polhode.jax._free import free as free

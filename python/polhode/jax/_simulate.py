@@ -8,10 +8,10 @@ from typing import Any
 from polhode._bodies import Body
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
-from polhode.jax._components import joined, split
+from polhode.jax._components import Four, Three, joined, split
 from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
-from polhode.jax._phase import Gyrostat
+from polhode.jax._phase import Gyrostat, Phase
 from polhode.jax._rk4 import RungeKutta
 from polhode.jax._splitting import COMPOSITIONS, Splitting
 from polhode.jax._steps import ways
@@ -96,11 +96,10 @@ def _run(
     dtype = given.rotor.dtype
     torque = jax.tree.map(lambda x: jnp.asarray(x, dtype), torque)
     moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, looped=True)
-    point = moves.start(split(given.rotor), split(given.omega))
+    point = moves.start(*_batched(given, torque, moves.body))
     fixed = moves.fixed(point)
     # What a step computes on its way is computed again for a gradient, rather than kept for all steps.
     step = jax.checkpoint(partial(moves.step, fixed), prevent_cse=False)
-    point = _batched(point, jax.eval_shape(step, point, point.time))
 
     def interval(point: Any, target: Any) -> Any:
         to, count = target
@@ -129,11 +128,16 @@ def _run(
 _compiled = jax.jit(_run, static_argnames=("method", "most", "even"))
 
 
-def _batched(point: Any, after: Any) -> Any:
-    """Return the point with all components of the batch that a step makes of them; the time stays one."""
-    shape = jnp.broadcast_shapes(*(x.shape for x in (*after[0], *after[1])))
-    rotor, spin = ([jnp.broadcast_to(x, shape) for x in part] for part in point[:2])
-    return type(point)(tuple(rotor), tuple(spin), point.time)
+def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:
+    """Return rotor and angular velocity of the batch of the bodies and of the parameters of their torque."""
+    rotor, omega = split(given.rotor), split(given.omega)
+
+    def first(rotor: Four, omega: Three) -> Three:
+        return torque.exerted(body, Phase(rotor, body.momentum(omega), jnp.zeros((), given.rotor.dtype)))
+
+    shapes = [x.shape for x in jax.eval_shape(first, rotor, omega)]
+    batch = jnp.broadcast_shapes(given.batch(), *shapes)
+    return tuple(jnp.broadcast_to(x, batch) for x in rotor), tuple(jnp.broadcast_to(x, batch) for x in omega)  # type: ignore[return-value]
 
 
 def _check(method: str, torque: Torque) -> None:

@@ -67,7 +67,7 @@ def simulate(
         what has no motion, such as a moment of 0, gives NaN.
     """
     force = laws.of(torque)
-    _check(method, force)
+    check(method, force)
     if isinstance(inertia, Body):
         inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
     given = start(inertia, rotor, omega_body)
@@ -75,7 +75,7 @@ def simulate(
         force = force.in_axes(given.frame)
     both = ways(times, step, steps, force)
     # A function may close over what is traced, which no cache of programs may hold.
-    run = _run if any(isinstance(law, Function) and law.partial is None for law in force.laws) else _compiled
+    run = simulate_principal if any(isinstance(law, Function) and law.partial is None for law in force.laws) else _compiled
     parts = []
     for backwards, way in zip((True, False), both, strict=False):
         found = run(given, force, way.targets, way.counts, method=method, most=way.most, even=way.even)
@@ -89,7 +89,7 @@ def stepper(method: str, body: Gyrostat, torque: Torque, *, looped: bool) -> Spl
     return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, looped)
 
 
-def _run(
+def simulate_principal(
     given: Start, torque: Torque, targets: Array, counts: Array, *, method: str, most: int, even: bool
 ) -> tuple[Array, Array]:
     """Return the states at time 0 and at the targets, in principal axes."""
@@ -125,7 +125,7 @@ def _run(
     return rotors, omegas
 
 
-_compiled = jax.jit(_run, static_argnames=("method", "most", "even"))
+_compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even"))
 
 
 def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:
@@ -140,7 +140,7 @@ def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]
     return tuple(jnp.broadcast_to(x, batch) for x in rotor), tuple(jnp.broadcast_to(x, batch) for x in omega)  # type: ignore[return-value]
 
 
-def _check(method: str, torque: Torque) -> None:
+def check(method: str, torque: Torque) -> None:
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     if method != "rk4" and torque.depends_on_rate:

@@ -1,0 +1,144 @@
+"""Many bodies over many steps in one kernel, which keeps their states on the chip.
+
+A program of `simulate` writes the state of a batch to memory after each step and reads it back for the next. Here
+a Pallas kernel has the loop over time within: each block of bodies is read once, stays in registers over all
+steps, and is written once. The steps are those of `simulate`, line for line, on components of one block.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from polhode._extras import optional
+from polhode.jax import torque as laws
+from polhode.jax._arguments import Start, start
+from polhode.jax._components import joined, split
+from polhode.jax._laws import Function, Torque
+from polhode.jax._library import jax, jnp, lax
+from polhode.jax._phase import Gyrostat
+from polhode.jax._simulate import check, simulate_principal, stepper
+from polhode.jax._table import Table
+
+Array = Any
+
+# A body to each thread of four warps: the state and the slopes of a step fill a thread's registers.
+BLOCK = 128
+
+
+def advance(
+    inertia: Any,
+    rotor: Any,
+    omega_body: Any,
+    time: Any,
+    torque: Any = None,
+    method: str = "strang",
+    *,
+    steps: int,
+    kernel: bool | None = None,
+) -> tuple[Array, Array]:
+    """Return rotors (..., 4) and angular velocities (..., 3) of bodies after so many equal steps from 0 to a time.
+
+    What `simulate` gives for this one time, for large ensembles: where JAX runs on a GPU, in one kernel that
+    keeps each body on the chip over all steps. There, too, it is differentiated: the value comes from the
+    kernel, the derivatives from the steps of `simulate`.
+
+    Parameters
+    ----------
+    inertia, rotor, omega_body, torque, method
+        As for `polhode.jax.simulate`. In a kernel the parameters of the torque are numbers for each body or for
+        all: no tables, formulas and functions.
+    time
+        In s, of either sign; one for all bodies.
+    steps
+        Their number, 1 at least.
+    kernel
+        Whether to use the kernel; True elsewhere than on a GPU runs it in Pallas' interpreter, for tests. None:
+        on a GPU, for the laws that it has.
+    """
+    if not isinstance(steps, int) or steps < 1:
+        raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
+    force = laws.of(torque)
+    check(method, force)
+    given = start(inertia, rotor, omega_body)
+    if given.frame is not None:
+        force = force.in_axes(given.frame)
+    fits = not any(isinstance(law, Function | Table | laws.Formula) for law in force.laws)
+    if kernel and not fits:
+        raise ValueError("the kernel has no tables, formulas and functions for a torque; take simulate")
+    if kernel is None:
+        kernel = fits and jax.default_backend() == "gpu"
+    end = jnp.asarray(time, given.rotor.dtype)
+    if kernel:
+        return given.in_body_axes(*_advanced(method, steps, given, force, end))
+    return given.in_body_axes(*_scanned(method, steps, given, force, end))
+
+
+def _scanned(method: str, steps: int, given: Start, torque: Torque, time: Array) -> tuple[Array, Array]:
+    """The same by a loop of whole batches."""
+    found = simulate_principal(given, torque, time[None], [steps], method=method, most=steps, even=True)
+    return found[0][..., 1, :], found[1][..., 1, :]
+
+
+@partial(jax.custom_jvp, nondiff_argnums=(0, 1))
+@partial(jax.jit, static_argnums=(0, 1))
+def _advanced(method: str, steps: int, given: Start, torque: Torque, time: Array) -> tuple[Array, Array]:
+    """By the kernel."""
+    dtype = given.rotor.dtype
+    inputs = split(given.moments), split(given.rotor), split(given.omega), torque
+    leaves, tree = jax.tree.flatten(jax.tree.map(lambda x: jnp.asarray(x, dtype), inputs))
+    batch = jnp.broadcast_shapes(*(x.shape for x in leaves))
+    rows = [jnp.broadcast_to(x, batch).reshape(-1) for x in leaves]
+    count = rows[0].size
+    padded = -(-count // BLOCK) * BLOCK
+    # Copies of the last body fill the last block.
+    rows = [jnp.pad(x, (0, padded - count), mode="edge") for x in rows]
+    found = _call(partial(_walk, method, steps, tree), rows, time)
+    rotors, omegas = (joined(tuple(x[:count].reshape(batch) for x in part)) for part in (found[:4], found[4:]))
+    return rotors, omegas
+
+
+@_advanced.defjvp
+def _advanced_jvp(method: str, steps: int, primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> Any:
+    _, change = jax.jvp(partial(_scanned, method, steps), primals, tangents)
+    return _advanced(method, steps, *primals), change
+
+
+def _walk(method: str, steps: int, tree: Any, leaves: list[Array], time: Array) -> tuple[Array, ...]:
+    """All steps of a block of bodies."""
+    moments, rotor, omega, torque = jax.tree.unflatten(tree, leaves)
+    moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, looped=False)
+    point = moves.start(rotor, omega)
+    fixed = moves.fixed(point)
+
+    def one(i: Array, point: Any) -> Any:
+        share = (i + 1).astype(time.dtype) / steps
+        after = jnp.where(i + 1 == steps, time, time * share)
+        return moves.step(fixed, point, after - point.time)._replace(time=after)
+
+    point = lax.fori_loop(0, steps, one, point)
+    return (*point.rotor, *moves.omega(point))
+
+
+def _call(walk: Any, rows: list[Array], time: Array) -> list[Array]:
+    """Run it over the blocks, a program of the grid for each."""
+    pallas = optional("jax.experimental.pallas", "jax", "the kernel of polhode.jax")
+
+    def kernel(time_ref: Any, *refs: Any) -> None:
+        ins, outs = refs[: len(rows)], refs[len(rows) :]
+        for out, x in zip(outs, walk([ref[...] for ref in ins], time_ref[0]), strict=True):
+            out[...] = x
+
+    block = pallas.BlockSpec((BLOCK,), lambda i: (i,))
+    one = pallas.BlockSpec((1,), lambda i: (0,))
+    result = jax.ShapeDtypeStruct(rows[0].shape, rows[0].dtype)
+    call = pallas.pallas_call(
+        kernel,
+        out_shape=[result] * 7,
+        grid=(rows[0].size // BLOCK,),
+        in_specs=[one] + [block] * len(rows),
+        out_specs=[block] * 7,
+        interpret=jax.default_backend() != "gpu",
+    )
+    found: list[Array] = call(time[None], *rows)
+    return found

@@ -17,7 +17,7 @@ from polhode.jax._components import joined, split
 from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat
-from polhode.jax._simulate import check, simulate_principal, stepper
+from polhode.jax._simulate import check, simulate_principal, stepper, table_of
 from polhode.jax._table import Table
 
 Array = Any
@@ -93,7 +93,8 @@ def _advanced(method: str, steps: int, given: Start, torque: Torque, time: Array
     padded = -(-count // BLOCK) * BLOCK
     # Copies of the last body fill the last block.
     rows = [jnp.pad(x, (0, padded - count), mode="edge") for x in rows]
-    found = _call(partial(_walk, method, steps, tree), rows, time)
+    table = jnp.array(table_of(method), dtype)
+    found = _call(partial(_walk, method, steps, tree), rows, time, table)
     rotors, omegas = (joined(tuple(x[:count].reshape(batch) for x in part)) for part in (found[:4], found[4:]))
     return rotors, omegas
 
@@ -104,10 +105,12 @@ def _advanced_jvp(method: str, steps: int, primals: tuple[Any, ...], tangents: t
     return _advanced(method, steps, *primals), change
 
 
-def _walk(method: str, steps: int, tree: Any, leaves: list[Array], time: Array) -> tuple[Array, ...]:
+def _walk(
+    method: str, steps: int, tree: Any, leaves: list[Array], time: Array, table: Array
+) -> tuple[Array, ...]:
     """All steps of a block of bodies."""
     moments, rotor, omega, torque = jax.tree.unflatten(tree, leaves)
-    moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, looped=False)
+    moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, table)
     point = moves.start(rotor, omega)
     fixed = moves.fixed(point)
 
@@ -120,17 +123,23 @@ def _walk(method: str, steps: int, tree: Any, leaves: list[Array], time: Array) 
     return (*point.rotor, *moves.omega(point))
 
 
-def _call(walk: Any, rows: list[Array], time: Array) -> list[Array]:
+def _call(walk: Any, rows: list[Array], time: Array, table: Array) -> list[Array]:
     """Run it over the blocks, a program of the grid for each."""
     pallas = optional("jax.experimental.pallas", "jax", "the kernel of polhode.jax")
 
-    def kernel(time_ref: Any, *refs: Any) -> None:
+    # The time, and what a method needs in its stages; of a length that is a power of two, as GPUs have it.
+    numbers = jnp.concatenate([table, time[None]])
+    length = 1 << (numbers.size - 1).bit_length()
+    numbers = jnp.pad(numbers, (0, length - numbers.size))
+
+    def kernel(shared: Any, *refs: Any) -> None:
         ins, outs = refs[: len(rows)], refs[len(rows) :]
-        for out, x in zip(outs, walk([ref[...] for ref in ins], time_ref[0]), strict=True):
+        found = walk([ref[...] for ref in ins], shared[table.size], shared)
+        for out, x in zip(outs, found, strict=True):
             out[...] = x
 
     block = pallas.BlockSpec((BLOCK,), lambda i: (i,))
-    one = pallas.BlockSpec((1,), lambda i: (0,))
+    one = pallas.BlockSpec((length,), lambda i: (0,))
     result = jax.ShapeDtypeStruct(rows[0].shape, rows[0].dtype)
     call = pallas.pallas_call(
         kernel,
@@ -138,7 +147,15 @@ def _call(walk: Any, rows: list[Array], time: Array) -> list[Array]:
         grid=(rows[0].size // BLOCK,),
         in_specs=[one] + [block] * len(rows),
         out_specs=[block] * 7,
-        interpret=jax.default_backend() != "gpu",
+        **_target(),
     )
-    found: list[Array] = call(time[None], *rows)
+    found: list[Array] = call(numbers, *rows)
     return found
+
+
+def _target() -> dict[str, Any]:
+    """On a GPU through Triton, a body to each thread; elsewhere in the interpreter."""
+    if jax.default_backend() != "gpu":
+        return {"interpret": True}
+    triton = optional("jax.experimental.pallas.triton", "jax", "the kernel of polhode.jax")
+    return {"compiler_params": triton.CompilerParams(num_warps=BLOCK // 32)}

@@ -13,7 +13,7 @@ from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat, Phase
 from polhode.jax._rk4 import RungeKutta
-from polhode.jax._splitting import COMPOSITIONS, Splitting
+from polhode.jax._splitting import COMPOSITIONS, Splitting, stages
 from polhode.jax._steps import ways
 
 Array = Any
@@ -84,9 +84,14 @@ def simulate(
     return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
 
 
-def stepper(method: str, body: Gyrostat, torque: Torque, *, looped: bool) -> Splitting | RungeKutta:
-    """Return what makes the steps; `looped` if loops within a step are welcome."""
-    return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, looped)
+def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Splitting | RungeKutta:
+    """Return what makes the steps, with the numbers of `table_of` the method."""
+    return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
+
+
+def table_of(method: str) -> list[float]:
+    """Return the numbers of the stages of a method."""
+    return [] if method == "rk4" else [x for stage in stages(method) for x in stage]
 
 
 def simulate_principal(
@@ -95,7 +100,8 @@ def simulate_principal(
     """Return the states at time 0 and at the targets, in principal axes."""
     dtype = given.rotor.dtype
     torque = jax.tree.map(lambda x: jnp.asarray(x, dtype), torque)
-    moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, looped=True)
+    table = jnp.array(table_of(method), dtype)
+    moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, table)
     point = moves.start(*_batched(given, torque, moves.body))
     fixed = moves.fixed(point)
     # What a step computes on its way is computed again for a gradient, rather than kept for all steps.

@@ -57,12 +57,12 @@ COMPOSITIONS = {
 }
 
 
-def stages(name: str) -> tuple[list[float], list[float], float]:
-    """Return kicks and drifts in turn, and the last kick: two half kicks that meet are one."""
+def stages(name: str) -> list[tuple[float, float]]:
+    """Return kicks and drifts in turn, the first kick being the last one too: two half kicks that meet are one."""
     half = COMPOSITIONS[name]
     drifts = half + half[-2::-1]
     kicks = [0.5 * drifts[0]] + [0.5 * a + 0.5 * b for a, b in zip(drifts[:-1], drifts[1:], strict=True)]
-    return kicks, drifts, 0.5 * drifts[-1]
+    return list(zip(kicks, drifts, strict=True))
 
 
 class Axes(NamedTuple):
@@ -109,12 +109,15 @@ class Axes(NamedTuple):
 
 
 class Splitting:
-    """A body and its laws, none of which depends on the rate; stepped by one of `COMPOSITIONS`."""
+    """A body and its laws, none of which depends on the rate; stepped by one of `COMPOSITIONS`.
 
-    def __init__(self, name: str, body: Gyrostat, torque: Torque, looped: bool) -> None:
+    `table` has the numbers of its `stages` once more, one after the other, as the program reads them: several
+    stages are a loop, which compiles sooner than their steps side by side.
+    """
+
+    def __init__(self, name: str, body: Gyrostat, torque: Torque, table: Array) -> None:
         self.body, self.torque, self.damping = body, torque, torque.damping()
-        self.kicks, self.drifts, self.last_kick = stages(name)
-        self.looped = looped
+        self.stages, self.table = stages(name), table
         self.axes = Axes.of(body.moments)
         small, middle, large = self.axes.pick(body.moments)
         self.middle = middle
@@ -142,18 +145,19 @@ class Splitting:
             phase = self._stages(phase, h, lambda phase, _, drift: self._turn_about_axes(phase, drift))
         else:
             phase = self._stages(phase, h, self._kick_and_drift)
-            phase = self._kick(phase, self.last_kick * h)
+            phase = self._kick(phase, self.stages[0][0] * h)
         phase = Phase(renormalized(phase.rotor), phase.momentum, start + h)
         return phase if fixed is None else _restored(phase, fixed)
 
     def _stages(self, phase: Phase, h: Array, stage: Callable[..., Phase]) -> Phase:
-        """Walk the stages; in a loop, which compiles sooner, or one after the other, as kernels need."""
-        if self.looped and len(self.drifts) > 1:
-            rows = jnp.array([self.kicks, self.drifts], h.dtype).T
-            return lax.scan(lambda phase, row: (stage(phase, row[0] * h, row[1] * h), None), phase, rows)[0]  # type: ignore[no-any-return]
-        for kick, drift in zip(self.kicks, self.drifts, strict=True):
-            phase = stage(phase, kick * h, drift * h)
-        return phase
+        if len(self.stages) == 1:
+            ((kick, drift),) = self.stages
+            return stage(phase, kick * h, drift * h)
+
+        def one(k: Array, phase: Phase) -> Phase:
+            return stage(phase, self.table[2 * k] * h, self.table[2 * k + 1] * h)
+
+        return lax.fori_loop(0, len(self.stages), one, phase)  # type: ignore[no-any-return]
 
     def _kick_and_drift(self, phase: Phase, kick: Array, drift: Array) -> Phase:
         phase = self._turn_about_momentum(self._kick(phase, kick), drift)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode.jax import _theta
 from polhode.jax._arguments import start
 from polhode.jax._components import compose, joined, reverse, split
 from polhode.jax._library import jax, jnp
@@ -56,7 +57,7 @@ def free(
     given = start(inertia, rotor, omega_body)
     batch, times = given.batch(), jnp.asarray(t, given.rotor.dtype)
     bodies = [jnp.broadcast_to(x, (*batch, x.shape[-1])) for x in (given.moments, given.rotor, given.omega)]
-    flow = _flow
+    flow = _flow if method == "native" else _theta.flow
     rotors, omegas = flow(*bodies, jnp.broadcast_to(times.ravel(), (*batch, times.size)))
     shape = batch + times.shape
     return given.in_body_axes(rotors.reshape(*shape, 4), omegas.reshape(*shape, 3))

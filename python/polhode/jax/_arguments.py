@@ -6,16 +6,14 @@ from typing import Any, NamedTuple
 
 from polhode._bodies import Inertia
 from polhode._multivector import Multivector
-from polhode._rotor import Rotor
-from polhode._state import State
-from polhode.jax._components import Four, Three, compose, joined, normalized, reverse, split, turned
+from polhode.jax._components import Four, Three, compose, joined, reverse, split, turned
 from polhode.jax._library import jnp
 
 Array = Any
 
 
 class Start(NamedTuple):
-    """Bodies and their starts, in principal axes, each of its own batch, and all of one floating type."""
+    """Bodies and their starts, in principal axes, each of its own batch; the rotor of any norm as it is given."""
 
     moments: Array
     rotor: Array
@@ -45,24 +43,16 @@ class Start(NamedTuple):
 def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
     """Return bodies and starts from what the functions of this package take."""
     moments, frame = _body(inertia)
-    unit = isinstance(rotor, Rotor)
     r = _floats(rotor, 4, "the rotor")
     w = _floats(omega_body, 3, "the angular velocity")
     dtype = jnp.result_type(moments, r, w)
     moments, r, w = (x.astype(dtype) for x in (moments, r, w))
-    if not unit:
-        r = joined(normalized(split(r)))  # type: ignore[arg-type]
     if frame is not None:
         frame = tuple(jnp.asarray(x, dtype) for x in frame)  # type: ignore[assignment]
         assert frame is not None
         r = joined(compose(split(r), frame))  # type: ignore[arg-type]
         w = joined(turned(reverse(frame), split(w)))  # type: ignore[arg-type]
     return Start(moments, r, w, frame)
-
-
-def unpacked(state: Any, omega_body: Any) -> tuple[Any, Any]:
-    """Return rotor and angular velocity, of a `State` too."""
-    return (state.rotor, state.omega_body) if isinstance(state, State) else (state, omega_body)
 
 
 def _body(inertia: Any) -> tuple[Array, Four | None]:

@@ -13,7 +13,7 @@ from typing import Any
 from polhode._extras import optional
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
-from polhode.jax._components import joined, split
+from polhode.jax._components import joined, normalized, split
 from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat
@@ -85,7 +85,7 @@ def _scanned(method: str, steps: int, given: Start, torque: Torque, time: Array)
 def _advanced(method: str, steps: int, given: Start, torque: Torque, time: Array) -> tuple[Array, Array]:
     """By the kernel."""
     dtype = given.rotor.dtype
-    inputs = split(given.moments), split(given.rotor), split(given.omega), torque
+    inputs = split(given.moments), normalized(split(given.rotor)), split(given.omega), torque
     leaves, tree = jax.tree.flatten(jax.tree.map(lambda x: jnp.asarray(x, dtype), inputs))
     batch = jnp.broadcast_shapes(*(x.shape for x in leaves))
     rows = [jnp.broadcast_to(x, batch).reshape(-1) for x in leaves]

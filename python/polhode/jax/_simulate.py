@@ -8,7 +8,7 @@ from typing import Any
 from polhode._bodies import Body
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
-from polhode.jax._components import Four, Three, joined, split
+from polhode.jax._components import Four, Three, joined, normalized, split
 from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat, Phase
@@ -77,9 +77,9 @@ def simulate(
     # A function may close over what is traced, which no cache of programs may hold.
     run = simulate_principal if any(isinstance(law, Function) and law.partial is None for law in force.laws) else _compiled
     parts = []
-    for backwards, way in zip((True, False), both, strict=False):
+    for way, backwards in both:
         found = run(given, force, way.targets, way.counts, method=method, most=way.most, even=way.even)
-        places = list(way.places[::-1] if backwards and len(both) == 2 else way.places)
+        places = list(way.places[::-1] if backwards else way.places)
         parts.append([x[..., places, :] for x in found])
     return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
 
@@ -136,7 +136,7 @@ _compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even
 
 def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:
     """Return rotor and angular velocity of the batch of the bodies and of the parameters of their torque."""
-    rotor, omega = split(given.rotor), split(given.omega)
+    rotor, omega = normalized(split(given.rotor)), split(given.omega)
 
     def first(rotor: Four, omega: Three) -> Three:
         return torque.exerted(body, Phase(rotor, body.momentum(omega), jnp.zeros((), given.rotor.dtype)))

@@ -28,8 +28,8 @@ class Way(NamedTuple):
     places: tuple[int, ...]
 
 
-def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> list[Way]:
-    """Return the way back and the way forth in time from 0; to traced times one way, in their order."""
+def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> list[tuple[Way, bool]]:
+    """Return the ways that lead to all times from 0, back in time (True) and forth; to traced times one, forth."""
     if (step is None) == (steps is None):
         raise ValueError("give either step, the longest step in s, or steps, their number between two times")
     if steps is not None and (not isinstance(steps, int) or steps < 1):
@@ -40,13 +40,14 @@ def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> l
             raise ValueError("with traced times the number of steps is not known; give steps instead of step")
         when = jnp.atleast_1d(times)
         counts = np.full(when.shape, steps)
-        return [Way(when, counts, steps, True, tuple(range(1, when.size + 1)))]
+        return [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
     when = np.atleast_1d(as_floats(times, "times"))
     _check(when, tables)
     length = _positive(step)
     breaks = np.unique([t for law in tables for t in law.times])
     back, forth = when[when < 0][::-1], when[when >= 0]
-    return [_way(side, breaks, length, steps) for side in (back, forth)]
+    found = [(_way(forth, breaks, length, steps), False)]
+    return [(_way(back, breaks, length, steps), True), *found[: forth.size]] if back.size else found
 
 
 def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:

@@ -33,7 +33,7 @@ def flow(moments: Array, rotor: Array, omega: Array, time: Array) -> tuple[Array
     tumbled, spins = _tumbling(Orbit.of(tuple(some), tuple(rates)), time * scale)  # type: ignore[arg-type]
     turn = tuple(jnp.where(tumbles, x, y) for x, y in zip(tumbled, turn, strict=True))
     spin = tuple(jnp.where(tumbles, x, y) for x, y in zip(spins, spin, strict=True))
-    found = joined(compose(r, turn)), joined(times(spin, scale))  # type: ignore[arg-type]
+    found = joined(compose(normalized(r), turn)), joined(times(spin, scale))  # type: ignore[arg-type]
     rotors, omegas = (jnp.where(known[..., None], x, jnp.nan) for x in found)
     return rotors, omegas
 
@@ -71,9 +71,11 @@ def _sin_cos(turns: Array) -> tuple[Array, Array]:
 
 def _tumbling(orbit: Orbit, time: Array) -> tuple[Four, Three]:
     """``~W(0) W(t)`` and the angular velocity."""
-    at = _states(orbit, time)
-    first, rotor = (normalized(_in_axes(orbit, z)) for z in (_states(orbit, jnp.zeros_like(time))[0], at[0]))
-    parts = tuple(x * f for x, f in zip(orbit.amplitudes, at[1], strict=True))
+    # The start is one more time, the first.
+    z, functions = _states(orbit, jnp.concatenate([jnp.zeros_like(time[..., :1]), time], axis=-1))
+    rotor = normalized(_in_axes(orbit, z))
+    first, rotor = (tuple(x[..., part] for x in rotor) for part in (slice(1), slice(1, None)))
+    parts = tuple(x * f[..., 1:] for x, f in zip(orbit.amplitudes, functions, strict=True))
     return compose(reverse(first), rotor), orbit.order.restored(parts)  # type: ignore[arg-type]
 
 

@@ -1,9 +1,9 @@
-"""Body-steps a second of the kernel of `polhode.jax`, and the share of the device's peak: `python benchmarks/accelerator.py`.
+"""Body-steps a second of the kernel of `polhode.jax`: `python benchmarks/accelerator.py`.
 
-A large ensemble is moved by many steps in one kernel. The operations of a step are counted in its program, before any
-compiler: a sum, a product, a quotient, a root, a comparison, a choice are one each. The peak counts a fused product and
-sum as two, which is how makers count; a step that fuses nothing could reach half of it. Without a GPU it says so, and
-measures nothing.
+A large ensemble is moved by many steps in one kernel. The operations of a step are counted in its program,
+before any compiler: a sum, a product, a quotient, a root, a comparison, a choice are one each. The peak
+counts a fused product and sum as two, which is how makers count; a step that fuses nothing could reach half
+of it. Without a GPU it says so, and measures nothing.
 """
 
 from __future__ import annotations

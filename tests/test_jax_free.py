@@ -1,4 +1,4 @@
-"""The exact free flow under JAX: the same states, and derivatives forward and in reverse, singular places included."""
+"""The exact free flow under JAX: the same states, and derivatives, where formulas are singular too."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,11 @@ jax = pytest.importorskip("jax")
 jnp = jax.numpy
 
 EPS = np.finfo(float).eps
-MOMENTS, ROTOR, OMEGA = np.array([1.0, 2.0, 3.0]), np.array([0.8, -0.4, 0.2, 0.4]), np.array([0.25, -0.5, 1.0])
+MOMENTS, ROTOR, OMEGA = (
+    np.array([1.0, 2.0, 3.0]),
+    np.array([0.8, -0.4, 0.2, 0.4]),
+    np.array([0.25, -0.5, 1.0]),
+)
 TIMES = np.array([0.0, 1e-3, 1.0, -7.5, 300.0])
 # Bodies and starts at which formulas divide zero by zero.
 SINGULAR = {

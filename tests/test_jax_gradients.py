@@ -74,20 +74,27 @@ def test_derivatives_are_slopes(make, method):
         assert error[k].max() < bound, name
 
 
-def test_gradients_in_reverse_are_those_forward():
+def test_gradients_in_reverse_are_slopes():
     def loss(c, g):
         law = laws.heavy(c) + laws.damping(g)
         rotor, omega = ph.jax.simulate([1.5, 2.0, 2.5], ROTOR, OMEGA, [0.4, TIME], law, "strang", steps=8)
         return (rotor[..., 0] ** 2).sum() + (omega**2).sum()
 
-    at = jnp.array([0.3, -0.1, 1.0]), jnp.array(0.1)
-    for a, b in zip(jax.jit(jax.grad(loss, (0, 1)))(*at), jax.jit(jax.jacfwd(loss, (0, 1)))(*at), strict=True):
-        assert np.abs(a - b).max() < 1e-13
+    at = np.array([0.3, -0.1, 1.0]), np.array(0.1)
+    by_c, by_g = jax.jit(jax.grad(loss, (0, 1)))(*at)
+    value, h = jax.jit(loss), 1e-5
+    for k, unit in enumerate(np.eye(3)):
+        assert (
+            abs(by_c[k] - (value(at[0] + h * unit, at[1]) - value(at[0] - h * unit, at[1])) / (2 * h)) < 1e-8
+        )
+    assert abs(by_g - (value(at[0], at[1] + h) - value(at[0], at[1] - h)) / (2 * h)) < 1e-8
 
 
 def test_a_function_may_close_over_what_is_differentiated():
     def loss(k):
-        spring = ph.jax.simulate([1.5, 2.0, 2.5], ROTOR, OMEGA, [TIME], lambda t, R, w: -k * w, "rk4", steps=4)
+        spring = ph.jax.simulate(
+            [1.5, 2.0, 2.5], ROTOR, OMEGA, [TIME], lambda t, R, w: -k * w, "rk4", steps=4
+        )
         return spring[1].sum()
 
     found = jax.jvp(loss, (0.3,), (1.0,))[1]
@@ -109,11 +116,11 @@ def test_tables_and_formulas_have_derivatives():
 
 def test_times_have_derivatives():
     def end(time):
-        rotor, omega = ph.jax.simulate([1.5, 2, 2.5], ROTOR, OMEGA, time[None], method="kahan_li8", steps=20)
+        rotor, omega = ph.jax.simulate([1.5, 2, 2.5], ROTOR, OMEGA, time[None], method="rk4", steps=20)
         return jnp.concatenate([rotor[0], omega[0]])
 
     slope = jax.jacfwd(end)(jnp.asarray(TIME))
     inertia = ph.Inertia.from_principal_moments(1.5, 2, 2.5)
     told = ph.FreeMotion(inertia, ph.Rotor.from_components(ROTOR), OMEGA).derivatives(TIME)
-    # The method's own slope differs by its error, of order 8 in steps of 0.04.
-    assert np.abs(slope - np.concatenate([told.d_rotor_dt, told.d_omega_dt])).max() < 1e-10
+    # The method's own slope differs by its error, of order 4 in steps of 0.04.
+    assert np.abs(slope - np.concatenate([told.d_rotor_dt, told.d_omega_dt])).max() < 1e-6

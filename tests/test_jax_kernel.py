@@ -27,17 +27,17 @@ def _doubles():
     ("method", "dtype", "torque"),
     [
         ("rk4", "float64", HEAVY),
-        ("rk4", "float32", None),
-        ("strang", "float64", None),
         ("strang", "float32", HEAVY),
-        ("kahan_li8", "float64", HEAVY),
+        ("kahan_li8", "float64", None),
     ],
 )
 def test_the_kernel_takes_the_steps_of_simulate(method, dtype, torque):
     law = None if torque is None else laws.heavy(np.array(torque, dtype)) + laws.damping(0.1)
     bodies = (x.astype(dtype) for x in (MOMENTS, ROTORS, OMEGAS))
     call = [*bodies, 1.5, law, method]
-    found, expected = (ph.jax.advance(*call, steps=STEPS, kernel=kernel) for kernel in (True, False))
+    found = ph.jax.advance(*call, steps=STEPS, kernel=True)
+    times = np.array([1.5])
+    expected = [x[:, 0] for x in ph.jax.simulate(*call[:3], times, law, method, steps=STEPS)]
     # The same operations in the same order; only what compilers fuse differs, by a rounding now and then.
     for a, b in zip(found, expected, strict=True):
         assert a.dtype == dtype
@@ -45,26 +45,14 @@ def test_the_kernel_takes_the_steps_of_simulate(method, dtype, torque):
         assert np.abs(a - b).max() < 4 * STEPS * np.finfo(dtype).eps
 
 
-def test_it_ends_where_simulate_does():
-    law = laws.heavy(HEAVY)
-    found = ph.jax.advance(MOMENTS[:2], ROTORS[:2], OMEGAS[:2], 1.5, law, "strang", steps=STEPS)
-    expected = ph.jax.simulate(MOMENTS[:2], ROTORS[:2], OMEGAS[:2], [1.5], law, "strang", steps=STEPS)
-    for a, b in zip(found, expected, strict=True):
-        assert np.array_equal(a, b[:, 0])
+def test_it_has_the_derivatives_of_the_steps():
+    def end(c):
+        call = MOMENTS[0], ROTORS[0], OMEGAS[0], 0.3, laws.heavy(c), "rk4"
+        return ph.jax.advance(*call, steps=2, kernel=True)[0]
 
-
-def test_derivatives_are_those_of_simulate():
-    def total(kernel, c):
-        rotor, _ = ph.jax.advance(
-            MOMENTS[0], ROTORS[0], OMEGAS[0], 1.5, laws.heavy(c), "rk4", steps=3, kernel=kernel
-        )
-        return rotor.sum()
-
-    tangent = (jnp.array([1.0, -2.0, 0.5]),)
-    for a, b in zip(
-        *(jax.jvp(lambda c, k=k: total(k, c), (jnp.array(HEAVY),), tangent) for k in (True, False)), strict=True
-    ):
-        assert abs(a - b) < 1e-14
+    c, direction, h = jnp.array(HEAVY), jnp.array([1.0, -2.0, 0.5]), 1e-5
+    slope = jax.jvp(end, (c,), (direction,))[1]
+    assert np.abs(slope - (end(c + h * direction) - end(c - h * direction)) / (2 * h)).max() < 1e-9
 
 
 @pytest.mark.parametrize("method", ["rk4", "kahan_li8"])

@@ -1,4 +1,4 @@
-"""Motion by steps under JAX: the steps of the compiled core, for all laws, methods, batches and transformations."""
+"""Motion by steps under JAX: the steps of the compiled core, for laws, methods and batches."""
 
 import subprocess
 import sys
@@ -29,7 +29,9 @@ ATTITUDE = {
     "tabulated": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS),
     "spline": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS, "space", "cubic"),
     "parabola": ph.torque.tabulated([-1, 1.5, 5], ROWS[:3], "body", "cubic"),
-    "formula": ph.torque.formula("-c ∧ (~R e3 R) + k t I(B)", c=0.3 * ph.e1 + 2 * ph.e3, k=0.1, B=ph.I * ph.e2),
+    "formula": ph.torque.formula(
+        "-c ∧ (~R e3 R) + k t I(B)", c=0.3 * ph.e1 + 2 * ph.e3, k=0.1, B=ph.I * ph.e2
+    ),
 }
 RATE = {
     "larmor": ph.torque.larmor([0.1, -0.2, 0.3]),
@@ -51,7 +53,7 @@ def _doubles():
 
 
 def apart(found, expected):
-    """The largest difference, in units of the last place of 1, of the angular velocity relative to its size."""
+    """The largest difference in units of the last place, of the angular velocity relative to its size."""
     rotor, omega = found
     spin = np.abs(omega - expected.omega_body.components).max() / np.abs(expected.omega_body.components).max()
     return max(np.abs(rotor - expected.rotor.components).max(), spin) / EPS
@@ -74,7 +76,15 @@ def test_torques_are_those_of_the_laws(name):
 
 
 def test_motion_under_many_laws_is_that_of_the_compiled_steps():
-    names = ("heavy", "gravity gradient, ellipse", "torsion_spring", "damping", "gyrostat", "tabulated", "formula")
+    names = (
+        "heavy",
+        "gravity gradient, ellipse",
+        "torsion_spring",
+        "damping",
+        "gyrostat",
+        "tabulated",
+        "formula",
+    )
     law = sum(ATTITUDE[name] for name in names)
     expected = ph.simulate(INERTIA, ph.State(R0, OMEGA), [0.3, 1.7, 4.0], law, method="strang", step=STEP)
     found = ph.jax.simulate(INERTIA, R0, OMEGA, [0.3, 1.7, 4.0], law, "strang", step=STEP)
@@ -105,7 +115,17 @@ def test_free_motion_is_that_of_the_compiled_steps(method):
 
 
 def test_all_orders_of_moments_and_equal_ones():
-    orders = [[2, 3, 4], [3, 2, 4], [4, 3, 2], [2, 4, 3], [3, 4, 2], [4, 2, 3], [2, 2, 3], [3, 2, 2], [2, 2, 2]]
+    orders = [
+        [2, 3, 4],
+        [3, 2, 4],
+        [4, 3, 2],
+        [2, 4, 3],
+        [3, 4, 2],
+        [4, 2, 3],
+        [2, 2, 3],
+        [3, 2, 2],
+        [2, 2, 2],
+    ]
     law = ATTITUDE["heavy"] + ATTITUDE["gyrostat"]
     found = ph.jax.simulate(orders, R0, OMEGA, [2.0], law, "yoshida4", step=STEP)
     for k, moments in enumerate(orders):
@@ -124,7 +144,9 @@ def test_runge_kutta_is_the_classical_one():
         up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), w * w + z * z - x * x - y * y])
         turn = [-state[1:4] @ omega, *(w * omega + np.cross([x, y, z], omega))]
         momentum = np.multiply(MOMENTS, omega)
-        return np.array([*np.multiply(turn, 0.5), *((np.cross(momentum, omega) + np.cross(up, law)) / MOMENTS)])
+        return np.array(
+            [*np.multiply(turn, 0.5), *((np.cross(momentum, omega) + np.cross(up, law)) / MOMENTS)]
+        )
 
     for _ in range(count):
         k1 = slope(state)
@@ -133,7 +155,9 @@ def test_runge_kutta_is_the_classical_one():
         k4 = slope(state + h * k3)
         state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         state[:4] /= np.linalg.norm(state[:4])
-    rotor, omega = ph.jax.simulate(MOMENTS, R0, OMEGA, [count * h], ph.jax.torque.heavy(law), "rk4", steps=count)
+    rotor, omega = ph.jax.simulate(
+        MOMENTS, R0, OMEGA, [count * h], ph.jax.torque.heavy(law), "rk4", steps=count
+    )
     assert np.abs(rotor[0] * np.array([1, -1, -1, -1]) - state[:4]).max() < count * EPS
     assert np.abs(omega[0] - state[4:]).max() < 3 * count * EPS
 
@@ -148,9 +172,7 @@ def test_batches_vmap_and_traced_times():
         law = ph.jax.torque.heavy(c)
         return ph.jax.simulate(MOMENTS, R0, omega, np.array([0.5, 1.0]), law, "strang", step=STEP)
 
-    batch = ph.jax.simulate(
-        MOMENTS, R0, omegas, [0.5, 1.0], ph.jax.torque.heavy(cs), "strang", step=STEP
-    )
+    batch = ph.jax.simulate(MOMENTS, R0, omegas, [0.5, 1.0], ph.jax.torque.heavy(cs), "strang", step=STEP)
     single = jax.jit(
         lambda c, omega, times: ph.jax.simulate(
             MOMENTS, R0, omega, times, ph.jax.torque.heavy(c), "strang", steps=10
@@ -181,7 +203,9 @@ def test_functions_of_the_motion():
     text = ph.jax.torque.formula("-c ∧ (~R e3 R) - k t Ω", c=ph.vector(c), k=0.25)
     for given in (law, jax.tree_util.Partial(law)):
         found = ph.jax.simulate(INERTIA, R0, OMEGA, [1.0], given, "rk4", steps=20)
-        for a, b in zip(found, ph.jax.simulate(INERTIA, R0, OMEGA, [1.0], text, "rk4", steps=20), strict=True):
+        for a, b in zip(
+            found, ph.jax.simulate(INERTIA, R0, OMEGA, [1.0], text, "rk4", steps=20), strict=True
+        ):
             assert np.abs(a - b).max() < 60 * EPS
 
 
@@ -210,15 +234,24 @@ def test_single_precision():
     [
         ({"method": "dop853"}, "unknown method 'dop853', expected one of strang, .*, rk4"),
         ({"torque": RATE["larmor"]}, "kahan_li8 kicks at fixed attitude, .*; use rk4"),
-        ({"torque": ATTITUDE["tabulated"], "times": [7.0]}, "spans -1.0 s to 5.0 s, the motion 0.0 s to 7.0 s"),
+        (
+            {"torque": ATTITUDE["tabulated"], "times": [7.0]},
+            "spans -1.0 s to 5.0 s, the motion 0.0 s to 7.0 s",
+        ),
         ({"steps": 3}, "give either step, .*, or steps"),
         ({"step": None}, "give either step, .*, or steps"),
         ({"step": 0.0}, "step is 0.0; it must be positive and finite"),
         ({"step": None, "steps": 0}, "steps is 0; it must be a whole number, 1 at least"),
         ({"times": [1.0, 0.5]}, r"times\[1\] = 0.5; times must be finite and must not decrease"),
         ({"times": [[1.0]]}, "times must be one-dimensional"),
-        ({"omega_body": [1.0, 2.0]}, r"the angular velocity needs 3 components in the last axis, got shape \(2,\)"),
-        ({"rotor": np.ones((2, 4)), "omega_body": np.ones((3, 3))}, r"the batch shapes \(\) of .* do not broadcast"),
+        (
+            {"omega_body": [1.0, 2.0]},
+            r"the angular velocity needs 3 components in the last axis, got shape \(2,\)",
+        ),
+        (
+            {"rotor": np.ones((2, 4)), "omega_body": np.ones((3, 3))},
+            r"the batch shapes \(\) of .* do not broadcast",
+        ),
     ],
 )
 def test_bad_input_is_told(change, message):
@@ -228,7 +261,7 @@ def test_bad_input_is_told(change, message):
 
 
 def test_traced_times_need_a_number_of_steps():
-    with pytest.raises(ValueError, match="with traced times .* give steps"):
+    with pytest.raises(ValueError, match=r"with traced times .* give steps"):
         jax.jit(lambda t: ph.jax.simulate(MOMENTS, R0, OMEGA, t, step=0.1))(np.array([1.0]))
 
 

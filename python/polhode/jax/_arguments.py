@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 
 from polhode._bodies import Inertia
 from polhode._multivector import Multivector
-from polhode.jax._components import Four, Three, compose, joined, reverse, split, turned
+from polhode.jax._components import Four, compose, joined, reverse, split, turned
 from polhode.jax._library import jnp
 
 Array = Any
 
 
 class Start(NamedTuple):
-    """Bodies and their starts, in principal axes, each of its own batch; the rotor of any norm as it is given."""
+    """Bodies and their starts in principal axes, each of its own batch; the rotor of any norm."""
 
     moments: Array
     rotor: Array
@@ -36,8 +36,8 @@ class Start(NamedTuple):
         if self.frame is None:
             return rotor, omega
         r, w = split(rotor), split(omega)
-        turned_back: Four = compose(r, reverse(self.frame))  # type: ignore[arg-type]
-        return joined(turned_back), joined(turned(self.frame, w))  # type: ignore[arg-type]
+        turned_back: Four = compose(r, reverse(self.frame))
+        return joined(turned_back), joined(turned(self.frame, w))
 
 
 def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
@@ -48,10 +48,10 @@ def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
     dtype = jnp.result_type(moments, r, w)
     moments, r, w = (x.astype(dtype) for x in (moments, r, w))
     if frame is not None:
-        frame = tuple(jnp.asarray(x, dtype) for x in frame)  # type: ignore[assignment]
+        frame = tuple(jnp.asarray(x, dtype) for x in frame)
         assert frame is not None
-        r = joined(compose(split(r), frame))  # type: ignore[arg-type]
-        w = joined(turned(reverse(frame), split(w)))  # type: ignore[arg-type]
+        r = joined(compose(split(r), frame))
+        w = joined(turned(reverse(frame), split(w)))
     return Start(moments, r, w, frame)
 
 
@@ -60,7 +60,7 @@ def _body(inertia: Any) -> tuple[Array, Four | None]:
     if isinstance(inertia, Inertia):
         frame = tuple(inertia.principal_frame.components.tolist())
         moments = jnp.asarray(inertia.principal_moments)
-        return moments, None if frame == (1.0, 0.0, 0.0, 0.0) else frame  # type: ignore[return-value]
+        return moments, None if frame == (1.0, 0.0, 0.0, 0.0) else frame
     return _floats(inertia, 3, "inertia: principal moments, or an Inertia,"), None
 
 

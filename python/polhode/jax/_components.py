@@ -1,8 +1,9 @@
 """Rotors, vectors and bivectors as tuples of components, each an array of any shape.
 
-So kept, a batch of bodies is one array for each component, which compilers run in lanes, on a GPU in threads; and
-every step is the same code for one body, for a batch, under ``vmap`` and inside a kernel. The components of a
-bivector are those of its axial vector; sums are in the order of the compiled core, so that both round alike.
+So kept, a batch of bodies is one array for each component, which compilers run in lanes, on a GPU in threads;
+and every step is the same code for one body, for a batch, under ``vmap`` and inside a kernel. The components
+of a bivector are those of its axial vector; sums are in the order of the compiled core, so that both round
+alike.
 """
 
 from __future__ import annotations
@@ -131,8 +132,8 @@ def exponential(b: Three) -> Four:
 def cosine_and_sinc(square: Array) -> tuple[Array, Array]:
     """``cos x`` and ``sin x/x`` of ``x² = square``, to a few roundings, with derivatives also at 0.
 
-    ``x = nπ + r`` with ``|r| <= π/2``, and series in r², which is x² itself where n = 0: there is no root then, and
-    no branch for lanes to wait for. The turns of steps are short, so that n is 0 for nearly all.
+    ``x = nπ + r`` with ``|r| <= π/2``, and series in r², which is x² itself where n = 0: there is no root
+    then, and no branch for lanes to wait for. The turns of steps are short, so that n is 0 for nearly all.
     """
     short = square < 2.4
     x = jnp.sqrt(jnp.where(short, 1.0, square))

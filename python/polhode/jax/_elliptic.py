@@ -1,4 +1,4 @@
-"""Elliptic integrals over arrays, by so many steps as serve every argument: `crates/rigid/src/elliptic.rs`."""
+"""Elliptic integrals over arrays, in as many steps as any argument needs: `crates/rigid/src/elliptic.rs`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from polhode.jax._library import jnp, lax
 
 Array = Any
 
-# Means meet quadratically, from k' = 1e-16 in 9 steps; duplication brings arguments together by 4 in a step, after
-# some to bring them to one size.
+# Means meet quadratically, from k' = 1e-16 in 9 steps; duplication brings arguments together by 4 in a step,
+# after some to bring them to one size.
 _MEANS, _DUPLICATIONS = 12, 20
 
 
@@ -45,7 +45,9 @@ def mean(g: Array) -> Array:
         a, g = at
         return 0.5 * (a + g), jnp.sqrt(a * g)
 
-    return jnp.where(g > 0, lax.fori_loop(0, _MEANS, step, (jnp.ones_like(g), jnp.where(g > 0, g, 1.0)))[0], 0.0)
+    return jnp.where(
+        g > 0, lax.fori_loop(0, _MEANS, step, (jnp.ones_like(g), jnp.where(g > 0, g, 1.0)))[0], 0.0
+    )
 
 
 def mean_and_sum(kc: Array, p2: Array) -> tuple[Array, Array]:
@@ -64,7 +66,7 @@ def mean_and_sum(kc: Array, p2: Array) -> tuple[Array, Array]:
 
 
 def argument(cn: Array, sn: Array, kc: Array) -> tuple[Array, Array]:
-    """Return the u in [−2K, 2K] with given cn u and sn u, up to a factor: so many K and a rest of at most K/2.
+    """Return the u in [−2K, 2K] with given cn u and sn u, up to a factor: K's, and a rest of K/2 at most.
 
     Where k' = 0 all is rest.
     """

@@ -53,8 +53,8 @@ class Formula(Law):
         inputs = [self._input(name, body, phase) for name in self._names()]
         found = split(Walk(self.text, steps_of(self._program()), inputs, algebra(3)).last()._data)
         if self.axes == "space":
-            return turned(reverse(phase.rotor), found)  # type: ignore[arg-type]
-        return found if self.frame is None else turned(reverse(self.frame), found)  # type: ignore[arg-type,return-value]
+            return turned(reverse(phase.rotor), found)
+        return found if self.frame is None else turned(reverse(self.frame), found)
 
     def checked(self) -> Formula:
         """Return it with values of the grades it needs; a `FormulaError` if it is no torque."""
@@ -68,7 +68,9 @@ class Formula(Law):
         return self
 
     def _program(self) -> _native.Program:
-        kinds = [(name, x._mask, _ROTOR if isinstance(x, Rotor) else _VALUE) for name, x in self.values.items()]
+        kinds = [
+            (name, x._mask, _ROTOR if isinstance(x, Rotor) else _VALUE) for name, x in self.values.items()
+        ]
         program = formula(self.text)._core.program(algebra(3), [*_GIVEN, *kinds])
         (sides, *others) = program.results
         if others or len(sides) > 1 or program.steps[sides[0]][3] != _BIVECTOR:

@@ -3,9 +3,9 @@
 The compiled core is called back from within the program, once for all bodies of a batch. Its derivatives are
 closed forms too (`FreeMotion.derivatives`); what JAX needs beside them is the linear rule below.
 
-**By the rotor.** The flow turns from the body's side, ``R(t) = R(0) U(t)`` where U depends on moments, rates and
-time alone. So a tangent of the start, less its part along ``R(0)``, which the norm takes away, is carried along by
-``U = ~R(0) R(t)``.
+**By the rotor.** The flow turns from the body's side, ``R(t) = R(0) U(t)`` where U depends on moments, rates
+and time alone. So a tangent of the start, less its part along ``R(0)``, which the norm takes away, is carried
+along by ``U = ~R(0) R(t)``.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ def free(
 ) -> tuple[Array, Array]:
     """Return rotors (..., 4) and angular velocities (..., 3) of free bodies at times t, exact at any time.
 
-    The flow of `polhode.FreeMotion`, for ``jit``, ``vmap`` and ``grad``; all bodies at all times, of batch shape
-    ``bodies + t.shape``. It has derivatives of first order by moments, rotor, angular velocity and time, at every
-    point where the flow has them: they are closed forms as well, and do not lose digits as t grows, with a limit
-    at equal moments, steady rotation and rest.
+    The flow of `polhode.FreeMotion`, for ``jit``, ``vmap`` and ``grad``; all bodies at all times, of batch
+    shape ``bodies + t.shape``. It has derivatives of first order by moments, rotor, angular velocity and
+    time, at every point where the flow has them: they are closed forms as well, and do not lose digits as t
+    grows, with a limit at equal moments, steady rotation and rest.
 
     Parameters
     ----------
@@ -44,11 +44,12 @@ def free(
         Times in s, of any shape.
     method
         ``"native"`` calls the compiled core, which keeps the error at rounding up to t = 1e12 and later, in
-        double precision also where JAX computes in single. ``"jax"`` is the same series in JAX alone, for other
-        devices than the CPU: with 64 bits its error is some 1e-15 and grows by as much with every radian that
-        the body turns. None takes the first where JAX runs on the CPU.
+        double precision also where JAX computes in single. ``"jax"`` is the same series in JAX alone, for
+        other devices than the CPU: with 64 bits its error is some 1e-15 and grows by as much with every
+        radian that the body turns. None takes the first where JAX runs on the CPU.
 
-    What has no motion is NaN: a moment that is not positive, a start that is not finite, a time beyond 1e17 turns.
+    What has no motion is NaN: a moment that is not positive, a start that is not finite, a time beyond 1e17
+    turns.
     """
     if method not in (None, *METHODS):
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
@@ -57,7 +58,7 @@ def free(
     given = start(inertia, rotor, omega_body)
     batch, times = given.batch(), jnp.asarray(t, given.rotor.dtype)
     bodies = [jnp.broadcast_to(x, (*batch, x.shape[-1])) for x in (given.moments, given.rotor, given.omega)]
-    flow = _flow if method == "native" else _theta.flow
+    flow: Any = _flow if method == "native" else _theta.flow
     rotors, omegas = flow(*bodies, jnp.broadcast_to(times.ravel(), (*batch, times.size)))
     shape = batch + times.shape
     return given.in_body_axes(rotors.reshape(*shape, 4), omegas.reshape(*shape, 3))
@@ -65,7 +66,7 @@ def free(
 
 @jax.custom_jvp
 def _flow(moments: Array, rotor: Array, omega: Array, times: Array) -> tuple[Array, Array]:
-    """Rotors (..., m, 4) and angular velocities (..., m, 3) of bodies (...), each at times (..., m) of its own."""
+    """Rotors (..., m, 4) and angular velocities (..., m, 3) of bodies (...), each at its times (..., m)."""
     rows = _called("free_flow", 7, moments, rotor, omega, times)
     return rows[..., :4], rows[..., 4:]
 
@@ -101,9 +102,9 @@ def carried_along(rotor: Array, tangent: Array, rotors: Array) -> Array:
     square = sum(x * x for x in r)
     along = sum(x * y for x, y in zip(r, d, strict=True)) / square
     across = tuple(y - x * along for x, y in zip(r, d, strict=True))
-    turn = compose(across, reverse(r))  # type: ignore[arg-type]
+    turn = compose(across, reverse(r))
     wide = tuple((x / square)[..., None] for x in turn)
-    return joined(compose(wide, split(rotors)))  # type: ignore[arg-type]
+    return joined(compose(wide, split(rotors)))
 
 
 @jax.custom_jvp

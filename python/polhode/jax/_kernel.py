@@ -1,8 +1,8 @@
 """Many bodies over many steps in one kernel, which keeps their states on the chip.
 
-A program of `simulate` writes the state of a batch to memory after each step and reads it back for the next. Here
-a Pallas kernel has the loop over time within: each block of bodies is read once, stays in registers over all
-steps, and is written once. The steps are those of `simulate`, line for line, on components of one block.
+A program of `simulate` writes the state of a batch to memory after each step and reads it back for the next.
+Here a Pallas kernel has the loop over time within: each block of bodies is read once, stays in registers over
+all steps, and is written once. The steps are those of `simulate`, line for line, on components of one block.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from polhode._extras import optional
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import joined, normalized, split
+from polhode.jax._formula_law import Formula
 from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat
@@ -37,7 +38,7 @@ def advance(
     steps: int,
     kernel: bool | None = None,
 ) -> tuple[Array, Array]:
-    """Return rotors (..., 4) and angular velocities (..., 3) of bodies after so many equal steps from 0 to a time.
+    """Return rotors (..., 4) and angular velocities (..., 3) after so many equal steps from 0 to a time.
 
     What `simulate` gives for this one time, for large ensembles: where JAX runs on a GPU, in one kernel that
     keeps each body on the chip over all steps. There, too, it is differentiated: the value comes from the
@@ -46,15 +47,15 @@ def advance(
     Parameters
     ----------
     inertia, rotor, omega_body, torque, method
-        As for `polhode.jax.simulate`. In a kernel the parameters of the torque are numbers for each body or for
-        all: no tables, formulas and functions.
+        As for `polhode.jax.simulate`. In a kernel the parameters of the torque are numbers for each body or
+        for all: no tables, formulas and functions.
     time
         In s, of either sign; one for all bodies.
     steps
         Their number, 1 at least.
     kernel
-        Whether to use the kernel; True elsewhere than on a GPU runs it in Pallas' interpreter, for tests. None:
-        on a GPU, for the laws that it has.
+        Whether to use the kernel; True elsewhere than on a GPU runs it in Pallas' interpreter, for tests.
+        None: on a GPU, for the laws that it has.
     """
     if not isinstance(steps, int) or steps < 1:
         raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
@@ -63,7 +64,7 @@ def advance(
     given = start(inertia, rotor, omega_body)
     if given.frame is not None:
         force = force.in_axes(given.frame)
-    fits = not any(isinstance(law, Function | Table | laws.Formula) for law in force.laws)
+    fits = not any(isinstance(law, Function | Table | Formula) for law in force.laws)
     if kernel and not fits:
         raise ValueError("the kernel has no tables, formulas and functions for a torque; take simulate")
     if kernel is None:
@@ -95,7 +96,9 @@ def _advanced(method: str, steps: int, given: Start, torque: Torque, time: Array
     rows = [jnp.pad(x, (0, padded - count), mode="edge") for x in rows]
     table = jnp.array(table_of(method), dtype)
     found = _call(partial(_walk, method, steps, tree), rows, time, table)
-    rotors, omegas = (joined(tuple(x[:count].reshape(batch) for x in part)) for part in (found[:4], found[4:]))
+    rotors, omegas = (
+        joined(tuple(x[:count].reshape(batch) for x in part)) for part in (found[:4], found[4:])
+    )
     return rotors, omegas
 
 

@@ -1,14 +1,15 @@
 """Torque laws as pytrees: their parameters are leaves, so that JAX differentiates by them and maps over them.
 
-What they compute is what `crates/rigid/src/torque.rs` does, in the same order. Each knows its torque at a point of
-the motion in principal axes, without the part ``−g I(Ω)`` and that of a wheel, which steps treat by themselves.
+What they compute is what `crates/rigid/src/torque.rs` does, in the same order. Each knows its torque at a
+point of the motion in principal axes, without the part ``−g I(Ω)`` and that of a wheel, which steps treat by
+themselves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, TypeVar
+from typing import Any, TypeVar, dataclass_transform
 
 from polhode._generic.numeric import Numeric
 from polhode._generic.smooth import log_even
@@ -30,7 +31,7 @@ from polhode.jax._library import jax, jnp
 from polhode.jax._phase import Gyrostat, Phase
 
 Array = Any
-L = TypeVar("L", bound="type[Law]")
+T = TypeVar("T")
 
 
 def static(**options: Any) -> Any:
@@ -38,14 +39,15 @@ def static(**options: Any) -> Any:
     return field(metadata={"static": True}, **options)
 
 
-def pytree(cls: L) -> L:
+@dataclass_transform(frozen_default=True, field_specifiers=(static,))
+def pytree(cls: type[T]) -> type[T]:
     """Make a frozen dataclass of the class, and a pytree, with the parameters for leaves."""
-    frozen = dataclass(frozen=True)(cls)
-    names = {True: [], False: []}  # type: dict[bool, list[str]]
+    frozen: Any = dataclass(frozen=True)(cls)
+    names: dict[bool, list[str]] = {True: [], False: []}
     for one in fields(frozen):
         names[one.metadata.get("static", False)].append(one.name)
     jax.tree_util.register_dataclass(frozen, names[False], names[True])
-    return frozen
+    return cls
 
 
 class Law:
@@ -53,7 +55,7 @@ class Law:
 
     @property
     def depends_on_rate(self) -> bool:
-        """Whether the torque changes with the rate of turning, so that no kick at fixed attitude solves it."""
+        """Whether the torque changes with the rate of turning: no kick at fixed attitude solves it."""
         return False
 
     def in_axes(self, frame: Four) -> Law:
@@ -228,9 +230,9 @@ class Wheel(Law):
 
 @pytree
 class Function(DependsOnRate):
-    """``f(t, rotor, omega_body)`` of arrays: a function, or a ``jax.tree_util.Partial`` with leaves of its own."""
+    """``f(t, rotor, omega_body)`` of arrays: a function, or a ``jax.tree_util.Partial`` with leaves."""
 
-    f: Callable[..., Any] = static()
+    f: Callable[..., Any] | None = static()
     partial: Any
     frame: Four | None
 
@@ -241,11 +243,11 @@ class Function(DependsOnRate):
         rotor, omega = phase.rotor, body.omega(phase.momentum)
         if self.frame is not None:
             rotor, omega = compose(rotor, reverse(self.frame)), turned(self.frame, omega)
-        f = self.f if self.partial is None else self.partial
+        f: Any = self.f if self.partial is None else self.partial
         torque = split(jnp.asarray(f(phase.time, joined(rotor), joined(omega))))
         if len(torque) != 3:
             raise ValueError(f"a torque has 3 components in its last axis, the function gave {len(torque)}")
-        return torque if self.frame is None else turned(reverse(self.frame), torque)  # type: ignore[return-value]
+        return torque if self.frame is None else turned(reverse(self.frame), torque)
 
 
 def along(gains: Three, frame: Four | None, b: Three) -> Three:
@@ -267,7 +269,7 @@ def turn_from(rest: Four, rotor: Four) -> Three:
 
 @pytree
 class Torque:
-    """A sum of laws; made by the functions of `polhode.jax.torque`. A pytree whose leaves are the parameters."""
+    """A sum of laws, made by the functions of `polhode.jax.torque`: a pytree of their parameters."""
 
     laws: tuple[Any, ...]
 
@@ -299,7 +301,7 @@ class Torque:
     def wheel(self) -> Three | None:
         """Return the momentum of all wheels together."""
         wheels = [law.h for law in self.laws if isinstance(law, Wheel)]
-        return None if not wheels else tuple(sum(h) for h in zip(*wheels, strict=True))  # type: ignore[return-value]
+        return None if not wheels else tuple(sum(h) for h in zip(*wheels, strict=True))
 
     def damping(self) -> Array | None:
         """Return the g of the part ``−g I(Ω)``; None without one."""

@@ -1,7 +1,7 @@
 """The classical Runge–Kutta method on the rotor and the angular velocity in principal axes.
 
-``R' = −½ R Ω_B`` and Euler's equations (handout eq. 4.13, 4.21); after each step R is divided by its norm, which
-is all that the step does to stay on the group. It needs no sine, no root but one, and no branch.
+``R' = −½ R Ω_B`` and Euler's equations (handout eq. 4.13, 4.21); after each step R is divided by its norm,
+which is all that the step does to stay on the group. It needs no sine, no root but one, and no branch.
 """
 
 from __future__ import annotations

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -86,13 +85,18 @@ def hyperbolic(border: Array, gamma: Array, s: Array, turns: Array, ahead: Array
     cosh, sinh = 1.0 + g, -m * side
     z = (
         cosh * horner(polynomial(4, lambda n: root ** (n * n + n) * jnp.cos((2 * n + 1) * gamma), _V), c),
-        odd * sinh * horner(
+        odd
+        * sinh
+        * horner(
             polynomial(4, lambda n: s * _sign(n) * root ** (n * n + n) * jnp.cos((2 * n + 1) * gamma), _W), c
         ),
-        odd * cosh * horner(
+        odd
+        * cosh
+        * horner(
             polynomial(4, lambda n: -_sign(n) * root ** (n * n + n) * jnp.sin((2 * n + 1) * gamma), _V), c
         ),
-        sinh * horner(polynomial(4, lambda n: -s * root ** (n * n + n) * jnp.sin((2 * n + 1) * gamma), _W), c),
+        sinh
+        * horner(polynomial(4, lambda n: -s * root ** (n * n + n) * jnp.sin((2 * n + 1) * gamma), _W), c),
     )
 
     def pronics(n: int) -> Array:

@@ -32,20 +32,22 @@ def simulate(
     step: float | None = None,
     steps: int | None = None,
 ) -> tuple[Array, Array]:
-    """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times, from the start at 0.
+    """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times, from time 0.
 
-    One program of JAX, for ``jit``, ``vmap``, ``jacfwd`` and ``grad``, by everything that is an array: moments,
-    start, parameters of the torque, and with `steps` the times. It takes the steps of `polhode.simulate` by the
-    same names, and agrees with it to the rounding of the steps. Between output times only the state is kept, so
-    that ``grad`` needs memory for one state a step, and computes each step twice.
+    One program of JAX, for ``jit``, ``vmap``, ``jacfwd`` and ``grad``, by everything that is an array:
+    moments, start, parameters of the torque, and with `steps` the times. It takes the steps of
+    `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between output
+    times only the state is kept, so that ``grad`` needs memory for one state a step, and computes each step
+    twice.
 
     Parameters
     ----------
     inertia
-        Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`, about
-        its centre of mass, with `heavy` about the origin of its axes.
+        Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`,
+        about its centre of mass, with `heavy` about the origin of its axes.
     rotor
-        From body axes to space at time 0: a `Rotor`, or its components (..., 4), which are divided by their norm.
+        From body axes to space at time 0: a `Rotor`, or its components (..., 4), which are divided by their
+        norm.
     omega_body
         Angular velocity in body axes at time 0, a bivector or (..., 3), in rad/s. Batches broadcast.
     times
@@ -57,8 +59,8 @@ def simulate(
         A splitting, for torques that depend on attitude and time: ``"strang"`` (order 2), ``"yoshida4"``,
         ``"yoshida6"``, ``"kahan_li6"``, ``"kahan_li8"``; or the classical ``"rk4"``, for any.
     step, steps
-        The longest step in s, shortened a little so that steps end on the output times; or the number of steps
-        from one output time to the next, with which the times may be traced.
+        The longest step in s, shortened a little so that steps end on the output times; or the number of
+        steps from one output time to the next, with which the times may be traced.
 
     Raises
     ------
@@ -75,7 +77,11 @@ def simulate(
         force = force.in_axes(given.frame)
     both = ways(times, step, steps, force)
     # A function may close over what is traced, which no cache of programs may hold.
-    run = simulate_principal if any(isinstance(law, Function) and law.partial is None for law in force.laws) else _compiled
+    run = (
+        simulate_principal
+        if any(isinstance(law, Function) and law.partial is None for law in force.laws)
+        else _compiled
+    )
     parts = []
     for way, backwards in both:
         found = run(given, force, way.targets, way.counts, method=method, most=way.most, even=way.even)
@@ -84,7 +90,7 @@ def simulate(
     return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
 
 
-def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Splitting | RungeKutta:
+def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
     """Return what makes the steps, with the numbers of `table_of` the method."""
     return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
 
@@ -143,7 +149,7 @@ def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]
 
     shapes = [x.shape for x in jax.eval_shape(first, rotor, omega)]
     batch = jnp.broadcast_shapes(given.batch(), *shapes)
-    return tuple(jnp.broadcast_to(x, batch) for x in rotor), tuple(jnp.broadcast_to(x, batch) for x in omega)  # type: ignore[return-value]
+    return tuple(jnp.broadcast_to(x, batch) for x in rotor), tuple(jnp.broadcast_to(x, batch) for x in omega)
 
 
 def check(method: str, torque: Torque) -> None:

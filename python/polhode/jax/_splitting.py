@@ -1,13 +1,14 @@
 """Exact turns and kicks: `crates/rigid/src/splitting.rs`, which derives them, step for step.
 
 The turns are about the axes of the smallest and the largest moment. Which those are is known when the program
-runs, not when it is compiled, so the axes are renamed: with the smallest first and the largest last, and every
-bivector negated where that order is odd. Renaming is exact.
+runs, not when it is compiled, so the axes are renamed: with the smallest first and the largest last, and
+every bivector negated where that order is odd. Renaming is exact.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from polhode.jax._components import (
@@ -58,15 +59,15 @@ COMPOSITIONS = {
 
 
 def stages(name: str) -> list[tuple[float, float]]:
-    """Return kicks and drifts in turn, the first kick being the last one too: two half kicks that meet are one."""
+    """Return kicks and drifts in turn; the first kick is the last too, two half kicks that meet are one."""
     half = COMPOSITIONS[name]
     drifts = half + half[-2::-1]
-    kicks = [0.5 * drifts[0]] + [0.5 * a + 0.5 * b for a, b in zip(drifts[:-1], drifts[1:], strict=True)]
+    kicks = [0.5 * drifts[0]] + [0.5 * a + 0.5 * b for a, b in pairwise(drifts)]
     return list(zip(kicks, drifts, strict=True))
 
 
 class Axes(NamedTuple):
-    """The axes of the smallest, the middle and the largest moment, as masks of e1, e2, e3; the order's sign."""
+    """The axes of the smallest, middle and largest moment, as masks of e1, e2, e3; the sign of the order."""
 
     small: Three
     middle: Three
@@ -85,7 +86,7 @@ class Axes(NamedTuple):
         large = ~(large2 | large3), large2, large3
         middle = tuple(~(a | b) for a, b in zip(small, large, strict=True))
         even = (small[0] & large[2]) | (small[1] & large[0]) | (small[2] & large[1])
-        return Axes(small, middle, large, jnp.where(even, 1.0, -1.0).astype(i.dtype))  # type: ignore[arg-type]
+        return Axes(small, middle, large, jnp.where(even, 1.0, -1.0).astype(i.dtype))
 
     def pick(self, x: Three) -> Three:
         """Return the three numbers in the order of the axes."""
@@ -184,7 +185,7 @@ class Splitting:
     def _turn_about_axes(self, phase: Phase, h: Array) -> Phase:
         """Turns a–b–a, with that of a wheel in their middle."""
         s, *b = phase.rotor
-        r, m = (s, *self.axes.renamed(tuple(b))), self.axes.renamed(phase.momentum)  # type: ignore[arg-type]
+        r, m = (s, *self.axes.renamed(tuple(b))), self.axes.renamed(phase.momentum)
         half = 0.5 * h
         r, m = _turn_first(r, m, 0.5 * self.kappa[0] * m[0] * half)
         if self.turning is None:

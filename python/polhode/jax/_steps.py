@@ -29,7 +29,7 @@ class Way(NamedTuple):
 
 
 def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> list[tuple[Way, bool]]:
-    """Return the ways that lead to all times from 0, back in time (True) and forth; to traced times one, forth."""
+    """Return the ways from 0 to all times, back in time (True) and forth; to traced times one, forth."""
     if (step is None) == (steps is None):
         raise ValueError("give either step, the longest step in s, or steps, their number between two times")
     if steps is not None and (not isinstance(steps, int) or steps < 1):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,15 +28,13 @@ class Table(Law):
         if self.frame == "space":
             return self
         back = reverse(frame)
-        rows = [
-            None if x is None else joined(turned(back, split(x)))  # type: ignore[arg-type]
-            for x in (self.torques, self.slopes)
-        ]
-        return Table(*rows, self.times, self.frame)
+        torques = joined(turned(back, split(self.torques)))
+        slopes = None if self.slopes is None else joined(turned(back, split(self.slopes)))
+        return replace(self, torques=torques, slopes=slopes)
 
     def value(self, body: Gyrostat, phase: Phase) -> Three:
         torque = split(self._at(phase.time))
-        return torque if self.frame == "body" else turned(reverse(phase.rotor), torque)  # type: ignore[return-value,arg-type]
+        return torque if self.frame == "body" else turned(reverse(phase.rotor), torque)
 
     def _at(self, time: Array) -> Array:
         times = jnp.asarray(self.times, time.dtype)

@@ -20,7 +20,7 @@ _NEVER = 2.0**70
 
 
 def flow(moments: Array, rotor: Array, omega: Array, time: Array) -> tuple[Array, Array]:
-    """Rotors (..., m, 4) and angular velocities (..., m, 3) of bodies (...), each at times (..., m) of its own."""
+    """Rotors (..., m, 4) and angular velocities (..., m, 3) of bodies (...), each at its times (..., m)."""
     i, r, w = (tuple(x[..., None] for x in split(y)) for y in (moments, rotor, omega))
     known = (i[0] > 0) & (i[1] > 0) & (i[2] > 0) & jnp.isfinite(sum(i) + sum(r) + sum(w))
     size, scale = _power_of_two(i), _power_of_two(w)
@@ -30,10 +30,10 @@ def flow(moments: Array, rotor: Array, omega: Array, time: Array) -> tuple[Array
     # Elsewhere any motion that tumbles.
     some = [jnp.where(tumbles, x, k) for k, x in zip((1.0, 2.0, 3.0), i, strict=True)]
     rates = [jnp.where(tumbles, x, 1.0) for x in w]
-    tumbled, spins = _tumbling(Orbit.of(tuple(some), tuple(rates)), time * scale)  # type: ignore[arg-type]
+    tumbled, spins = _tumbling(Orbit.of(tuple(some), tuple(rates)), time * scale)
     turn = tuple(jnp.where(tumbles, x, y) for x, y in zip(tumbled, turn, strict=True))
     spin = tuple(jnp.where(tumbles, x, y) for x, y in zip(spins, spin, strict=True))
-    found = joined(compose(normalized(r), turn)), joined(times(spin, scale))  # type: ignore[arg-type]
+    found = joined(compose(normalized(r), turn)), joined(times(spin, scale))
     rotors, omegas = (jnp.where(known[..., None], x, jnp.nan) for x in found)
     return rotors, omegas
 
@@ -76,13 +76,13 @@ def _tumbling(orbit: Orbit, time: Array) -> tuple[Four, Three]:
     rotor = normalized(_in_axes(orbit, z))
     first, rotor = (tuple(x[..., part] for x in rotor) for part in (slice(1), slice(1, None)))
     parts = tuple(x * f[..., 1:] for x, f in zip(orbit.amplitudes, functions, strict=True))
-    return compose(reverse(first), rotor), orbit.order.restored(parts)  # type: ignore[arg-type]
+    return compose(reverse(first), rotor), orbit.order.restored(parts)
 
 
 def _in_axes(orbit: Orbit, z: Four) -> Four:
     """Of quaternion units, which are the negatives of the planes of (e1, e2, d)."""
     planes = tuple(-sign * x for sign, x in zip(orbit.signs, z[1:], strict=True))
-    return z[0], *orbit.order.restored(planes)  # type: ignore[arg-type]
+    return z[0], *orbit.order.restored(planes)
 
 
 def _states(orbit: Orbit, time: Array) -> tuple[Four, Three]:
@@ -106,5 +106,10 @@ def _states(orbit: Orbit, time: Array) -> tuple[Four, Three]:
         for part in range(3)
     )
     sin, cos = _sin_cos(orbit.precession * time * (0.25 / math.pi) + ahead)
-    turned = cos * z[0] - sin * z[3], cos * z[1] - sin * z[2], cos * z[2] + sin * z[1], cos * z[3] + sin * z[0]
-    return turned, functions  # type: ignore[return-value]
+    turned = (
+        cos * z[0] - sin * z[3],
+        cos * z[1] - sin * z[2],
+        cos * z[2] + sin * z[1],
+        cos * z[3] + sin * z[0],
+    )
+    return turned, functions

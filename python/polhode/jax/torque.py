@@ -1,7 +1,7 @@
 """Torque laws for `polhode.jax.simulate`, by the names of `polhode.torque` and with the same meaning.
 
-Their arguments may be traced, and of any batch that goes with that of the bodies: ``jax.grad`` differentiates by
-them. A law of `polhode.torque` itself serves too where its parameters are just numbers.
+Their arguments may be traced, and of any batch that goes with that of the bodies: ``jax.grad`` differentiates
+by them. A law of `polhode.torque` itself serves too where its parameters are just numbers.
 """
 
 from __future__ import annotations
@@ -176,18 +176,18 @@ def _three(value: Any, name: str) -> Three:
     array = _array(value)
     if array.shape[-1:] != (3,):
         raise ValueError(f"{name} needs 3 components in the last axis, got shape {array.shape}")
-    return split(array)  # type: ignore[return-value]
+    return split(array)
 
 
 def _gains(value: Any) -> Three:
     array = _array(value)
-    return split(array) if array.shape[-1:] == (3,) else (array,) * 3  # type: ignore[return-value]
+    return split(array) if array.shape[-1:] == (3,) else (array,) * 3
 
 
 def _rotor(value: Any) -> Four:
     if value is None:
-        return split(_array([1.0, 0.0, 0.0, 0.0]))  # type: ignore[return-value]
+        return split(_array([1.0, 0.0, 0.0, 0.0]))
     array = _array(value)
     if array.shape[-1:] != (4,):
         raise ValueError(f"a rotor needs 4 components in the last axis, got shape {array.shape}")
-    return normalized(split(array))  # type: ignore[arg-type]
+    return normalized(split(array))

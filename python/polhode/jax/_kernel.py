@@ -10,15 +10,16 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from polhode._extras import optional
-from polhode.jax import torque as laws
-from polhode.jax._arguments import Start, start
+from polhode.jax._arguments import Start
 from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula
 from polhode.jax._laws import Function, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat
-from polhode.jax._simulate import check, simulate_principal, stepper, table_of
+from polhode.jax._simulate import compiled, prepared, stepper, table_of
 from polhode.jax._table import Table
 
 Array = Any
@@ -59,11 +60,7 @@ def advance(
     """
     if not isinstance(steps, int) or steps < 1:
         raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
-    force = laws.of(torque)
-    check(method, force)
-    given = start(inertia, rotor, omega_body)
-    if given.frame is not None:
-        force = force.in_axes(given.frame)
+    given, force = prepared(inertia, rotor, omega_body, torque, method)
     fits = not any(isinstance(law, Function | Table | Formula) for law in force.laws)
     if kernel and not fits:
         raise ValueError("the kernel has no tables, formulas and functions for a torque; take simulate")
@@ -77,7 +74,7 @@ def advance(
 
 def _scanned(method: str, steps: int, given: Start, torque: Torque, time: Array) -> tuple[Array, Array]:
     """The same by a loop of whole batches."""
-    found = simulate_principal(given, torque, time[None], [steps], method=method, most=steps, even=True)
+    found = compiled(given, torque, time[None], np.array([steps]), method=method, most=steps, even=True)
     return found[0][..., 1, :], found[1][..., 1, :]
 
 

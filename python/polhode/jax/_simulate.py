@@ -68,19 +68,13 @@ def simulate(
         For shapes, times and methods that are not usable. Values are not looked at, for they may be traced:
         what has no motion, such as a moment of 0, gives NaN.
     """
-    force = laws.of(torque)
-    check(method, force)
-    if isinstance(inertia, Body):
-        inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
-    given = start(inertia, rotor, omega_body)
-    if given.frame is not None:
-        force = force.in_axes(given.frame)
+    given, force = prepared(inertia, rotor, omega_body, torque, method)
     both = ways(times, step, steps, force)
     # A function may close over what is traced, which no cache of programs may hold.
     run = (
         simulate_principal
         if any(isinstance(law, Function) and law.partial is None for law in force.laws)
-        else _compiled
+        else compiled
     )
     parts = []
     for way, backwards in both:
@@ -88,6 +82,16 @@ def simulate(
         places = list(way.places[::-1] if backwards else way.places)
         parts.append([x[..., places, :] for x in found])
     return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
+
+
+def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str) -> tuple[Start, Torque]:
+    """Return bodies, starts and torque in principal axes; an error if the method is none for the torque."""
+    force = laws.of(torque)
+    _check(method, force)
+    if isinstance(inertia, Body):
+        inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
+    given = start(inertia, rotor, omega_body)
+    return given, force if given.frame is None else force.in_axes(given.frame)
 
 
 def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
@@ -137,7 +141,7 @@ def simulate_principal(
     return rotors, omegas
 
 
-_compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even"))
+compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even"))
 
 
 def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:
@@ -152,7 +156,7 @@ def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]
     return tuple(jnp.broadcast_to(x, batch) for x in rotor), tuple(jnp.broadcast_to(x, batch) for x in omega)
 
 
-def check(method: str, torque: Torque) -> None:
+def _check(method: str, torque: Torque) -> None:
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     if method != "rk4" and torque.depends_on_rate:

@@ -17,8 +17,8 @@ use crate::torque::Torque;
 use polhode_ga::lanes::{Lanes, Work};
 use std::{array, mem};
 
-/// So many lanes hold the last bodies: one register of most machines.
-const LAST: usize = 4;
+/// So many lanes hold the last bodies: one register of the widest machines.
+const LAST: usize = 8;
 
 /// Rounds between looks at whether to go on.
 const BETWEEN_LOOKS: u32 = 256;

@@ -111,6 +111,8 @@ fn moved<const N: usize, const W: usize, const F: bool>(
     sum
 }
 
+// Lanes are best copied one by one: a copy of memory takes them out of their registers.
+#[allow(clippy::manual_memcpy)]
 #[inline(always)]
 fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     bodies: &Bodies<W, F>,

@@ -10,7 +10,7 @@ from typing import Any
 
 from polhode.jax import _series as series
 from polhode.jax._components import Four, Three, compose, dot, joined, normalized, reverse, split, times
-from polhode.jax._library import jnp
+from polhode.jax._library import jax, jnp
 from polhode.jax._orbit_of_free import Orbit
 
 Array = Any
@@ -25,8 +25,8 @@ def flow(moments: Array, rotor: Array, omega: Array, time: Array) -> tuple[Array
     known = (i[0] > 0) & (i[1] > 0) & (i[2] > 0) & jnp.isfinite(sum(i) + sum(r) + sum(w))
     size, scale = _power_of_two(i), _power_of_two(w)
     i, w = tuple(x / size for x in i), tuple(x / scale for x in w)
-    turn, spin = _steady(w, time * scale)
     tumbles = known & _tumbles(i, w)
+    turn, spin = _steady(_without_slopes(w, i, jnp.where(tumbles, 1.0, jnp.nan)), time * scale)
     # Elsewhere any motion that tumbles.
     some = [jnp.where(tumbles, x, k) for k, x in zip((1.0, 2.0, 3.0), i, strict=True)]
     rates = [jnp.where(tumbles, x, 1.0) for x in w]
@@ -62,6 +62,19 @@ def _steady(w: Any, time: Array) -> tuple[Four, Three]:
     x, y, z = times(w, -1.0 / size)
     zero = jnp.zeros_like(time)
     return (cos, sin * x, sin * y, sin * z), (w[0] + zero, w[1] + zero, w[2] + zero)
+
+
+@jax.custom_jvp
+def _without_slopes(w: Any, i: Any, factor: Array) -> Any:
+    """Return w, with slopes of NaN: a steady motion has neighbours that are not."""
+    return w
+
+
+@_without_slopes.defjvp
+def _without_slopes_jvp(primals: Any, tangents: Any) -> Any:
+    w, _, factor = primals
+    change = sum(tangents[0]) + sum(tangents[1])
+    return w, tuple(change * factor for _ in w)
 
 
 def _sin_cos(turns: Array) -> tuple[Array, Array]:

@@ -21,13 +21,16 @@ use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::borrow::Cow;
 use std::iter::Enumerate;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 /// Bodies side by side: two registers of the widest machines, so that each waits for the other's results.
 pub(super) const SIDE_BY_SIDE: usize = 16;
+
+/// How often a thread that has no more work tells how far the others are.
+const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
 
 /// Parts of a body's way, for the count of what is done.
 const PARTS: f64 = 1024.0;
@@ -95,7 +98,9 @@ pub(super) struct Crew<'a> {
     stopped: AtomicBool,
     /// In parts of bodies.
     done: AtomicU64,
-    running: AtomicUsize,
+    /// How many threads are at work; told where one ends.
+    running: Mutex<usize>,
+    ended: Condvar,
     /// The laws in principal axes, where all bodies share them and an inertia.
     shared: Option<Vec<Torque>>,
 }
@@ -123,7 +128,8 @@ impl<'a> Crew<'a> {
             told: Mutex::new(Vec::with_capacity(ensemble.starts.len())),
             stopped: AtomicBool::new(false),
             done: AtomicU64::new(0),
-            running: AtomicUsize::new(0),
+            running: Mutex::new(0),
+            ended: Condvar::new(),
             shared: alike.then(turned),
         }
     }
@@ -135,19 +141,17 @@ impl<'a> Crew<'a> {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Summary, SimulateError> {
         let count = threads.count().min(self.ensemble.starts.len()).max(1);
-        self.running.store(count, Ordering::Relaxed);
         thread::scope(|scope| {
             for _ in 1..count {
+                *lock(&self.running) += 1;
                 // Where no more threads are to be had, those that are there do all the work.
                 if thread::Builder::new().spawn_scoped(scope, || self.take_turns(&mut |_| true)).is_err() {
-                    self.running.fetch_sub(1, Ordering::Relaxed);
+                    *lock(&self.running) -= 1;
                 }
             }
+            *lock(&self.running) += 1;
             self.take_turns(progress);
-            while self.running.load(Ordering::Relaxed) > 0 {
-                self.report(progress);
-                thread::sleep(Duration::from_millis(1));
-            }
+            self.wait(progress);
         });
         if self.stopped.load(Ordering::Relaxed) {
             return Err(SimulateError::Interrupted);
@@ -161,7 +165,20 @@ impl<'a> Crew<'a> {
             Some(step) => self.equal_steps(step, progress),
             None => fastest(AdaptedSteps { crew: self, progress }),
         }
-        self.running.fetch_sub(1, Ordering::Relaxed);
+        *lock(&self.running) -= 1;
+        self.ended.notify_all();
+    }
+
+    /// Waits for the other threads, and tells how far they are.
+    fn wait(&self, progress: &mut dyn FnMut(Progress) -> bool) {
+        let mut running = lock(&self.running);
+        while *running > 0 {
+            running = match self.ended.wait_timeout(running, BETWEEN_REPORTS) {
+                Ok((running, _)) => running,
+                Err(poisoned) => poisoned.into_inner().0,
+            };
+            self.report(progress);
+        }
     }
 
     /// Follows bodies by equal steps.

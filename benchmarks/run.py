@@ -1,7 +1,8 @@
 """Ours beside the peers, in one run on this machine: `python benchmarks/run.py [--quick] [--only SECTION]`.
 
-Prints the tables and writes them to build/bench-COMMIT.md, the figures to build/bench-COMMIT.json, and work
-and precision of motion drawn to build/bench-COMMIT-motion.png. Ratios count; absolute times hold for this
+Prints the tables and writes them to build/bench-COMMIT.md, the figures to build/bench-COMMIT.json, work and
+precision of motion drawn to build/bench-COMMIT-motion.png, the cost of bodies in ensembles to
+build/bench-COMMIT-ensembles.png. Ratios count; absolute times hold for this
 machine and this hour. A peer that is not installed is an empty column.
 """
 
@@ -21,6 +22,7 @@ import imports
 import machine
 import motion
 import report
+import scaling
 import single
 import work_precision
 from contest import FULL, QUICK, Pace, Row
@@ -53,7 +55,7 @@ def main() -> None:
     """Measure, print and write."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--quick", action="store_true", help="a first look: smaller batches, shorter runs")
-    titles = [*SECTIONS, work_precision.TITLE]
+    titles = [*SECTIONS, scaling.TITLE, work_precision.TITLE]
     parser.add_argument(
         "--only",
         action="append",
@@ -82,6 +84,9 @@ def main() -> None:
     for title in (title for title in SECTIONS if title in wanted):
         sections[title] = measured(SECTIONS[title](np.random.default_rng(SEED), pace), pace)
         say(report.section(title, sections[title], max(one, all_cores)))
+    costs = scaling.points(pace) if scaling.TITLE in wanted else []
+    if costs:
+        say(scaling.section(costs))
     panels = list(work_precision.panels(pace)) if work_precision.TITLE in wanted else []
     if panels:
         say(work_precision.section(panels))
@@ -95,11 +100,19 @@ def main() -> None:
     files = {
         target.with_name(f"{target.name}.md"): "\n".join(page).encode(),
         target.with_name(f"{target.name}.json"): report.data(
-            {**about, "versions": versions, "panels": work_precision.data(panels)}, sections
+            {
+                **about,
+                "versions": versions,
+                "costs": scaling.data(costs),
+                "panels": work_precision.data(panels),
+            },
+            sections,
         ),
     }
     if panels and (drawing := work_precision.plot(panels)):
         files[target.with_name(f"{target.name}-motion.png")] = drawing
+    if costs and (drawing := scaling.plot(costs)):
+        files[target.with_name(f"{target.name}-ensembles.png")] = drawing
     write_atomically(files)
     print("Written to", " and ".join(str(path.relative_to(machine.ROOT)) for path in files))
 

@@ -155,7 +155,7 @@ BOX = ph.Body.box([1, 2, 3], mass=1.0)
         ({"rtol": 1e-17, "method": STEPS}, ["rtol = 1.0e-17", "not reached", "rtol >="]),
         ({"body": ph.Body.rod(1.0, mass=1.0)}, ["0 kg m²", "thickness"]),
         ({"state": ph.State(R0, [0, np.nan, 1])}, ["angular velocity", "nan"]),
-        ({"state": ph.State(R0, [[0, 0, 1], [0, 1, 0]])}, ["single", "(2,)", "FreeMotion"]),
+        ({"state": ph.State(R0, [[0, 0, 1], [0, np.inf, 0]])}, ["index (1,)", "angular velocity", "inf"]),
         ({"times": [-np.inf, 0.0]}, ["times[0]", "-inf"]),
         ({"method": "exact", "step": 0.1}, ["exact", "closed form"]),
         ({"method": "exact", "torque": ph.torque.gravity_gradient(1.0)}, ["exact", "closed form"]),
@@ -209,8 +209,8 @@ def test_states_and_laws_refuse_wrong_grades():
         ph.torque.heavy(ph.e1 ^ ph.e2)
     with pytest.raises(TypeError, match="bivector"):
         ph.torque.constant_space(ph.e1)
-    with pytest.raises(ValueError, match="single"):
-        ph.torque.constant_body(np.eye(3))
+    with pytest.raises(ValueError, match="3"):
+        ph.torque.constant_body(np.eye(2))
 
 
 def test_what_is_not_a_number_is_not_described():

@@ -51,11 +51,14 @@ if TYPE_CHECKING:
     from polhode._interpolation import mean as mean
     from polhode._interpolation import slerp as slerp
     from polhode._linear import LinearMap as LinearMap
+    from polhode._moments import Moments as Moments
     from polhode._scene import Scene as Scene
     from polhode._simulate import simulate as simulate
+    from polhode._simulate import simulate_blocks as simulate_blocks
     from polhode._state import State as State
     from polhode._trajectory import Certificate as Certificate
     from polhode._trajectory import Crossings as Crossings
+    from polhode._trajectory import Failure as Failure
     from polhode._trajectory import Trajectory as Trajectory
 
 # Imported when they are first asked for: those who only multiply need not wait for mechanics.
@@ -85,8 +88,11 @@ _LATER = {
     "LinearMap": "_linear",
     "Certificate": "_trajectory",
     "Crossings": "_trajectory",
+    "Failure": "_trajectory",
     "Trajectory": "_trajectory",
+    "Moments": "_moments",
     "simulate": "_simulate",
+    "simulate_blocks": "_simulate",
     "Scene": "_scene",
     "State": "_state",
 }

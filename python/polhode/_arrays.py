@@ -47,6 +47,14 @@ def as_float(value: Any, what: str) -> float:
     return float(array)
 
 
+def as_count(value: Any, what: str) -> int:
+    """Return a whole number; anything else is a TypeError that names it."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} must be a whole number, got {type(value).__name__}") from None
+
+
 def as_components(values: Any, size: int, what: str) -> Array:
     """Return a read-only, contiguous copy of shape (..., size)."""
     array = as_floats(values, what)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -28,32 +29,34 @@ CONVENTIONS = (
 
 
 def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
-    """Return a dataset with dimensions time, quaternion and axis, units and conventions."""
+    """Return a dataset with dimensions time, quaternion and axis, units and conventions.
+
+    Of a batch the first dimension is `body`, all batch axes in one.
+    """
     xr = optional("xarray", "io", "labelled data")
+    body = ("body",) if trajectory.shape else ()
+    count = math.prod(trajectory.shape)
 
     def variable(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
         return (dims, np.array(data), {"units": units, "long_name": text})
 
-    along, axes = ("time",), ("time", "axis")
+    def moving(dims: tuple[str, ...], data: Any, units: str, text: str) -> Any:
+        array = np.asarray(data)
+        flat = array.reshape(count, *array.shape[len(trajectory.shape) :]) if body else array
+        return variable((*body, "time", *dims), flat, units, text)
+
+    along, axes = (), ("axis",)
+    omega, momentum = trajectory.omega_body.components, trajectory.momentum_space.components
     variables = {
-        "attitude": variable(
-            ("time", "quaternion"),
-            trajectory.rotor.to_quaternion(order="wxyz"),
-            "1",
-            "attitude, body to space",
+        "attitude": moving(
+            ("quaternion",), trajectory.rotor.to_quaternion(order="wxyz"), "1", "attitude, body to space"
         ),
-        "omega_body": variable(
-            axes, trajectory.omega_body.components, "rad/s", "angular velocity in body axes"
-        ),
-        "momentum_space": variable(
-            axes, trajectory.momentum_space.components, "kg m^2/s", "angular momentum in space axes"
-        ),
-        "position": variable(axes, trajectory.position.components, "m", "centre of mass in space"),
-        "velocity": variable(axes, trajectory.velocity.components, "m/s", "velocity of the centre of mass"),
-        "energy": variable(along, trajectory.energy, "J", "rotational kinetic and potential energy"),
-        "inertia": variable(
-            ("axis", "axis_"), trajectory.inertia.matrix, "kg m^2", "inertia matrix in body axes"
-        ),
+        "omega_body": moving(axes, omega, "rad/s", "angular velocity in body axes"),
+        "momentum_space": moving(axes, momentum, "kg m^2/s", "angular momentum in space axes"),
+        "position": moving(axes, trajectory.position.components, "m", "centre of mass in space"),
+        "velocity": moving(axes, trajectory.velocity.components, "m/s", "velocity of the centre of mass"),
+        "energy": moving(along, trajectory.energy, "J", "rotational kinetic and potential energy"),
+        "inertia": _inertia(trajectory, variable),
     }
     coordinates = {
         "time": ("time", trajectory.time, {"units": "s", "long_name": "time", "axis": "T"}),
@@ -63,8 +66,49 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     }
     if trajectory.events:
         variables |= _events(trajectory, variable)
+    if trajectory.shape:
+        coordinates["body"] = np.arange(count)
+        variables |= _bodies(trajectory, variable)
     dataset: xarray.Dataset = xr.Dataset(variables, coordinates, _attributes(trajectory))
     return dataset
+
+
+def _inertia(trajectory: Trajectory, variable: Callable[..., Any]) -> Any:
+    one, own = ("axis", "axis_"), trajectory.inertia
+    text = "inertia matrix in body axes"
+    if not isinstance(own, np.ndarray):
+        return variable(one, own.matrix, "kg m^2", text)
+    matrices = np.array([inertia.matrix for inertia in own.flat]).reshape(own.size, 3, 3)
+    return variable(("body", *one), matrices, "kg m^2", text)
+
+
+def _bodies(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
+    """Return what the certificate and the failures tell of each body of a batch."""
+    proof, along = trajectory.certificate, ("body",)
+
+    def column(numbers: Any, units: str, text: str) -> Any:
+        return variable(along, np.ravel(numbers), units, text)
+
+    failed = np.full(trajectory.shape, np.nan)
+    messages = np.full(trajectory.shape, "", dtype=object)
+    for failure in trajectory.failures:
+        failed[failure.index], messages[failure.index] = failure.time, failure.message
+    told = {
+        "step": column(proof.step, "s", "longest step"),
+        "steps": column(proof.steps, "1", "steps of all passes"),
+        "evaluations": column(proof.evaluations, "1", "evaluations of the torque"),
+        "error_estimate": column(proof.error_estimate, "1", "estimate of the relative error"),
+        "rotor_norm_drift": column(proof.norm_drift, "1", "largest abs(|R| - 1)"),
+        "failure_time": column(failed, "s", "until when a body that failed was followed"),
+        "failure": (along, messages.ravel(), {"long_name": "why a body failed"}),
+    }
+    if not isinstance(proof.method, str):
+        names = proof.method.astype(object).ravel()
+        told["method"] = (along, names, {"long_name": "method"})
+    for name, start in proof.conserved.items():
+        told[f"{name}_start"] = column(start, "SI", f"{name} at time 0")
+        told[f"{name}_drift"] = column(proof.drift[name], "1", f"largest relative change of the {name}")
+    return told
 
 
 def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
@@ -113,12 +157,18 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
     attributes: dict[str, Any] = {
         "conventions": CONVENTIONS,
         "source": f"polhode {_native.__version__}",
-        "method": proof.method,
-        "step_s": proof.step,
-        "steps": proof.steps,
-        "conserved": json.dumps(proof.conserved),
-        "drift": json.dumps({**proof.drift, "rotor_norm": proof.norm_drift}),
     }
-    if proof.error_estimate is not None:
-        attributes["error_estimate"] = proof.error_estimate
+    if isinstance(proof.method, str):
+        attributes["method"] = proof.method
+    if trajectory.shape:
+        attributes["batch_shape"] = list(trajectory.shape)
+    else:
+        attributes |= {
+            "step_s": proof.step,
+            "steps": proof.steps,
+            "conserved": json.dumps(proof.conserved),
+            "drift": json.dumps({**proof.drift, "rotor_norm": proof.norm_drift}),
+        }
+        if proof.error_estimate is not None:
+            attributes["error_estimate"] = proof.error_estimate
     return {**attributes, **trajectory.attributes}

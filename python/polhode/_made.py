@@ -44,8 +44,11 @@ def bivector_of(value: Any, name: str) -> tuple[float, ...]:
     return three(as_bivectors(value, name), name)
 
 
-def formula_value(value: Any, name: str) -> Any:
-    """Return a value for a formula: a single finite multivector over float64, a linear map or a number."""
+def formula_value(value: Any, name: str, batches: bool = False) -> Any:
+    """Return a value for a formula: a finite multivector over float64, a linear map or a number.
+
+    Multivectors are single ones unless `batches` are taken.
+    """
     if isinstance(value, LinearMap):
         return value
     if not isinstance(value, Multivector):
@@ -53,9 +56,10 @@ def formula_value(value: Any, name: str) -> Any:
         if one.ndim:
             raise TypeError(
                 f"{name} is an array of shape {one.shape}; wrap components with ph.vector or ph.bivector"
+                f"{', a batch of numbers with ph.scalar' if batches else ''}"
             )
         return finite(float(one), name)
-    if value.shape:
+    if value.shape and not batches:
         raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
     data = as_coefficients(value._data, name, float)
     if not np.isfinite(data).all():
@@ -70,11 +74,16 @@ def narrowed(value: Any) -> Any:
     return value if held in (0, value._mask) else value._part(held)
 
 
-def made_of_formula(make: Callable[[tuple[tuple[str, Any], ...]], T], text: str, values: dict[str, Any]) -> T:
-    """Return what `make` makes of a formula with these values for its names."""
+def made_of_formula(
+    make: Callable[[tuple[tuple[str, Any], ...]], T],
+    text: str,
+    values: dict[str, Any],
+    batches: bool = False,
+) -> T:
+    """Return what `make` makes of a formula with these values for its names, which may be `batches`."""
     if not isinstance(text, str):
         raise TypeError(f"a formula is a text, got {type(text).__name__}")
-    given = {name: formula_value(value, name) for name, value in values.items()}
+    given = {name: formula_value(value, name, batches) for name, value in values.items()}
     try:
         return make(tuple(given.items()))
     except FormulaError:

@@ -247,6 +247,8 @@ class Made:
 @final
 class Law(Made):
     def __new__(cls, name: str, *arguments: Any) -> Law: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
 
 def orbit_directions(rate: float, eccentricity: float, anomaly: float, times: Array) -> Array: ...
 def torque_at(laws: list[Law], inertia: Inertia, rotor_row: Array, omega: Array, time: float) -> Array: ...
@@ -317,6 +319,22 @@ def simulate(
     events: list[Event],
     progress: Callable[[int, float], object] | None,
 ) -> Motion: ...
+def simulate_many(
+    shape: tuple[int, ...],
+    inertias: tuple[list[Inertia], tuple[int, ...]],
+    rotors: Array,
+    omegas: Array,
+    laws: list[Law],
+    centers: Array,
+    masses: Array,
+    forces: list[Force],
+    times: Array,
+    method: str,
+    step: float | None,
+    rtol: float | None,
+    threads: int | None,
+    progress: Callable[[int, float], object] | None,
+) -> tuple[list[Array], dict[str, Any]]: ...
 
 @final
 class Draws:

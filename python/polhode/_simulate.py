@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from polhode import _native
 from polhode import force as forces
-from polhode._arrays import as_float, as_floats
+from polhode._arrays import as_count, as_float, as_floats
 from polhode._bodies import Body, Inertia
+from polhode._coefficients import as_coefficients
+from polhode._ensemble import Ensemble, bodies_of, check_state, mapped_objects, shape_of
 from polhode._multivector import Multivector
-from polhode._state import State, single
+from polhode._state import State
 from polhode._trajectory import Certificate, Trajectory
 from polhode._values import as_point, vector
 from polhode.event import Event
 from polhode.force import Force
 from polhode.torque import Torque, constant_body, function
 
+# Bytes of the results in a block, where nobody says how long it is to be.
+_BLOCK = 32 << 20
+
 METHODS: tuple[str, ...] = ("auto", "exact", *_native.methods())
 
 
 def simulate(
-    body: Body | Inertia,
+    body: Any,
     state: State,
     times: Any,
     torque: Torque | Callable[..., Any] | None = None,
@@ -35,22 +40,27 @@ def simulate(
     step: float | None = None,
     *,
     events: Event | Sequence[Event] = (),
+    threads: int | None = None,
     progress: Callable[[int, float], object] | None = None,
 ) -> Trajectory:
     """Return the motion of a body at given times: exact where it is known, else by steps that keep |R|.
+
+    Or the motions of many: bodies, states and what a torque law is given may be batches, whose shapes
+    broadcast together. Each body moves as it would alone, and one that fails does not stop the others: see
+    ``trajectory.failures``.
 
     Parameters
     ----------
     body
         A `Body` or its `Inertia` in kg m². With `ph.torque.heavy` a body is held at the origin of its
-        axes, and an inertia is that about the fixed point.
+        axes, and an inertia is that about the fixed point. Or a nested sequence or array of them, (...).
     state
-        The state at time 0.
+        The state at time 0; rotor, angular velocity, position and velocity may be batches, (...).
     times
         Output times in s, (n,), not decreasing, of either sign.
     torque
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
-        free motion.
+        free motion. Its numbers may be batches, (...).
     force
         What moves the centre of mass: a law of `polhode.force`, a sum of them, a vector or (3,) in N for a
         constant force in space, or a function as for `polhode.force.function`. It needs a `Body`.
@@ -72,48 +82,165 @@ def simulate(
         A fixed step in s; shortened a little so that steps end on the output times.
     events
         What to look for on the way, from `polhode.event`: one or several; found in ``trajectory.events``.
+        Not for a batch.
+    threads
+        How many threads share the bodies of a batch; None for ``POLHODE_NUM_THREADS``, or all cores. The
+        results have the same bits for any.
     progress
         Called now and then with the pass (from 1) and the fraction of it done. Ctrl-C stops the run.
 
     Raises
     ------
     ValueError
-        For input that is not usable, or a tolerance that was not reached.
+        For input that is not usable, or a tolerance that was not reached; in a batch, for what no body
+        could be followed with.
+    MemoryError
+        If the results of a batch do not fit into memory: before anything is computed.
     """
-    torque = _torque(torque)
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress must be callable, got {type(progress).__name__}")
-    if method not in METHODS:
-        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
-    start = single(state)
-    mass = body.mass if isinstance(body, Body) else None
-    inertia = _ruling_inertia(body, torque)
-    when = np.atleast_1d(as_floats(times, "times"))
-    if when.ndim != 1:
-        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
-    pushes, thrust = _forces(force, body)
-    if _is_held(torque) and pushes:
-        raise ValueError("with ph.torque.heavy the body is held at a fixed point: no force moves it")
-    if thrust is not None:
-        torque = thrust if torque is None else torque + thrust
+    given = _given(body, state, times, torque, force, method, rtol, atol, step)
+    _check_progress(progress)
     looked_for = _events(events)
+    if given.shape:
+        if looked_for:
+            raise ValueError(
+                f"events are looked for in the motion of one body, this is a batch of shape {given.shape}; "
+                "simulate each body whose events are wanted alone"
+            )
+        return given.run(_threads(threads), progress)
+    inertia = given.inertias[()]
     motion = _native.simulate(
         inertia._core,
-        start.rotor._data,
-        start.omega_body._data,
-        list(torque.laws) if torque else [],
-        np.concatenate([start.position.components, start.velocity.components]),
-        math.nan if mass is None else mass,
-        pushes,
-        np.ascontiguousarray(when),
-        method,
-        None if step is None else as_float(step, "step"),
-        _tolerance(rtol, atol),
+        given.rotors,
+        given.omegas,
+        list(given.laws),
+        np.concatenate([given.places, given.velocities]),
+        float(given.masses),
+        list(given.forces),
+        given.times,
+        given.method,
+        given.step,
+        given.rtol,
         [event.law for event in looked_for],
         progress,
     )
     certificate = Certificate(**motion.certificate())
     return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for])
+
+
+def simulate_blocks(
+    body: Any,
+    state: State,
+    times: Any,
+    torque: Torque | Callable[..., Any] | None = None,
+    force: Any = None,
+    method: str = "auto",
+    rtol: float | None = None,
+    atol: float | None = None,
+    step: float | None = None,
+    *,
+    block: int | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, float], object] | None = None,
+) -> Iterator[tuple[slice, Trajectory]]:
+    """Yield the motions of a batch in blocks, so that all together need not fit into memory.
+
+    Each block is a slice of the first batch axis and the `Trajectory` of these bodies: the same bits as in
+    ``simulate(…)[slice]``. What is wanted of a block is taken in the loop, such as `Moments`::
+
+        spins = ph.Moments()
+        for rows, motion in ph.simulate_blocks(body, state, times, torque):
+            spins.add(motion.omega_body.norm())
+
+    Parameters
+    ----------
+    block
+        How many rows of the first axis a block has; None for some 32 MB of results.
+    progress
+        Called now and then with 1 and the fraction of all blocks that is done. Ctrl-C stops the run.
+
+    The others, and the errors, are those of `simulate`; that an argument is wrong is told at once.
+    """
+    given = _given(body, state, times, torque, force, method, rtol, atol, step)
+    _check_progress(progress)
+    if not given.shape:
+        raise ValueError("simulate_blocks is for a batch of bodies, this is one; use simulate")
+    if block is not None and as_count(block, "block") < 1:
+        raise ValueError(f"block is {block}; it must be 1 or more")
+    rows = given.shape[0]
+    size = block or max(1, _BLOCK * rows // max(given.bytes, 1))
+    return _blocks(given, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
+
+
+def _blocks(
+    given: Ensemble,
+    blocks: list[slice],
+    threads: int | None,
+    progress: Callable[[int, float], object] | None,
+) -> Iterator[tuple[slice, Trajectory]]:
+    count = _threads(threads)
+    for rows in blocks:
+
+        def of_all(number: int, fraction: float, rows: slice = rows) -> None:
+            done = rows.start + fraction * (rows.stop - rows.start)
+            if progress is not None:
+                progress(number, done / given.shape[0])
+
+        yield rows, given.block(rows).run(count, of_all if progress else None)
+
+
+def _given(
+    body: Any,
+    state: State,
+    times: Any,
+    torque: Any,
+    force: Any,
+    method: str,
+    rtol: float | None,
+    atol: float | None,
+    step: float | None,
+) -> Ensemble:
+    """Return what is to be simulated, checked."""
+    torque = _torque(torque)
+    if method not in METHODS:
+        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
+    check_state(state)
+    bodies = bodies_of(body)
+    when = np.atleast_1d(as_floats(times, "times"))
+    if when.ndim != 1:
+        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
+    pushes, thrust = _forces(force, bodies)
+    held = torque is not None and torque.holds
+    if held and pushes:
+        raise ValueError("with ph.torque.heavy the body is held at a fixed point: no force moves it")
+    if thrust is not None:
+        torque = thrust if torque is None else torque + thrust
+    masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
+    return Ensemble(
+        shape_of(bodies, state, torque.shape if torque else ()),
+        mapped_objects(lambda one: _ruling_inertia(one, held), bodies),
+        as_coefficients(state.rotor._data, "the rotor", float),
+        state.omega_body.components,
+        state.position.components,
+        state.velocity.components,
+        np.array(masses).reshape(bodies.shape),
+        torque.laws if torque else (),
+        tuple(pushes),
+        np.ascontiguousarray(when),
+        method,
+        None if step is None else as_float(step, "step"),
+        _tolerance(rtol, atol),
+    )
+
+
+def _check_progress(progress: Any) -> None:
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be callable, got {type(progress).__name__}")
+
+
+def _threads(threads: Any) -> int | None:
+    if threads is not None and as_count(threads, "threads") < 1:
+        raise ValueError(f"threads is {threads}; it must be 1 or more")
+    return None if threads is None else min(as_count(threads, "threads"), 1024)
 
 
 def _torque(torque: Any) -> Torque | None:
@@ -134,29 +261,27 @@ def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     return max(given.values(), default=None)
 
 
-def _ruling_inertia(body: Body | Inertia, torque: Torque | None) -> Inertia:
+def _ruling_inertia(body: Body | Inertia, held: bool) -> Inertia:
+    """About the fixed point, the origin of the body's axes, where the body is held."""
     if isinstance(body, Inertia):
         return body
-    if not isinstance(body, Body):
-        raise TypeError(f"body must be a Body or an Inertia, got {type(body).__name__}")
-    return body.inertia_about(0) if _is_held(torque) else body.inertia
+    return body.inertia_about(0) if held else body.inertia
 
 
-def _is_held(torque: Torque | None) -> bool:
-    """Whether the body is held at a fixed point, the origin of its axes."""
-    return torque is not None and torque.holds
-
-
-def _forces(force: Any, body: Body | Inertia) -> tuple[list[_native.Force], Torque | None]:
+def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None]:
     """Return the forces, and the torque of thrusts that act beside the centre of mass."""
     if force is None:
         return [], None
-    if not isinstance(body, Body):
+    if Inertia in {*map(type, bodies.flat)}:
         raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
     law = _force(force)
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
-    torques = [constant_body((vector(at) - body.center_of_mass) ^ vector(F)) for F, at in thrusts]
-    return list(law.laws), sum(torques[1:], torques[0]) if torques else None
+    if not thrusts:
+        return list(law.laws), None
+    rows = [body._core.center_of_mass() for body in bodies.flat]
+    centers = vector(np.array(rows).reshape(*bodies.shape, 3))
+    torques = [constant_body((vector(at) - centers) ^ vector(F)) for F, at in thrusts]
+    return list(law.laws), sum(torques[1:], torques[0])
 
 
 def _force(force: Any) -> Force:

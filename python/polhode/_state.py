@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from polhode._arrays import Array
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_bivectors, as_vectors, bivector, vector
@@ -17,7 +16,7 @@ _ORIGIN = vector([0.0, 0.0, 0.0])
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A body's state: attitude, rotation, place.
+    """A body's state: attitude, rotation, place; or those of a batch of bodies, whose shapes broadcast.
 
     Attributes
     ----------
@@ -58,24 +57,3 @@ class State:
 def angular_velocity(value: Any) -> Multivector:
     """Return bivectors from bivectors, or from an array (..., 3)."""
     return bivector(as_bivectors(value, "the angular velocity"))
-
-
-def single(state: State) -> State:
-    """Return the state, which must be a single and finite one."""
-    if not isinstance(state, State):
-        raise TypeError(f"state must be a State, got {type(state).__name__}")
-    shapes = (state.rotor.shape, state.omega_body.shape, state.position.shape, state.velocity.shape)
-    if any(shapes):
-        raise ValueError(
-            f"the state must be a single one, got batch shapes {shapes}; FreeMotion moves batches, "
-            "simulate one body at a time"
-        )
-    for name in ("position", "velocity"):
-        _check_finite(getattr(state, name).components, f"the {name}")
-    _check_finite(state.omega_body.components, "the angular velocity")
-    return state
-
-
-def _check_finite(components: Array, what: str) -> None:
-    if not np.isfinite(components).all():
-        raise ValueError(f"{what} is {components.tolist()}; it must be finite")

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, as_floats, frozen
+from polhode._arrays import Array, Shape, as_floats, frozen
 from polhode._bodies import Inertia
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A motion at n times.
+    """A motion at n times, or those of a batch of bodies at the same times.
+
+    Of a batch all values have the shape ``(*shape, n)``, and ``trajectory[i]`` is one motion, or fewer.
 
     Attributes
     ----------
@@ -42,11 +44,14 @@ class Trajectory:
     position, velocity
         Of the centre of mass (of the fixed point, where there is one), vectors in m and m/s, batch (n,).
     inertia
-        The inertia that ruled the motion.
+        The inertia that ruled the motion; where bodies have their own an array of them, of the batch's shape.
     certificate
         How the run was made and what it conserved.
     events
         For each event that was asked for, when and where it happened.
+    failures
+        The bodies of a batch that could not be followed to the end. Their values are NaN from there on
+        (but for `position` and `velocity` without forces, which are known all the same).
     attributes
         Text and numbers to be written with the data: title, scene, version.
     """
@@ -58,11 +63,26 @@ class Trajectory:
     energy: Array
     position: Multivector
     velocity: Multivector
-    inertia: Inertia
+    inertia: Any  # an Inertia, or an array of them
     certificate: Certificate
     events: tuple[Crossings, ...] = ()
+    failures: tuple[Failure, ...] = ()
     attributes: dict[str, Any] = field(default_factory=dict)
     _motion: _native.Motion | None = field(default=None, repr=False)
+    # Of a batch that no force moves: places and velocities are found when they are asked for.
+    _drift: Drift | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self._drift is not None:
+            del self.__dict__["position"], self.__dict__["velocity"]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            drift = self.__dict__.get("_drift")
+            if drift is None or name not in ("position", "velocity"):
+                raise AttributeError(f"a Trajectory has no attribute {name!r}")
+            return getattr(drift, name)(self.time)
 
     @staticmethod
     def _of(
@@ -90,14 +110,83 @@ class Trajectory:
             _motion=motion,
         )
 
+    @property
+    def shape(self) -> Shape:
+        """Shape of the batch of bodies; ``()`` for one."""
+        return self.rotor.shape[:-1]
+
+    @property
+    def ok(self) -> Any:
+        """Whether a body was followed to the end: a bool, or an array of the batch's shape."""
+        ok = np.ones(self.shape, bool)
+        for failure in self.failures:
+            ok[failure.index] = False
+        return ok if self.shape else bool(ok)
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError(
+                "the trajectory of one body has no length; its times are n = len(trajectory.time)"
+            )
+        return self.shape[0]
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[Trajectory]:
+        return (self[i] for i in range(len(self)))
+
+    def __getitem__(self, index: Any) -> Trajectory:
+        """Return the motions of some bodies of a batch, by an index of NumPy over the batch's axes."""
+        parts = index if isinstance(index, tuple) else (index,)
+        try:
+            picked = np.broadcast_to(np.False_, self.shape)[parts].shape
+        except IndexError as error:
+            raise IndexError(f"{error} (batch shape {self.shape})") from None
+        # The index is to stay off the axis of time.
+        rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
+        return replace(
+            self,
+            rotor=Rotor._from_rows(self.rotor[rows]._data),
+            omega_body=self.omega_body[rows],
+            momentum_space=self.momentum_space[rows],
+            energy=self.energy[rows],
+            position=self.position[rows] if self._drift is None else None,
+            velocity=self.velocity[rows] if self._drift is None else None,
+            _drift=self._drift[parts] if self._drift is not None else None,
+            inertia=self.inertia if isinstance(self.inertia, Inertia) else self.inertia[parts],
+            certificate=self.certificate._of(parts),
+            failures=self._failures_at(parts, picked),
+            attributes=dict(self.attributes),
+        )
+
+    def _failures_at(self, index: tuple[Any, ...], shape: Shape) -> tuple[Failure, ...]:
+        """Return the failures among picked bodies, by their places among them."""
+        if not self.failures:
+            return ()
+        which = np.full(self.shape, -1)
+        for k, failure in enumerate(self.failures):
+            which[failure.index] = k
+        picked = np.asarray(which[index])
+        places = zip(np.argwhere(picked >= 0).tolist(), picked[picked >= 0].tolist(), strict=True)
+        return tuple(replace(self.failures[k], index=tuple(place)) for place, k in places)
+
+    def _require_one(self, what: str) -> None:
+        if self.shape:
+            raise ValueError(
+                f"{what} is for one body, this is a batch of shape {self.shape}; simulate that body alone"
+            )
+
     def at(self, t: Any) -> State:
         """Return the state at any time t in s between the first and the last; an array gives a batch.
 
         The first and the last are those of the output times, of the start at time 0 and of the events.
 
         In closed form where the motion has one, else by the same method and the same steps from the nearest
-        output time before, so that it is as accurate as the states at the output times. A ValueError outside.
+        output time before, so that it is as accurate as the states at the output times. A ValueError outside,
+        and for a batch of bodies.
         """
+        self._require_one("at")
         if self._motion is None:
             raise ValueError(
                 "this trajectory was read or unpickled, not made by simulate: it has no states but its own"
@@ -113,7 +202,11 @@ class Trajectory:
         )
 
     def drifts(self) -> dict[str, Array]:
-        """Return each conserved quantity's change since time 0, relative as in the certificate, (n,) each."""
+        """Return each conserved quantity's change since time 0, relative as in the certificate, (n,) each.
+
+        Of one body; a ValueError for a batch.
+        """
+        self._require_one("drifts")
         return dict(self._motion.drifts()) if self._motion is not None else {}
 
     def __getstate__(self) -> dict[str, Any]:
@@ -121,7 +214,11 @@ class Trajectory:
         return self.__dict__ | {"_motion": None}
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return an `xarray.Dataset` with labelled dimensions, units and the conventions."""
+        """Return an `xarray.Dataset` with labelled dimensions, units and the conventions.
+
+        Of a batch the dimension `body` counts the bodies in C order; the attribute `batch_shape` tells the
+        shape.
+        """
         from polhode._io import to_xarray
 
         return to_xarray(self)
@@ -134,7 +231,11 @@ class Trajectory:
         write_atomically({Path(path): netcdf(self)})
 
     def plot(self) -> Figure:
-        """Draw angular velocity, attitude and conserved quantities over time; a matplotlib figure."""
+        """Draw angular velocity, attitude and conserved quantities over time; a matplotlib figure.
+
+        Of one body; a ValueError for a batch.
+        """
+        self._require_one("plot")
         from polhode._plot import motion_figure
 
         return motion_figure(self)
@@ -142,12 +243,66 @@ class Trajectory:
     def __repr__(self) -> str:
         n = len(self.time)
         span = f", t = {self.time[0]:.6g} … {self.time[-1]:.6g} s" if n else ""
-        return f"Trajectory({n} times{span}, {self.certificate.method})"
+        method = self.certificate.method
+        named = method if isinstance(method, str) else f"{len(np.unique(method[self.ok]))} methods"
+        bodies = f"bodies {self.shape}, " if self.shape else ""
+        failed = f"; {len(self.failures)} failed, the first {self.failures[0]}" if self.failures else ""
+        return f"Trajectory({bodies}{n} times{span}, {named}{failed})"
+
+
+@dataclass(frozen=True, eq=False)
+class Drift:
+    """The uniform motion of centres of mass: places and velocities at time 0, (*shape, 3)."""
+
+    places: Array
+    velocities: Array
+
+    def __getitem__(self, index: tuple[Any, ...]) -> Drift:
+        rest: tuple[Any, ...] = (slice(None),) if any(part is Ellipsis for part in index) else ()
+        return Drift(self.places[(*index, *rest)], self.velocities[(*index, *rest)])
+
+    def position(self, times: Array) -> Multivector:
+        """Places at times (n,), vectors of batch (*shape, n)."""
+        return vector(self.places[..., np.newaxis, :] + self._rates(times) * times[:, np.newaxis])
+
+    def velocity(self, times: Array) -> Multivector:
+        """The velocities, at each time the same."""
+        return vector(self._rates(times))
+
+    def _rates(self, times: Array) -> Array:
+        rates = self.velocities[..., np.newaxis, :]
+        return np.broadcast_to(rates, (*rates.shape[:-2], len(times), 3))
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A body of a batch that could not be followed to the end.
+
+    Attributes
+    ----------
+    index
+        Its place in the batch.
+    time
+        Up to when it was followed, in s.
+    message
+        Why no further.
+    """
+
+    index: tuple[int, ...]
+    time: float
+    message: str
+
+    def __str__(self) -> str:
+        return f"at index {self.index} after {self.time:.6g} s: {self.message}"
 
 
 @dataclass(frozen=True)
 class Certificate:
     """How a run was made, and how far it went astray in what the law conserves.
+
+    Of a batch of bodies all numbers are arrays of its shape; the method is a name where all bodies that were
+    followed to the end have the same, else an array of names. For bodies that failed, the error estimate and
+    the drifts are NaN.
 
     Attributes
     ----------
@@ -156,28 +311,55 @@ class Certificate:
         evaluations of the torque of all passes.
     error_estimate
         Cautious estimate of the relative error in rotor and angular velocity, from the last two passes; None
-        for a step that was given.
+        for a step that was given; NaN in a batch.
     conserved
-        Each conserved quantity's initial value in SI.
+        Each conserved quantity's initial value in SI; NaN for a body of a batch that does not conserve it.
     drift
         Its largest change over the run, relative to the terms that make it up.
     norm_drift
         Largest ``abs(|R| − 1)``.
     """
 
-    method: str
-    step: float
-    steps: int
-    evaluations: int
-    error_estimate: float | None
-    conserved: dict[str, float]
-    drift: dict[str, float]
-    norm_drift: float
+    method: Any
+    step: Any
+    steps: Any
+    evaluations: Any
+    error_estimate: Any
+    conserved: dict[str, Any]
+    drift: dict[str, Any]
+    norm_drift: Any
 
     @property
     def worst(self) -> float:
-        """The largest drift of all."""
-        return max([self.norm_drift, *self.drift.values()])
+        """The largest drift of all, over the bodies that were followed to the end; NaN if none was."""
+        if not np.ndim(self.norm_drift):
+            return float(max([self.norm_drift, *self.drift.values()]))
+        finished = ~np.isnan(self.norm_drift)
+        if not finished.any():
+            return np.nan
+        told = ((self.drift[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
+        columns = [(self.norm_drift, finished), *told]
+        return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
+
+    def _of(self, index: tuple[Any, ...]) -> Certificate:
+        """Return that of some bodies of a batch."""
+
+        def picked(numbers: Any) -> Any:
+            found = np.asarray(numbers[index])
+            return found if found.ndim else found.item()
+
+        kept = [name for name, start in self.conserved.items() if not np.all(np.isnan(start[index]))]
+        estimate = picked(self.error_estimate)
+        return Certificate(
+            self.method if isinstance(self.method, str) else picked(self.method),
+            picked(self.step),
+            picked(self.steps),
+            picked(self.evaluations),
+            None if np.ndim(estimate) == 0 and np.isnan(estimate) else estimate,
+            {name: picked(self.conserved[name]) for name in kept},
+            {name: picked(self.drift[name]) for name in kept},
+            picked(self.norm_drift),
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,10 @@
 Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. Each is a bivector at every point of the motion,
 whose components ``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to
 space, ``Ω_B`` the angular velocity in body axes.
+
+What a law is given may be a batch, of any shape: for each of many bodies, which `simulate` follows at once,
+its own. A batch of numbers is an array of its shape, one of vectors, bivectors or rotors a batch of these.
+Tables and Python functions are shared by all bodies.
 """
 
 from __future__ import annotations
@@ -14,19 +18,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import as_float, as_floats
-from polhode._bodies import Body, Inertia
-from polhode._coefficients import as_coefficients
-from polhode._made import (
-    bivector_of,
-    finite,
-    function_of,
-    made_of_formula,
-    number,
-    shown,
-    three,
-    vector_of,
+from polhode._arrays import Shape, as_float, as_floats
+from polhode._batch import (
+    bivectors,
+    check_not_negative,
+    common,
+    gains,
+    named_together,
+    numbers,
+    rotors,
+    together,
+    vectors,
 )
+from polhode._bodies import Body, Inertia
+from polhode._made import finite, function_of, made_of_formula, shown
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_bivectors, bivector
@@ -79,6 +84,11 @@ class Torque:
         return " + ".join(map(_shown, self.laws)) or "Torque(())"
 
     @property
+    def shape(self) -> Shape:
+        """Shape of the batch of bodies for which it was made; ``()`` where all share it."""
+        return common({law.name: law.shape for law in self.laws}, "the laws")
+
+    @property
     def holds(self) -> bool:
         """Whether a law holds the body at the origin of its axes, as `heavy` does."""
         return any(law.name == "heavy" for law in self.laws)
@@ -90,6 +100,8 @@ class Torque:
         wheel does as it is turned. The inertia is that about the centre of mass, or the fixed point if a
         law holds the body; a `Body` is taken so.
         """
+        if self.shape:
+            raise ValueError(f"the torque must be that of a single body, got batch shape {self.shape}")
         if isinstance(inertia, Body):
             inertia = inertia.inertia_about(0) if self.holds else inertia.inertia
         if not isinstance(inertia, Inertia):
@@ -115,12 +127,12 @@ def heavy(c: Any) -> Torque:
 
     ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body
     axes, a vector or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is
-    taken as such, a `Body` is taken about the origin of its axes.
+    taken as such, a `Body` is taken about the origin of its axes. A batch is one of vectors, or (..., 3).
     """
-    return _law("heavy", vector_of(c, "c"))
+    return _law("heavy", vectors(c, "c"))
 
 
-def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 0.0) -> Torque:
+def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
     """Return the gradient of a planet's field on a Kepler orbit in the plane e1e2 of space.
 
     With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
@@ -138,7 +150,7 @@ def gravity_gradient(n: float, eccentricity: float = 0.0, mean_anomaly: float = 
         M0 in rad, that at time 0; the periapsis lies on e1.
     """
     arguments = {"n": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
-    return _law("gravity_gradient", *(number(value, name) for name, value in arguments.items()))
+    return _law("gravity_gradient", *(numbers(value, name) for name, value in arguments.items()))
 
 
 def magnetic(dipole: Any, field: Any) -> Torque:
@@ -147,7 +159,7 @@ def magnetic(dipole: Any, field: Any) -> Torque:
     ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
     in body axes in A m², the field B one in space in T.
     """
-    return _law("magnetic", vector_of(dipole, "the dipole"), vector_of(field, "the field"))
+    return _law("magnetic", vectors(dipole, "the dipole"), vectors(field, "the field"))
 
 
 def larmor(b: Any) -> Torque:
@@ -155,28 +167,32 @@ def larmor(b: Any) -> Torque:
 
     L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
     """
-    return _law("larmor", vector_of(b, "b"))
+    return _law("larmor", vectors(b, "b"))
 
 
 # --- springs, dampers, control
 
 
-def damping(g: float) -> Torque:
-    """Return the torque ``−g I(Ω_B)``, g in 1/s: without another, spin dies away as ``exp(−g t)``."""
-    return _law("damping", number(g, "g"))
+def damping(g: Any) -> Torque:
+    """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): without another, spin dies away as ``exp(−g t)``."""
+    return _law("damping", numbers(g, "g"))
 
 
 def viscous_damping(d: Any) -> Torque:
-    """Return the torque ``−d Ω_B``, d in N m s: a number, or three along the body axes; none negative."""
-    return _law("viscous_damping", _gains(d, "d"))
+    """Return the torque ``−d Ω_B``, d in N m s: a number, or three along the body axes; none negative.
+
+    A batch is (..., 3), or (..., 1) of one number for each body.
+    """
+    return _law("viscous_damping", gains(d, "d"))
 
 
-def quadratic_damping(k: float) -> Torque:
+def quadratic_damping(k: Any) -> Torque:
     """Return the torque ``−k |Ω_B| Ω_B``, as of a fast turn in air; k in N m s², not negative."""
-    return _law("quadratic_damping", _not_negative(number(k, "k"), "k"))
+    check_not_negative(as_floats(k, "k"), "k")
+    return _law("quadratic_damping", numbers(k, "k"))
 
 
-def torsion_spring(k: float, rest: Rotor | None = None) -> Torque:
+def torsion_spring(k: Any, rest: Rotor | None = None) -> Torque:
     """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the turn from an attitude at rest.
 
     ``R = rest exp(−½Θ)``, ``|Θ| <= π``: of R and −R, which are one attitude, the one with the shorter turn
@@ -188,9 +204,9 @@ def torsion_spring(k: float, rest: Rotor | None = None) -> Torque:
     k
         In N m per rad.
     rest
-        A single rotor from body axes to space; None for the identity.
+        A rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("torsion_spring", number(k, "k"), _rotor(rest, "rest"))
+    return _law("torsion_spring", numbers(k, "k"), rotors(rest, "rest"))
 
 
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
@@ -203,9 +219,9 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
     kp, kd
         In N m per rad and in N m s; numbers, or three along the body axes, none negative.
     target
-        A single rotor from body axes to space; None for the identity.
+        A rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("pd_control", _gains(kp, "kp"), _gains(kd, "kd"), _rotor(target, "target"))
+    return _law("pd_control", gains(kp, "kp"), gains(kd, "kd"), rotors(target, "target"))
 
 
 def gyrostat(h: Any) -> Torque:
@@ -215,7 +231,7 @@ def gyrostat(h: Any) -> Torque:
     body is that with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the
     wheel resists being turned.
     """
-    return _law("gyrostat", bivector_of(h, "h"))
+    return _law("gyrostat", bivectors(h, "h"))
 
 
 # --- given torques
@@ -223,12 +239,12 @@ def gyrostat(h: Any) -> Torque:
 
 def constant_body(N: Any) -> Torque:
     """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
-    return _law("constant_body", bivector_of(N, "N"))
+    return _law("constant_body", bivectors(N, "N"))
 
 
 def constant_space(N: Any) -> Torque:
     """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
-    return _law("constant_space", bivector_of(N, "N"))
+    return _law("constant_space", bivectors(N, "N"))
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
@@ -280,7 +296,8 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     frame
         The axes of its value, ``"body"`` or ``"space"``.
     values
-        What the other names stand for: single multivectors, rotors, linear maps, numbers.
+        What the other names stand for: multivectors and rotors, single ones or batches, numbers, single
+        linear maps. A batch of numbers is one of scalars, `ph.scalar`.
 
     Raises
     ------
@@ -289,7 +306,11 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
         point at which the formula has no value, `simulate` tells which part of it.
     """
     axes = _one_of(_FRAMES, frame, "frame")
-    return made_of_formula(lambda given: _law("formula", text, axes, given), text, values)
+
+    def law(given: tuple[tuple[str, Any], ...]) -> Torque:
+        return _law("formula", text, axes, named_together(given))
+
+    return made_of_formula(law, text, values, batches=True)
 
 
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
@@ -307,35 +328,7 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
 
 
 def _law(name: str, *arguments: Any) -> Torque:
-    return Torque((_native.Law(name, *arguments),))
-
-
-def _not_negative(value: float, name: str) -> float:
-    if value < 0:
-        raise ValueError(f"{name} is {value}; a damper takes energy away, so it must not be negative")
-    return value
-
-
-def _gains(value: Any, name: str) -> tuple[float, ...]:
-    """Return three numbers from one or three, none negative."""
-    array = as_floats(value, name)
-    if array.shape not in ((), (3,)):
-        raise ValueError(f"{name} must be a number or three along the body axes, got shape {array.shape}")
-    along = three(np.broadcast_to(array, (3,)), name)
-    if min(along) < 0:
-        raise ValueError(f"{name} is {array.tolist()}; it must not be negative")
-    return along
-
-
-def _rotor(value: Rotor | None, name: str) -> tuple[float, ...]:
-    if value is None:
-        return (1.0, 0.0, 0.0, 0.0)
-    if not isinstance(value, Rotor):
-        raise TypeError(f"{name} must be a Rotor, got {type(value).__name__}; see Rotor.from_components")
-    components = as_coefficients(value._data, name, float)
-    if components.shape != (4,):
-        raise ValueError(f"{name} must be a single rotor, got batch shape {value.shape}")
-    return tuple(components.tolist())
+    return Torque((_native.Law(name, *together(arguments, name)),))
 
 
 def _one_of(words: tuple[str, ...], value: str, name: str) -> str:

@@ -49,9 +49,11 @@ const SHARED: usize = 1 << 16;
 
 /// How many threads may share an array of so many numbers: `POLHODE_NUM_THREADS`, or as many as run at a time.
 pub(crate) fn threads(numbers: usize) -> PyResult<Threads> {
-    if numbers < SHARED {
-        return Ok(Threads::ONE);
-    }
+    if numbers < SHARED { Ok(Threads::ONE) } else { all_threads() }
+}
+
+/// `POLHODE_NUM_THREADS` threads, or as many as run at a time.
+pub(crate) fn all_threads() -> PyResult<Threads> {
     match std::env::var("POLHODE_NUM_THREADS") {
         Err(std::env::VarError::NotPresent) => Ok(Threads::available()),
         Err(error) => Err(bad(error)),

@@ -8,7 +8,9 @@ mod batches;
 mod bodies;
 mod calls;
 mod closed_forms;
+mod columns;
 mod draws;
+mod ensemble;
 mod formula;
 mod free;
 mod laws;
@@ -38,6 +40,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::bodies::{Body, Inertia};
+    #[pymodule_export]
+    use crate::ensemble::simulate_many;
     #[pymodule_export]
     use crate::free::FreeMotion;
     #[pymodule_export]

@@ -9,7 +9,7 @@ use polhode_ga::formula::{Error, Given, Input, InputKind, Names};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
 use polhode_rigid::torque::TorqueError;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -82,6 +82,18 @@ pub(crate) fn failed<'a, 'py: 'a>(
     let taken =
         |one: &Bound<'_, Made>| one.get().raised.lock().unwrap_or_else(PoisonError::into_inner).take();
     made.into_iter().find_map(taken).unwrap_or_else(|| bad(told))
+}
+
+/// What a function raised that is no mere error, such as a KeyboardInterrupt. Errors that were told otherwise are
+/// forgotten.
+pub(crate) fn interrupted<'a, 'py: 'a>(made: impl IntoIterator<Item = &'a Bound<'py, Made>>) -> PyResult<()> {
+    for one in made {
+        let raised = one.get().raised.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(error) = raised.filter(|error| !error.is_instance_of::<PyException>(one.py())) {
+            return Err(error);
+        }
+    }
+    Ok(())
 }
 
 pub(crate) fn sole<'py, T: FromPyObjectOwned<'py>>(arguments: &Bound<'py, PyTuple>) -> PyResult<T> {

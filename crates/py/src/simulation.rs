@@ -121,7 +121,7 @@ impl Motion {
 }
 
 /// Runs without the GIL, with progress and Ctrl-C.
-fn run<T: Send>(
+pub(crate) fn run<T: Send>(
     py: Python<'_>,
     made: &[Py<Made>],
     progress: Option<&Py<PyAny>>,
@@ -139,6 +139,16 @@ fn run<T: Send>(
             Err(failed(made.iter().map(|one| one.bind(py)), error))
         }
         (Err(error), _) => Err(bad(error)),
+    }
+}
+
+/// The method of a name, if any is asked for, and whether it is to be exact.
+pub(crate) fn method_of(name: &str) -> PyResult<(Option<Method>, bool)> {
+    match name {
+        "auto" | "exact" => Ok((None, name == "exact")),
+        _ => Method::from_name(name)
+            .map(|method| (Some(method), false))
+            .ok_or_else(|| bad(format!("unknown method {name}"))),
     }
 }
 
@@ -162,18 +172,14 @@ pub(crate) fn simulate<'py>(
     events: Vec<Bound<'py, Event>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Motion> {
-    let exact = method == "exact";
-    let method = match method {
-        "auto" | "exact" => None,
-        name => Some(Method::from_name(name).ok_or_else(|| bad(format!("unknown method {name}")))?),
-    };
+    let (method, exact) = method_of(method)?;
     let made: Vec<Py<Made>> = laws
         .iter()
         .map(|law| law.as_super().clone().unbind())
         .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
         .chain(events.iter().map(|event| event.as_super().clone().unbind()))
         .collect();
-    let torques: Vec<_> = laws.iter().map(|law| law.get().torque.clone()).collect();
+    let torques: Vec<_> = laws.iter().map(|law| law.get().single()).collect::<PyResult<_>>()?;
     let forces: Vec<_> = forces.iter().map(|force| force.get().force.clone()).collect();
     let events = events.iter().map(|event| event.get().event.clone()).collect();
     let [x, y, z, u, v, w] = one(&center)?;

@@ -2,9 +2,11 @@
 
 use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
+use crate::columns::{Arguments, Batch};
 use crate::made::{
     Asked, Known, Made, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
 };
+use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::phase::{Gyrostat, Phase};
 use polhode_rigid::torque::{
@@ -14,10 +16,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
 
-/// A torque law.
+/// A torque law, or one for each body of a batch.
 #[pyclass(frozen, extends = Made, module = "polhode._native")]
 pub(crate) struct Law {
-    pub(crate) torque: Torque,
+    pub(crate) torques: Vec<Torque>,
+    /// Shape of the batch.
+    pub(crate) shape: Vec<usize>,
 }
 
 impl Law {
@@ -29,7 +33,18 @@ impl Law {
         arguments: Bound<'_, PyTuple>,
     ) -> PyResult<Py<Law>> {
         let made = Made::new(name.to_owned(), arguments, Raised::default());
-        Py::new(py, PyClassInitializer::from(made).add_subclass(Law { torque }))
+        let law = Law { torques: vec![torque], shape: Vec::new() };
+        Py::new(py, PyClassInitializer::from(made).add_subclass(law))
+    }
+
+    /// The law of a single body.
+    pub(crate) fn single(&self) -> PyResult<Torque> {
+        match (&self.torques[..], &self.shape[..]) {
+            ([torque], []) => Ok(torque.clone()),
+            _ => {
+                Err(bad(format!("expected the law of a single body, got a batch of shape {:?}", self.shape)))
+            }
+        }
     }
 }
 
@@ -40,8 +55,15 @@ impl Law {
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Law>> {
         let raised = Raised::default();
-        let torque = made(&name, &arguments, &raised)?;
-        Ok(PyClassInitializer::from(Made::new(name, arguments, raised)).add_subclass(Law { torque }))
+        let given = Arguments::of(&name, &arguments)?;
+        let law = Law { torques: made(&name, &given, &raised)?, shape: given.shape };
+        Ok(PyClassInitializer::from(Made::new(name, arguments, raised)).add_subclass(law))
+    }
+
+    /// Shape of the batch of bodies; () for one.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.shape)
     }
 }
 
@@ -56,7 +78,8 @@ pub(crate) fn torque_at<'py>(
     time: f64,
 ) -> PyResult<Array<'py>> {
     let frame = inertia.0.principal_frame();
-    let torques: Vec<Torque> = laws.iter().map(|law| law.get().torque.clone().in_axes(frame)).collect();
+    let torques: Vec<Torque> =
+        laws.iter().map(|law| Ok(law.get().single()?.in_axes(frame))).collect::<PyResult<_>>()?;
     let body = Gyrostat { moments: inertia.0.principal_moments(), wheel: wheel(&torques) };
     if body.moments.contains(&0.0) {
         let [a, b, c] = body.moments;
@@ -84,56 +107,87 @@ pub(crate) fn orbit_directions<'py>(
     table(py, numbers(&times)?.iter().map(|&time| orbit.place(time).0.0))
 }
 
-/// The law of a name and arguments.
-fn made(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<Torque> {
-    Ok(match name {
-        "heavy" => Torque::Heavy(Vector(sole(arguments)?)),
+/// The laws of a name and arguments: one, or one for each body.
+fn made(name: &str, given: &Arguments<'_, '_>, raised: &Raised) -> PyResult<Vec<Torque>> {
+    let arguments = given.all;
+    match name {
+        "heavy" => given.each_vector(Torque::Heavy),
         "gravity_gradient" => {
-            let (rate, eccentricity, anomaly) = arguments.extract()?;
-            Torque::GravityGradient(Orbit::new(rate, eccentricity, anomaly).map_err(bad)?)
+            let (rate, eccentricity, anomaly) = (given.column(0)?, given.column(1)?, given.column(2)?);
+            given.each(|k| {
+                let ([n], [e], [m]) = (rate.of(k), eccentricity.of(k), anomaly.of(k));
+                Orbit::new(n, e, m).map(Torque::GravityGradient)
+            })
         }
-        "constant_body" => Torque::ConstantBody(Bivector(sole(arguments)?)),
-        "constant_space" => Torque::ConstantSpace(Bivector(sole(arguments)?)),
-        "damping" => Torque::Damping(sole(arguments)?),
-        "quadratic_damping" => Torque::QuadraticDamping(sole(arguments)?),
-        "viscous_damping" => Torque::ViscousDamping(Gains::new(sole(arguments)?)),
+        "constant_body" => given.each_bivector(Torque::ConstantBody),
+        "constant_space" => given.each_bivector(Torque::ConstantSpace),
+        "damping" => given.each_number(Torque::Damping),
+        "quadratic_damping" => given.each_number(Torque::QuadraticDamping),
+        "viscous_damping" => {
+            let along = given.column(0)?;
+            given.each_sound(|k| Torque::ViscousDamping(Gains::new(along.of(k))))
+        }
         "magnetic" => {
-            let (dipole, field) = arguments.extract()?;
-            Torque::Magnetic { dipole: Vector(dipole), field: Vector(field) }
+            let (dipole, field) = (given.column(0)?, given.column(1)?);
+            given
+                .each_sound(|k| Torque::Magnetic { dipole: Vector(dipole.of(k)), field: Vector(field.of(k)) })
         }
         "torsion_spring" => {
-            let (stiffness, rest) = arguments.extract()?;
-            Torque::TorsionSpring { stiffness, rest: Rotor::from_components(rest).map_err(bad)? }
+            let (stiffness, rest) = (given.column(0)?, given.column(1)?);
+            given.each(|k| {
+                let [stiffness] = stiffness.of(k);
+                Rotor::from_components(rest.of(k)).map(|rest| Torque::TorsionSpring { stiffness, rest })
+            })
         }
-        "gyrostat" => Torque::Wheel(Bivector(sole(arguments)?)),
+        "gyrostat" => given.each_bivector(Torque::Wheel),
         "pd_control" => {
-            let (stiffness, damping, target) = arguments.extract()?;
-            let target = Rotor::from_components(target).map_err(bad)?;
-            Torque::Control { stiffness: Gains::new(stiffness), damping: Gains::new(damping), target }
+            let (stiffness, damping, target) = (given.column(0)?, given.column(1)?, given.column(2)?);
+            given.each(|k| {
+                let (stiffness, damping) = (Gains::new(stiffness.of(k)), Gains::new(damping.of(k)));
+                let target = Rotor::from_components(target.of(k));
+                target.map(|target| Torque::Control { stiffness, damping, target })
+            })
         }
-        "larmor" => Torque::Larmor(Vector(sole(arguments)?)),
+        "larmor" => given.each_vector(Torque::Larmor),
         "tabulated" => {
             let (times, rows, frame, kind): (_, Vec<[f64; 3]>, String, String) = arguments.extract()?;
             let kind = if kind == "cubic" { Kind::Cubic } else { Kind::Linear };
             let rows = rows.into_iter().map(Bivector).collect();
-            Torque::Tabulated(Arc::new(Table::new(times, rows, axes(&frame), kind).map_err(bad)?))
+            Ok(vec![Torque::Tabulated(Arc::new(Table::new(times, rows, axes(&frame), kind).map_err(bad)?))])
         }
-        "formula" => {
-            let (text, frame, values): (String, String, Values<'_>) = arguments.extract()?;
-            let made = |names, value: &mut Known<'_>| FormulaTorque::new(&text, axes(&frame), names, value);
-            Torque::Formula(formula(arguments.py(), &text, &values, made)?)
-        }
+        "formula" => formulas(given),
         "function" => {
             let asked = Asked { call: sole(arguments)?, raised: raised.clone(), what: "torque" };
-            Torque::Function(FunctionTorque::new(move |time, rotor, omega| {
+            Ok(vec![Torque::Function(FunctionTorque::new(move |time, rotor, omega| {
                 asked.of(
                     time,
                     |py| (time, rotor_of(py, rotor)?, bivector_of(py, omega)?).into_pyobject(py),
                     bivector,
                 )
-            }))
+            }))])
         }
-        _ => return Err(bad(format!("no torque law is called {name}"))),
+        _ => Err(bad(format!("no torque law is called {name}"))),
+    }
+}
+
+/// A formula, compiled once, with the values of each body.
+fn formulas(given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
+    let (text, frame, values): (String, String, Values<'_>) = given.all.extract()?;
+    let (mut first, mut own) = (Values::with_capacity(values.len()), Vec::new());
+    for (name, value) in values {
+        let Some(batch) = Batch::of(&value)? else {
+            first.push((name, value));
+            continue;
+        };
+        let like = batch.like()?;
+        own.push((canonical(&name).unwrap_or_else(|| name.clone()), batch.graded(&like)?));
+        first.push((name, like));
+    }
+    let made = |names, value: &mut Known<'_>| FormulaTorque::new(&text, axes(&frame), names, value);
+    let law = formula(given.all.py(), &text, &first, made)?;
+    given.each_sound(|k| {
+        let value = |input: &Input| own.iter().find(|(name, _)| *name == input.name).map(|(_, rows)| rows[k]);
+        Torque::Formula(law.with_values(|input| value(input).map(Given::Value)))
     })
 }
 

@@ -142,9 +142,9 @@ impl Ensemble {
 
     /// Whether lanes can step these bodies: only constant forces move them, and they are not smooth at the same times.
     fn in_lanes(&self) -> bool {
-        // A table of its own gives each body its own steps.
-        let own_breaks =
-            |law: &Rows<Torque>| !law.is_one() && law.all().iter().any(|law| !law.breaks().is_empty());
+        // A table of its own gives each body its own steps. Laws are of one kind for all bodies, so that one of them
+        // tells; to ask them all would take, body by body, the square of their number.
+        let own_breaks = |law: &Rows<Torque>| !law.is_one() && !law.of(0).breaks().is_empty();
         let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
         !moved && !self.laws.iter().any(own_breaks)
     }

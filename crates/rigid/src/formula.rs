@@ -54,6 +54,8 @@ enum Source {
 #[derive(Clone)]
 pub struct Formula {
     compiled: Arc<Compiled>,
+    /// For each input of the program.
+    sources: Arc<[Source]>,
     /// From the axes of the motion to those of the body.
     frame: Rotor,
 }
@@ -63,7 +65,6 @@ struct Compiled {
     purpose: Purpose,
     program: Program,
     runner: Runner,
-    sources: Vec<Source>,
     /// The step that is its value.
     result: usize,
 }
@@ -232,8 +233,19 @@ impl Formula {
         }
         let runner =
             Runner::new(&program).ok_or_else(|| wrong(whole, "no formula of 3-d space".to_owned()))?;
-        let compiled = Compiled { text: text.to_owned(), purpose, program, runner, sources, result };
-        Ok(Formula { compiled: Arc::new(compiled), frame: Rotor::IDENTITY })
+        let compiled = Compiled { text: text.to_owned(), purpose, program, runner, result };
+        Ok(Formula { compiled: Arc::new(compiled), sources: sources.into(), frame: Rotor::IDENTITY })
+    }
+
+    /// The same formula with other values, of the same kinds, for the inputs for which `value` tells one: for each of
+    /// many bodies, so that it is compiled once.
+    pub fn with_values(&self, mut value: impl FnMut(&Input) -> Option<Given>) -> Formula {
+        let inputs = self.compiled.program.inputs.iter().zip(&*self.sources);
+        let sources = inputs.map(|(input, source)| match source {
+            Source::Known(_) => value(input).map_or(*source, Source::Known),
+            Source::Motion(_) => *source,
+        });
+        Formula { compiled: self.compiled.clone(), sources: sources.collect(), frame: self.frame }
     }
 
     /// The formula as it was given.
@@ -243,8 +255,7 @@ impl Formula {
 
     /// The names in it that the motion does not give, with their values.
     pub(crate) fn known(&self) -> impl Iterator<Item = (&str, Given)> {
-        let Compiled { program, sources, .. } = &*self.compiled;
-        program.inputs.iter().zip(sources).filter_map(|(input, source)| match source {
+        self.compiled.program.inputs.iter().zip(&*self.sources).filter_map(|(input, source)| match source {
             Source::Known(given) => Some((input.name.as_str(), *given)),
             Source::Motion(_) => None,
         })
@@ -260,16 +271,16 @@ impl Formula {
     }
 
     pub(crate) fn in_axes(self, frame: Rotor) -> Formula {
-        Formula { compiled: self.compiled, frame: self.frame * frame }
+        Formula { frame: self.frame * frame, ..self }
     }
 
     pub(crate) fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
-        self.compiled.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
+        self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
     }
 
     /// Its value, finite, of the grades of its purpose.
     pub(crate) fn value(&self, at: &Point) -> Result<Graded, TorqueError> {
-        let Compiled { runner, sources, result, .. } = &*self.compiled;
+        let Compiled { runner, result, .. } = &*self.compiled;
         if at.mass.is_nan() && self.needs(|motion| motion == Motion::Mass) {
             return Err(TorqueError(
                 "`m` is not known; simulate a Body, which has a mass, rather than an Inertia".into(),
@@ -277,7 +288,7 @@ impl Formula {
         }
         MEMORY.with_borrow_mut(|(inputs, values)| {
             inputs.clear();
-            inputs.extend(sources.iter().map(|source| match source {
+            inputs.extend(self.sources.iter().map(|source| match source {
                 Source::Motion(motion) => motion.at(at, self.frame),
                 Source::Known(given) => *given,
             }));

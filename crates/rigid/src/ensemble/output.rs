@@ -20,8 +20,8 @@ pub struct Outputs<'a> {
     pub momenta: &'a mut [f64],
     /// In J.
     pub energies: &'a mut [f64],
-    /// In m and m/s.
-    pub centers: Option<&'a mut [f64]>,
+    /// Of the centres of mass, in m and m/s.
+    pub centers: Option<[&'a mut [f64]; 2]>,
 }
 
 /// What is told of an ensemble besides its points.
@@ -51,13 +51,13 @@ pub(crate) struct Own<'a> {
     pub omegas: &'a mut [f64],
     pub momenta: &'a mut [f64],
     pub energies: &'a mut [f64],
-    pub centers: Option<&'a mut [f64]>,
+    pub centers: Option<[&'a mut [f64]; 2]>,
 }
 
 impl<'a> Outputs<'a> {
     /// The room of each body, for so many times.
     pub(crate) fn each(self, times: usize) -> impl Iterator<Item = Own<'a>> + Send {
-        let mut centers = self.centers.map(|centers| centers.chunks_mut(6 * times));
+        let mut centers = self.centers.map(|centers| centers.map(|rows| rows.chunks_mut(3 * times)));
         let own = self.rotors.chunks_mut(4 * times).zip(self.omegas.chunks_mut(3 * times));
         let own = own.zip(self.momenta.chunks_mut(3 * times)).zip(self.energies.chunks_mut(times));
         own.map(move |(((rotors, omegas), momenta), energies)| Own {
@@ -65,7 +65,9 @@ impl<'a> Outputs<'a> {
             omegas,
             momenta,
             energies,
-            centers: centers.as_mut().and_then(Iterator::next),
+            centers: centers
+                .as_mut()
+                .and_then(|[places, velocities]| Some([places.next()?, velocities.next()?])),
         })
     }
 }
@@ -85,9 +87,9 @@ impl Own<'_> {
         self.omegas[3 * index..][..3].copy_from_slice(&omega.0);
         self.momenta[3 * index..][..3].copy_from_slice(&momentum.0);
         self.energies[index] = energy(body, torques, phase);
-        if let Some(centers) = &mut self.centers {
-            centers[6 * index..][..3].copy_from_slice(&center.position.0);
-            centers[6 * index + 3..][..3].copy_from_slice(&center.velocity.0);
+        if let Some([places, velocities]) = &mut self.centers {
+            places[3 * index..][..3].copy_from_slice(&center.position.0);
+            velocities[3 * index..][..3].copy_from_slice(&center.velocity.0);
         }
     }
 
@@ -97,8 +99,8 @@ impl Own<'_> {
         self.omegas[3 * index..][..3].fill(f64::NAN);
         self.momenta[3 * index..][..3].fill(f64::NAN);
         self.energies[index] = f64::NAN;
-        if let Some(centers) = &mut self.centers {
-            centers[6 * index..][..6].fill(f64::NAN);
+        for rows in self.centers.iter_mut().flatten() {
+            rows[3 * index..][..3].fill(f64::NAN);
         }
     }
 }

@@ -28,6 +28,11 @@ impl FormulaTorque {
         Formula::new(text, Purpose::Torque(axes), names, value).map(FormulaTorque)
     }
 
+    /// The same formula with other values: see [`Formula::with_values`].
+    pub fn with_values(&self, value: impl FnMut(&Input) -> Option<Given>) -> FormulaTorque {
+        FormulaTorque(self.0.with_values(value))
+    }
+
     /// The formula as it was given.
     pub fn text(&self) -> &str {
         self.0.text()

@@ -1,0 +1,190 @@
+"""Figures of an ensemble: how its motions spread with time, and where its bodies point in space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._arrays import Array
+from polhode._gathered import Gathered
+from polhode._page import time as told_time
+from polhode._plot import _BLACK, _BLUE, _ORANGE, new_figure, time_unit
+from polhode._quantiles import first_above, quantiles
+from polhode._values import vector
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_WIDE, _NARROW = "#CFE3F1", "#86BBDD"
+
+# Width in rad of the kernel by which directions are smeared, and the cells in which they are counted before
+# and in which the density is drawn.
+_SMEAR = np.radians(4.0)
+_COUNTED, _DRAWN = (180, 90), (180, 90)
+# The colours' range, of the density over that of directions all alike.
+_FAINTEST, _DENSEST = 0.01, 100.0
+
+
+def fan_figure(gathered: Gathered) -> Figure:
+    """Draw over time how bodies lie around the undisturbed motion: bands of quantiles.
+
+    From above the angle of the attitude from the undisturbed one, the tilt of an axis, and the rate.
+    """
+    figure = new_figure(8, 8)
+    panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    times = gathered.scene.times
+    seconds, unit = time_unit(times)
+    for axes, (name, factor, label) in zip(
+        panels,
+        (
+            ("from_nominal", 180 / np.pi, "attitude, from that of the\nundisturbed body, degrees"),
+            ("tilt", 180 / np.pi, f"tilt of the axis\nfrom {gathered.tilt_name}, degrees"),
+            ("rate", 1.0, "angular velocity |Ω|,\nrad/s"),
+        ),
+        strict=True,
+    ):
+        bands = factor * quantiles(gathered.series[name])
+        _fan(axes, times / seconds, bands)
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.25, lw=0.6)
+        axes.margins(x=0)
+    _horizons(panels[0], gathered, seconds)
+    panels[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    panels[-1].set_xlabel(f"time, {unit}")
+    figure.align_ylabels()
+    figure.suptitle(gathered.scene.name)
+    figure.supxlabel(
+        f"Quantiles over {_counted(gathered)}; the axis: {gathered.axis_name}.",
+        fontsize=9,
+    )
+    return figure
+
+
+def _fan(axes: Axes, t: Array, bands: Array) -> None:
+    low, lower, median, upper, high = bands
+    axes.fill_between(t, low, high, color=_WIDE, lw=0, label="5 to 95 %")
+    axes.fill_between(t, lower, upper, color=_NARROW, lw=0, label="25 to 75 %")
+    axes.plot(t, median, color=_BLUE, lw=1.4, label="median")
+
+
+def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
+    """Mark when the 95 % quantile of the angle passes 10° and 90°."""
+    highest = quantiles(gathered.series["from_nominal"])[-1]
+    axes.set_ylim(0, 185)
+    axes.set_yticks(range(0, 181, 45))
+    for angle in (10, 90):
+        moment = first_above(gathered.scene.times, highest, np.radians(angle))
+        if moment is None:
+            continue
+        axes.plot(moment / seconds, angle, "o", color=_ORANGE, ms=5, mec="white", mew=0.8, zorder=5)
+        axes.annotate(
+            f"95 % within {angle}° for {told_time(moment, 3)}",
+            (moment / seconds, angle),
+            xytext=(8, -3),
+            textcoords="offset points",
+            color=_ORANGE,
+            fontsize=9,
+        )
+
+
+def _counted(gathered: Gathered) -> str:
+    finished = gathered.complete - len(gathered.failures)
+    without = f" ({len(gathered.failures)} failed on the way)" if gathered.failures else ""
+    return f"{finished:,} bodies{without}".replace(",", "\u2009")
+
+
+def directions_figure(gathered: Gathered) -> Figure:
+    """Draw maps of the sphere, equal in area, of where the axis points in space at three times.
+
+    Longitudes are about e3 from e1, latitudes from the plane e1e2 towards e3.
+    """
+    figure = new_figure(11, 3.6)
+    panels = figure.subplots(1, 3, subplot_kw={"projection": "mollweide"})
+    times = gathered.scene.times
+    drawn: Any = None
+    for k, axes in enumerate(panels):
+        directions = gathered.directions[:, k].astype(float)
+        drawn = _map(axes, directions[np.isfinite(directions).all(axis=1)])
+        when = float(times[gathered.shown[k]])
+        axes.set_title("at the start" if when == 0 else f"after {told_time(when, 3)}", fontsize=11)
+        _mark(axes, gathered, gathered.shown[k])
+    bar = figure.colorbar(drawn, ax=list(panels), orientation="horizontal", shrink=0.4, aspect=40, pad=0.03)
+    bar.set_label("density, over that of directions all alike", fontsize=9)
+    figure.suptitle(gathered.scene.name)
+    marks = "ring: the undisturbed body" + ("; cross: its L" if gathered.tilt_name == "L" else "")
+    figure.supxlabel(
+        f"Where {gathered.axis_name} points in space, of {_counted(gathered)}, smeared over "
+        f"{np.degrees(_SMEAR):.0f}°; {marks}.\n"
+        "Equal areas; the centre is e1, longitude grows to the right towards e2, e3 is up.",
+        fontsize=9,
+    )
+    return figure
+
+
+def _map(axes: Axes, directions: Array) -> Any:
+    from matplotlib.colors import LogNorm
+
+    longitude = np.linspace(-np.pi, np.pi, _DRAWN[0] + 1)
+    latitude = np.linspace(-np.pi / 2, np.pi / 2, _DRAWN[1] + 1)
+    middle = np.meshgrid(0.5 * (longitude[1:] + longitude[:-1]), 0.5 * (latitude[1:] + latitude[:-1]))
+    density = _density(directions, _unit_vectors(*middle))
+    drawn = axes.pcolormesh(
+        longitude,
+        latitude,
+        np.maximum(density, _FAINTEST),
+        cmap="YlGnBu",
+        norm=LogNorm(_FAINTEST, _DENSEST),
+        shading="flat",
+        rasterized=True,
+    )
+    axes.grid(color=_BLACK, alpha=0.25, lw=0.5)
+    axes.set_xticks(np.radians([-120, -60, 0, 60, 120]), [])
+    axes.set_yticks(np.radians([-60, -30, 0, 30, 60]), [])
+    return drawn
+
+
+def _mark(axes: Axes, gathered: Gathered, k: int) -> None:
+    """Mark where the axis of the undisturbed body points, and its momentum, if the tilt is from there."""
+    nominal = gathered.nominal
+    path = nominal.rotor(vector(gathered.axis)).components[k]
+    axes.plot(*_angles(path), "o", mfc="none", mec=_ORANGE, mew=1.4, ms=9, zorder=5)
+    momentum = nominal.momentum_space.components[k]
+    if gathered.tilt_name == "L" and momentum.any():
+        axes.plot(*_angles(momentum), "+", color=_BLACK, mew=1.2, ms=8, zorder=5)
+
+
+def _unit_vectors(longitude: Array, latitude: Array) -> Array:
+    across = np.cos(latitude)
+    return np.stack([across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1)
+
+
+def _angles(direction: Array) -> tuple[Any, Any]:
+    """Return longitudes and latitudes of directions (..., 3)."""
+    x, y, z = np.moveaxis(direction, -1, 0)
+    return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+
+
+def _density(directions: Array, points: Array) -> Array:
+    """Return the density of directions (n, 3) at points (..., 3) of the sphere, 1 where all are alike.
+
+    A sum of kernels ``exp(κ(cos θ − 1))``, κ = 1/width², each of the integral ``2π(1 − exp(−2κ))/κ``.
+    Directions in one cell of a fine grid are put together in their mean, which is much closer to them than
+    the width.
+    """
+    longitude, latitude = _angles(directions)
+    columns = ((longitude / (2 * np.pi) + 0.5) * _COUNTED[0]).astype(int) % _COUNTED[0]
+    rows = np.minimum(((latitude / np.pi + 0.5) * _COUNTED[1]).astype(int), _COUNTED[1] - 1)
+    cells, which, counts = np.unique(rows * _COUNTED[0] + columns, return_inverse=True, return_counts=True)
+    means = np.stack([np.bincount(which, directions[:, k], len(cells)) for k in range(3)], axis=-1)
+    means = means / np.linalg.norm(means, axis=-1, keepdims=True)
+    sharpness = 1 / _SMEAR**2
+    flat = points.reshape(-1, 3).astype(np.float32)
+    total = np.zeros(len(flat))
+    for start in range(0, len(cells), 1024):
+        near = flat @ means[start : start + 1024].T.astype(np.float32)
+        total += np.exp(np.float32(sharpness) * (near - 1)) @ counts[start : start + 1024].astype(np.float32)
+    size = (1 - np.exp(-2 * sharpness)) / (2 * sharpness)
+    density: Array = total / (max(len(directions), 1) * size)
+    return density.reshape(points.shape[:-1])

@@ -112,6 +112,7 @@ class EnsembleFile:
     def add(self, rows: slice, trajectory: Trajectory) -> None:
         """Write the bodies that follow those before."""
         self._file.resize_dimension("body", rows.stop)
+        self._grow(rows, "body", (), np.arange(rows.start, rows.stop), "1", "number by which it was drawn")
         self._motions(rows, trajectory)
         self._proofs(rows, trajectory)
         if any(name.startswith(("torque.", "gravity.")) for name in self._ensemble.varied):
@@ -160,6 +161,8 @@ class EnsembleFile:
 
     def _centers(self, rows: slice, trajectory: Trajectory) -> None:
         """Write where the centres of mass are, or whence and how fast they go if nothing moves them."""
+        if not (self._scene.force is not None or self._moves):
+            return
         for name, units, text in (
             ("position", "m", "centre of mass in space"),
             ("velocity", "m/s", "velocity of the centre of mass"),
@@ -167,7 +170,7 @@ class EnsembleFile:
             values = getattr(trajectory, name).components
             if self._scene.force is not None:
                 self._grow(rows, name, ("time", "axis"), values, units, text)
-            elif self._moves:
+            else:
                 self._grow(rows, name, ("axis",), values[:, 0], units, f"{text} at time 0")
 
     @property

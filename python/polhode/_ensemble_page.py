@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from polhode._memory import size
-from polhode._page import COLUMNS, QUANTITIES, Row, acting, body_rows, number, printable, time
+from polhode._page import QUANTITIES, Row, acting, body_rows, number, printable, time
 
-_WIDTH = 12
+# How wide names and quantiles are.
+_NAMES, _CELLS = 22, 11
 
 
 def as_text(summary: dict[str, Any]) -> str:
@@ -19,7 +20,7 @@ def as_text(summary: dict[str, Any]) -> str:
     lines = [printable(summary["title"]), ""]
 
     def row(name: str, value: str) -> None:
-        lines.append(f"  {name:<{COLUMNS - 1}} {value}")
+        lines.append(f"  {name:<{_NAMES - 1}} {value}")
 
     lines.append("Ensemble")
     _drawn(summary["ensemble"], row)
@@ -30,6 +31,9 @@ def as_text(summary: dict[str, Any]) -> str:
         acting(summary, row)
     lines.append("Motion")
     _motion(motion, summary["ensemble"]["number"], row)
+    cells = "".join(f"{name:>{_CELLS}}" for name in ("5 %", "25 %", "median", "75 %", "95 %"))
+    lines.append(f"{'Over the bodies':<{_NAMES + 1}} {cells}")
+    _quantiles(motion, row)
     lines.append("Conserved")
     for name, entry in summary["conserved"].items():
         if entry["bodies"]:
@@ -54,39 +58,41 @@ def _drawn(ensemble: dict[str, Any], row: Row) -> None:
 def _motion(motion: dict[str, Any], bodies: int, row: Row) -> None:
     for regime, count in motion["regimes"].items():
         row("regime", f"{regime}: {count} of {bodies} bodies")
-    row("quantiles", "".join(f"{name:>{_WIDTH}}" for name in ("5 %", "25 %", "median", "75 %", "95 %")))
-    for entry in motion["from_nominal"]:
-        _five(f"off, {time(entry['time'])}", entry["quantiles"], _degrees, row)
+    for entry in motion["horizons"]:
+        until = "to the end" if entry["time"] is None else f"for {time(entry['time'], 4)}"
+        row(f"within {np.degrees(entry['angle']):g}°", f"95 % of the bodies, {until}, of the undisturbed one")
+
+
+def _quantiles(motion: dict[str, Any], row: Row) -> None:
+    for k, entry in enumerate(motion["from_nominal"]):
+        name = "attitude off by" if k == 0 else ""
+        _five(f"{name:<15}{time(entry['time'], 3):>6}", entry["quantiles"], _degrees, row)
     for end in ("start", "end"):
-        _five(f"tilt at {end}", motion["tilt"][end], _degrees, row)
+        _five(f"tilt, {end}", motion["tilt"][end], _degrees, row)
     for end in ("start", "end"):
-        _five(f"|Ω| at {end}", motion["rate"][end], lambda x: f"{x:.5g} rad/s", row)
+        _five(f"|Ω|, rad/s, {end}", motion["rate"][end], _five_digits, row)
     for key, name in (("period", "period P_ψ"), ("precession_period", "precession P_φ")):
         if key in motion:
             _five(name, motion[key], _short_time, row)
-    for key, name, unit in (("energy", "energy", "J"), ("angular_momentum", "|L|", "kg m²/s")):
-        ends = ("start", "end") if motion["kind"] != "free" else ("start",)
-        for end in ends:
-            label = f"{name}, {unit}" if len(ends) == 1 else f"{name} {end}, {unit}"
-            _five(label, motion[key][end], lambda x: f"{x:.5g}", row)
-    row("", f"off: the attitude's angle from that of the undisturbed body; tilt: of {motion['axis']}")
-    row("", f"from {motion['tilt_from']}")
-    for entry in motion["horizons"]:
-        angle = f"{np.degrees(entry['angle']):g}°"
-        row(
-            f"within {angle}",
-            f"95 % of the bodies, {'to the end' if entry['time'] is None else 'for ' + time(entry['time'])}",
-        )
+    for key, name in (("energy", "energy, J"), ("angular_momentum", "|L|, kg m²/s")):
+        # Free bodies keep them.
+        for end in ("start",) if motion["kind"] == "free" else ("start", "end"):
+            _five(f"{name}, {end}", motion[key][end], _five_digits, row)
+    row("", f"tilt: of {motion['axis']} from {motion['tilt_from']}")
 
 
 def _five(name: str, values: list[float] | None, told: Callable[[float], str], row: Row) -> None:
     """Print five quantiles; a dash where there are none."""
     cells = ["–"] * 5 if values is None else [told(x) for x in values]
-    row(name, "".join(f"{cell:>{_WIDTH}}" for cell in cells))
+    row(name, "".join(f"{cell:>{_CELLS}}" for cell in cells))
 
 
 def _degrees(x: float) -> str:
     return f"{np.degrees(x):.4g}°"
+
+
+def _five_digits(x: float) -> str:
+    return number(x, 5)
 
 
 def _short_time(x: float) -> str:

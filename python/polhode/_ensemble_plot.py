@@ -22,9 +22,11 @@ _WIDE, _NARROW = "#CFE3F1", "#86BBDD"
 # Width in rad of the kernel by which directions are smeared, and the cells in which they are counted before
 # and in which the density is drawn.
 _SMEAR = np.radians(4.0)
-_COUNTED, _DRAWN = (180, 90), (180, 90)
+_COUNTED, _DRAWN = (180, 90), (240, 120)
+# The cosine above which a direction is said to be along another.
+_ALONG = 0.999
 # The colours' range, of the density over that of directions all alike.
-_FAINTEST, _DENSEST = 0.01, 100.0
+_FAINTEST, _DENSEST = 0.03, 100.0
 
 
 def fan_figure(gathered: Gathered) -> Figure:
@@ -34,8 +36,8 @@ def fan_figure(gathered: Gathered) -> Figure:
     """
     figure = new_figure(8, 8)
     panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
-    times = gathered.scene.times
-    seconds, unit = time_unit(times)
+    times, along = _scale(gathered.scene.times)
+    seconds, unit = time_unit(np.sqrt(times[0] * times[-1]) if along == "log" else times)
     for axes, (name, factor, label) in zip(
         panels,
         (
@@ -45,12 +47,14 @@ def fan_figure(gathered: Gathered) -> Figure:
         ),
         strict=True,
     ):
-        bands = factor * quantiles(gathered.series[name])
+        bands = factor * quantiles(gathered.series[name][:, -len(times) :])
         _fan(axes, times / seconds, bands)
+        axes.set_xscale(along)
         axes.set_ylabel(label)
         axes.grid(alpha=0.25, lw=0.6)
         axes.margins(x=0)
     _horizons(panels[0], gathered, seconds)
+    panels[1].ticklabel_format(axis="y", useOffset=False)
     panels[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     panels[-1].set_xlabel(f"time, {unit}")
     figure.align_ylabels()
@@ -60,6 +64,13 @@ def fan_figure(gathered: Gathered) -> Figure:
         fontsize=9,
     )
     return figure
+
+
+def _scale(times: Array) -> tuple[Array, str]:
+    """Return the times that are drawn, and along which scale: those in equal ratios without the start."""
+    if len(times) > 3 and times[-1] - times[-2] > 2 * (times[2] - times[1]):
+        return times[1:], "log"
+    return times, "linear"
 
 
 def _fan(axes: Axes, t: Array, bands: Array) -> None:
@@ -82,8 +93,9 @@ def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
         axes.annotate(
             f"95 % within {angle}° for {told_time(moment, 3)}",
             (moment / seconds, angle),
-            xytext=(8, -3),
+            xytext=(-7, 7),
             textcoords="offset points",
+            ha="right",
             color=_ORANGE,
             fontsize=9,
         )
@@ -98,45 +110,67 @@ def _counted(gathered: Gathered) -> str:
 def directions_figure(gathered: Gathered) -> Figure:
     """Draw maps of the sphere, equal in area, of where the axis points in space at three times.
 
-    Longitudes are about e3 from e1, latitudes from the plane e1e2 towards e3.
+    In the middle of each is L of the undisturbed body, if the axis' tilt is from there, else e1.
     """
-    figure = new_figure(11, 3.6)
+    figure = new_figure(11, 3.7)
+    frame = _frame(gathered)
     panels = figure.subplots(1, 3, subplot_kw={"projection": "mollweide"})
     times = gathered.scene.times
     drawn: Any = None
     for k, axes in enumerate(panels):
         directions = gathered.directions[:, k].astype(float)
-        drawn = _map(axes, directions[np.isfinite(directions).all(axis=1)])
+        drawn = _map(axes, directions[np.isfinite(directions).all(axis=1)] @ frame.T)
         when = float(times[gathered.shown[k]])
         axes.set_title("at the start" if when == 0 else f"after {told_time(when, 3)}", fontsize=11)
-        _mark(axes, gathered, gathered.shown[k])
-    bar = figure.colorbar(drawn, ax=list(panels), orientation="horizontal", shrink=0.4, aspect=40, pad=0.03)
+        _mark(axes, gathered, frame, gathered.shown[k])
+    bar = figure.colorbar(
+        drawn, ax=list(panels), orientation="horizontal", shrink=0.4, aspect=40, pad=0.03, extend="both"
+    )
     bar.set_label("density, over that of directions all alike", fontsize=9)
     figure.suptitle(gathered.scene.name)
-    marks = "ring: the undisturbed body" + ("; cross: its L" if gathered.tilt_name == "L" else "")
+    middle = "the momentum L of the undisturbed body" if gathered.tilt_name == "L" else "e1"
     figure.supxlabel(
         f"Where {gathered.axis_name} points in space, of {_counted(gathered)}, smeared over "
-        f"{np.degrees(_SMEAR):.0f}°; {marks}.\n"
-        "Equal areas; the centre is e1, longitude grows to the right towards e2, e3 is up.",
+        f"{np.degrees(_SMEAR):.0f}°; ring: the undisturbed body.\n"
+        f"The sphere of space axes from outside, in equal areas, about {middle}; "
+        f"{'e2' if abs(frame[0, 2]) > _ALONG else 'e3'} is above it.",
         fontsize=9,
     )
     return figure
 
 
+def _frame(gathered: Gathered) -> Array:
+    """Return the rotation (3, 3) that puts a direction to the middle of the maps and e3 above it.
+
+    Above e3 itself is e2.
+    """
+    momentum = gathered.nominal.momentum_space.components[0]
+    size = float(np.linalg.norm(momentum))
+    if gathered.tilt_name != "L" or size == 0:
+        return np.eye(3)
+    middle = momentum / size
+    up = np.array([0.0, 1.0, 0.0]) if abs(middle[2]) > _ALONG else np.array([0.0, 0.0, 1.0])
+    up = up - (up @ middle) * middle
+    up = up / np.linalg.norm(up)
+    return np.stack([middle, np.cross(up, middle), up])
+
+
 def _map(axes: Axes, directions: Array) -> Any:
+    from matplotlib import colormaps
     from matplotlib.colors import LogNorm
 
-    longitude = np.linspace(-np.pi, np.pi, _DRAWN[0] + 1)
-    latitude = np.linspace(-np.pi / 2, np.pi / 2, _DRAWN[1] + 1)
-    middle = np.meshgrid(0.5 * (longitude[1:] + longitude[:-1]), 0.5 * (latitude[1:] + latitude[:-1]))
-    density = _density(directions, _unit_vectors(*middle))
+    longitude, latitude = np.meshgrid(
+        np.linspace(-np.pi, np.pi, _DRAWN[0] + 1), np.linspace(-np.pi / 2, np.pi / 2, _DRAWN[1] + 1)
+    )
+    density = _density(directions, _unit_vectors(longitude, latitude))
+    colours = colormaps["YlGnBu"].with_extremes(under="white")
     drawn = axes.pcolormesh(
         longitude,
         latitude,
-        np.maximum(density, _FAINTEST),
-        cmap="YlGnBu",
+        np.maximum(density, np.finfo(float).tiny),
+        cmap=colours,
         norm=LogNorm(_FAINTEST, _DENSEST),
-        shading="flat",
+        shading="gouraud",
         rasterized=True,
     )
     axes.grid(color=_BLACK, alpha=0.25, lw=0.5)
@@ -145,14 +179,15 @@ def _map(axes: Axes, directions: Array) -> Any:
     return drawn
 
 
-def _mark(axes: Axes, gathered: Gathered, k: int) -> None:
-    """Mark where the axis of the undisturbed body points, and its momentum, if the tilt is from there."""
+def _mark(axes: Axes, gathered: Gathered, frame: Array, k: int) -> None:
+    """Mark where the axis of the undisturbed body points, and the axes of space."""
     nominal = gathered.nominal
     path = nominal.rotor(vector(gathered.axis)).components[k]
-    axes.plot(*_angles(path), "o", mfc="none", mec=_ORANGE, mew=1.4, ms=9, zorder=5)
-    momentum = nominal.momentum_space.components[k]
-    if gathered.tilt_name == "L" and momentum.any():
-        axes.plot(*_angles(momentum), "+", color=_BLACK, mew=1.2, ms=8, zorder=5)
+    axes.plot(*_angles(frame @ path), "o", mfc="none", mec=_ORANGE, mew=1.4, ms=9, zorder=5)
+    for name, direction in zip(("e1", "e2", "e3"), frame.T, strict=True):
+        place = _angles(direction)
+        axes.plot(*place, ".", color=_BLACK, ms=4, zorder=4)
+        axes.annotate(name, place, xytext=(3, 3), textcoords="offset points", fontsize=8, zorder=4)
 
 
 def _unit_vectors(longitude: Array, latitude: Array) -> Array:

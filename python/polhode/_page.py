@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 # How wide the names of rows are.
-COLUMNS = 18
+_COLUMNS = 18
 
 Row = Callable[[str, str], None]
 
@@ -49,7 +49,7 @@ def as_text(summary: dict[str, Any]) -> str:
     lines = [printable(summary["title"]), ""]
 
     def row(name: str, value: str) -> None:
-        lines.append(f"  {name:<{COLUMNS - 1}} {value}")
+        lines.append(f"  {name:<{_COLUMNS - 1}} {value}")
 
     lines.append("Body")
     body_rows(summary["body"], motion["kind"] in ("free", "damped"), row)

@@ -26,7 +26,7 @@ _AXES = (_BLUE, _ORANGE, _GREEN)
 _TURNS_SEEN = 100
 
 # (longest duration that reads well, seconds in the unit, its name)
-_TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1e9, 86400.0, "d"))
+_TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1.3e8, 86400.0, "d"))
 
 
 def new_figure(width: float, height: float) -> Figure:

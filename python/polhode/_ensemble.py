@@ -25,6 +25,7 @@ _BYTES_OF_CENTER = 8 * (3 + 3)
 _BYTES_OF_BODY = 800
 
 _VECTOR, _BIVECTOR = 0b0010, 0b0100
+_NOWHERE: Any = (None, None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,14 +130,16 @@ class Ensemble:
     ) -> Trajectory:
         rotors, omegas, momenta, energies, *centers = arrays
         inertias = self.inertias
-        center = [Multivector._of(rows, _VECTOR) for rows in centers] or [None, None]
+        # Without forces they are found when they are asked for.
+        position, velocity = [Multivector._of(rows, _VECTOR) for rows in centers] or _NOWHERE
         return Trajectory(
             frozen(self.times.copy()),
             Rotor._from_rows(rotors),
             Multivector._of(omegas, _BIVECTOR),
             Multivector._of(momenta, _BIVECTOR),
             energies[..., 0],
-            *center,
+            position,
+            velocity,
             np.broadcast_to(inertias, self.shape) if inertias.ndim else inertias[()],
             certificate,
             failures=failures,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,10 +14,16 @@ from polhode import _native
 from polhode._arrays import Array, Shape, as_float, as_floats, frozen
 from polhode._bodies import Inertia
 from polhode._coefficients import as_coefficients
+from polhode._memory import require
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State, angular_velocity
 from polhode._values import bivector
+
+_STATE = 7 * 8  # bytes
+_DERIVATIVES = 2 * 64 * 8  # bytes, as they are found and as they are told
+_BODY = 800  # bytes of a motion in a batch, at most
+_MANY = 64  # bodies that fill the lanes
 
 
 class FreeMotion:
@@ -36,7 +43,8 @@ class FreeMotion:
     omega_body
         Angular velocity in body axes at time 0, a bivector or an array (..., 3), in rad/s.
 
-    Batch shapes broadcast together, to `shape`. ``m[i]`` is one motion, or fewer.
+    Batch shapes broadcast together, to `shape`. ``m[i]`` is one motion, or fewer. Bodies of a batch are
+    computed side by side, whatever their regimes are.
 
     Raises
     ------
@@ -64,9 +72,7 @@ class FreeMotion:
             picked = numbers[index]
         except IndexError as error:
             raise IndexError(f"{error} (batch shape {self.shape})") from None
-        rotors, omegas = self._core.starts()
-        inertia = self._inertia if isinstance(self._inertia, Inertia) else self._inertia.ravel()[picked]
-        return type(self)(inertia, Rotor._from_rows(rotors[picked]), bivector(omegas[picked]))
+        return self._picked(picked, self._core.starts())
 
     def __len__(self) -> int:
         if not self.shape:
@@ -74,7 +80,14 @@ class FreeMotion:
         return self.shape[0]
 
     def __iter__(self) -> Iterator[FreeMotion]:
-        return (self[i] for i in range(len(self)))
+        numbers = np.arange(len(self) * int(np.prod(self.shape[1:])))
+        starts = self._core.starts()
+        return (self._picked(rows, starts) for rows in numbers.reshape(self.shape))
+
+    def _picked(self, rows: Any, starts: tuple[Array, Array]) -> FreeMotion:
+        rotors, omegas = starts
+        inertia = self._inertia if isinstance(self._inertia, Inertia) else self._inertia.ravel()[rows]
+        return type(self)(inertia, Rotor._from_rows(rotors[rows]), bivector(omegas[rows]))
 
     def __reduce__(self) -> tuple[Any, ...]:
         rotors, omegas = self._core.starts()
@@ -90,15 +103,61 @@ class FreeMotion:
         """Return the state at time t in s; all at all times, of batch shape ``m.shape + t.shape``.
 
         Each is the same to the last bit as that of one motion at one time. A ValueError for times that are
-        not finite, or so late that the phase is no longer known (1e17 turns).
+        not finite, or so late that the phase is no longer known (1e17 turns); a MemoryError for more states
+        than there is memory for.
         """
         state = self._core.once(t)
         if state is None:
             times = as_floats(t, "time")
-            rotors, omegas = self._core.at(np.ravel(times))
             shape = self.shape + times.shape
+            require(_STATE * math.prod(shape), f"states of batch shape {shape}")
+            rotors, omegas = self._core.at(np.ravel(times))
             state = Rotor._from_rows(rotors.reshape(*shape, 4)), _bivectors(omegas, shape)
         return State._at_origin(*state)
+
+    def at_each(self, t: Any) -> State:
+        """Return the state of each body at its own time t in s, or at its own times.
+
+        Times broadcast with the batch of bodies, to the batch shape of the state: bodies (N,) and times (N,)
+        give (N,), one time for each body; times (T, N), or bodies (N, 1) and times (N, T), T for each. Each
+        state is the same to the last bit as that of one motion at one time. Errors as in `at`, and a
+        ValueError for times whose shape does not fit the bodies.
+        """
+        times = as_floats(t, "time")
+        try:
+            shape = np.broadcast_shapes(self.shape, times.shape)
+        except ValueError:
+            raise ValueError(
+                f"times of shape {times.shape} do not broadcast with bodies of batch shape {self.shape}; "
+                "`at` takes all times for each body"
+            ) from None
+        order, each = _order(self.shape, shape)
+        # The times, and the states once more where they are put into another order.
+        size = 8 + _STATE * (1 if order == tuple(range(len(shape))) else 2)
+        require(size * math.prod(shape), f"states of batch shape {shape}")
+        self._check_each(times, shape)
+        computed = np.broadcast_to(times, shape).transpose(order)
+        rotors, omegas = self._core.at_each(computed.ravel(), each)
+        back = (*np.argsort(order), len(order))
+        rows = np.ascontiguousarray(rotors.reshape(*computed.shape, 4).transpose(back))
+        rates = np.ascontiguousarray(omegas.reshape(*computed.shape, 3).transpose(back))
+        return State._at_origin(Rotor._from_rows(rows), _bivectors(rates, shape))
+
+    def _check_each(self, times: Array, shape: Shape) -> None:
+        """Times must be finite and within the horizon of their bodies."""
+        if not math.prod(shape) or np.abs(times).max() <= self._core.horizon:
+            return
+        for index in np.argwhere(~np.isfinite(times)):
+            raise ValueError(f"time {times[tuple(index)]} at index {_index(index)} is not finite")
+        horizons = np.broadcast_to(self._core.horizons().reshape(self.shape), shape)
+        for index in np.argwhere(np.abs(times) > horizons):
+            own = index[len(shape) - len(self.shape) :]
+            body = _index(np.minimum(own, np.array(self.shape) - 1))
+            time, horizon = np.broadcast_to(times, shape)[tuple(index)], horizons[tuple(index)]
+            raise ValueError(
+                f"at index {_index(index)}: time {time:g} s of body {body} lies beyond {horizon:.1e} s, "
+                "where the phase of its rotation is no longer known to rounding; take times nearer to 0"
+            )
 
     def describe(self) -> dict[str, Any]:
         """Say what the invariants tell.
@@ -151,8 +210,9 @@ class FreeMotion:
         sum of the derivatives times the tangents for its tangent.
         """
         times = as_floats(t, "time")
-        found = self._core.derivatives(np.ravel(times))
         shape = self.shape + times.shape
+        require(_DERIVATIVES * math.prod(shape), f"derivatives of batch shape {shape}")
+        found = self._core.derivatives(np.ravel(times))
         sizes = ((4, 3), (4, 3), (4, 3), (4,), (3, 3), (3, 3), (3,))
         return FlowDerivatives(
             *(frozen(x.reshape(shape + size)) for x, size in zip(found, sizes, strict=True))
@@ -232,10 +292,11 @@ def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotio
             f"the batch shapes {shapes[0]} of the inertia, {shapes[1]} of the rotor and {shapes[2]} of the "
             "angular velocity do not broadcast together"
         ) from None
+    require(_BODY * math.prod(shape), f"the motions of a batch of shape {shape}")
     one = not inertias.shape
     if not one:
         inertias = np.broadcast_to(inertias, shape)
-    cores = [value._core for value in inertias.flat]
+    cores = list(map(operator.attrgetter("_core"), inertias.ravel()))
     turns, rates = (np.broadcast_to(x, (*shape, x.shape[-1])) for x in (turns, rates))
     core = _native.FreeMotion.batch(cores, np.ascontiguousarray(turns), np.ascontiguousarray(rates))
     return core, inertias[()] if one else inertias
@@ -246,14 +307,40 @@ def _inertias(values: Any) -> Any:
     array: Any = np.empty((), dtype=object)
     if isinstance(values, Inertia):
         array[()] = values
+    elif isinstance(values, list | tuple) and set(map(type, values)) == {Inertia}:
+        # So as not to look for sequences in each.
+        array = np.fromiter(values, object, len(values))
     elif isinstance(values, list | tuple | np.ndarray):
         array = np.array(values, dtype=object)
     else:
         raise TypeError(f"inertia must be an Inertia, got {type(values).__name__}; see Body.inertia")
-    for index, value in np.ndenumerate(array):
-        if not isinstance(value, Inertia):
-            raise TypeError(f"at index {index}: inertia must be an Inertia, got {type(value).__name__}")
+    if not set(map(type, array.ravel())) <= {Inertia}:
+        for index, value in np.ndenumerate(array):
+            if not isinstance(value, Inertia):
+                raise TypeError(f"at index {index}: inertia must be an Inertia, got {type(value).__name__}")
     return array
+
+
+def _order(bodies: Shape, shape: Shape) -> tuple[Shape, int]:
+    """Return the order of the axes of the states in which they are computed, and the times of a body in turn.
+
+    Bodies stand side by side in the core: they are to follow each other with all times that each has in turn,
+    and from the first one again only if they are many.
+    """
+    own = (1,) * (len(shape) - len(bodies)) + bodies
+    axes = [k for k, length in enumerate(own) if length != 1]
+    if not axes:
+        return tuple(range(len(shape))), math.prod(shape)
+    first, end = axes[0], axes[-1] + 1
+    are_together = math.prod(shape[first:end]) == math.prod(bodies)
+    if are_together and (math.prod(bodies) >= _MANY or math.prod(shape[:first]) == 1):
+        return tuple(range(len(shape))), math.prod(shape[end:])
+    times = [k for k, length in enumerate(own) if length == 1]
+    return (*axes, *times), math.prod(shape[k] for k in times)
+
+
+def _index(index: Any) -> Shape:
+    return tuple(int(k) for k in index)
 
 
 def _bivectors(numbers: Array, shape: Shape) -> Multivector:

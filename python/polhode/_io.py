@@ -58,7 +58,7 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         "energy": moving(along, trajectory.energy, "J", "rotational kinetic and potential energy"),
         "inertia": _inertia(trajectory, variable),
     }
-    coordinates = {
+    coordinates: dict[str, Any] = {
         "time": ("time", trajectory.time, {"units": "s", "long_name": "time", "axis": "T"}),
         "quaternion": ["w", "x", "y", "z"],
         "axis": ["x", "y", "z"],

@@ -145,15 +145,17 @@ class Trajectory:
             raise IndexError(f"{error} (batch shape {self.shape})") from None
         # The index is to stay off the axis of time.
         rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
+        drift = None if self._drift is None else self._drift[parts]
+        center: list[Any] = [None, None] if drift else [self.position[rows], self.velocity[rows]]
         return replace(
             self,
             rotor=Rotor._from_rows(self.rotor[rows]._data),
             omega_body=self.omega_body[rows],
             momentum_space=self.momentum_space[rows],
             energy=self.energy[rows],
-            position=self.position[rows] if self._drift is None else None,
-            velocity=self.velocity[rows] if self._drift is None else None,
-            _drift=self._drift[parts] if self._drift is not None else None,
+            position=center[0],
+            velocity=center[1],
+            _drift=drift,
             inertia=self.inertia if isinstance(self.inertia, Inertia) else self.inertia[parts],
             certificate=self.certificate._of(parts),
             failures=self._failures_at(parts, picked),

@@ -55,6 +55,7 @@ pub fn sample<const A: usize, const B: usize>(
     for_each(pieces, |(arguments, a, b)| piece(path, curve, arguments, a, b));
 }
 
+/// In lanes as wide as they may be, and what is left in narrower ones.
 fn piece<const A: usize, const B: usize>(
     path: Path,
     curve: &impl Curve<A, B>,
@@ -62,8 +63,22 @@ fn piece<const A: usize, const B: usize>(
     first: &mut [f64],
     second: &mut [f64],
 ) {
-    let (mut input, mut out) = ([Lane::<LANES>::filled(0.0)], [Lane::<LANES>::filled(0.0); MOST]);
-    let blocks = arguments.chunks(LANES).zip(first.chunks_mut(LANES * A)).zip(second.chunks_mut(LANES * B));
+    let (whole, rest) = arguments.split_at(arguments.len() / LANES * LANES);
+    let (a, more_a) = first.split_at_mut(whole.len() * A);
+    let (b, more_b) = second.split_at_mut(whole.len() * B);
+    blocks::<LANES, A, B>(path, curve, whole, a, b);
+    blocks::<TOGETHER, A, B>(path, curve, rest, more_a, more_b);
+}
+
+fn blocks<const W: usize, const A: usize, const B: usize>(
+    path: Path,
+    curve: &impl Curve<A, B>,
+    arguments: &[f64],
+    first: &mut [f64],
+    second: &mut [f64],
+) {
+    let (mut input, mut out) = ([Lane::<W>::filled(0.0)], [Lane::<W>::filled(0.0); MOST]);
+    let blocks = arguments.chunks(W).zip(first.chunks_mut(W * A)).zip(second.chunks_mut(W * B));
     for ((arguments, a), b) in blocks {
         input[0].0[..arguments.len()].copy_from_slice(arguments);
         path.apply(&OnLanes::<_, A, B>(curve), &input, &[], &mut out);
@@ -72,12 +87,49 @@ fn piece<const A: usize, const B: usize>(
     }
 }
 
+/// Curves that [`together`] evaluates at a time.
+pub const TOGETHER: usize = 16;
+
+/// Asks for what is read soon: a hint, for much that lies in memory. The machine's own prefetching stops at the
+/// end of each page.
+pub fn expect<T>(soon: &T) {
+    Path::best().prefetch(soon, 0..size_of::<T>().div_ceil(64));
+}
+
+/// Values of as many curves as there are lanes, each for its own argument, as rows: `curves` has coefficients of
+/// its own for each lane. The same bits as [`value`] of each.
+pub fn together<const A: usize, const B: usize>(
+    curves: &impl Curve<A, B>,
+    arguments: &[f64; TOGETHER],
+    first: &mut [[f64; A]; TOGETHER],
+    second: &mut [[f64; B]; TOGETHER],
+) {
+    side_by_side(Path::best(), curves, arguments, first, second);
+}
+
+fn side_by_side<const A: usize, const B: usize>(
+    path: Path,
+    curves: &impl Curve<A, B>,
+    arguments: &[f64; TOGETHER],
+    first: &mut [[f64; A]; TOGETHER],
+    second: &mut [[f64; B]; TOGETHER],
+) {
+    let mut out = [Lane::<TOGETHER>::filled(0.0); MOST];
+    path.apply(&OnLanes::<_, A, B>(curves), &[Lane(*arguments)], &[], &mut out);
+    path.scatter(&out[..A], first.as_flattened_mut());
+    path.scatter(&out[A..A + B], second.as_flattened_mut());
+}
+
 struct OnLanes<'a, C, const A: usize, const B: usize>(&'a C);
 
 impl<C: Curve<A, B>, const A: usize, const B: usize> OnLanes<'_, C, A, B> {
     /// `N` at a time: what lies between the steps of a curve is best kept in registers.
     #[inline(always)]
-    fn lanes<const FMA: bool, const N: usize>(&self, arguments: &Lane, out: &mut [Lane]) {
+    fn lanes<const FMA: bool, const N: usize, const W: usize>(
+        &self,
+        arguments: &Lane<W>,
+        out: &mut [Lane<W>],
+    ) {
         let (first, second) = out[..A + B].split_at_mut(A);
         for (i, arguments) in arguments.0.as_chunks::<N>().0.iter().enumerate() {
             let (a, b) = self.0.values::<N, FMA>(arguments);
@@ -91,15 +143,15 @@ impl<C: Curve<A, B>, const A: usize, const B: usize> OnLanes<'_, C, A, B> {
     }
 }
 
-impl<C: Curve<A, B>, const A: usize, const B: usize> Kernel for OnLanes<'_, C, A, B> {
+impl<C: Curve<A, B>, const A: usize, const B: usize, const W: usize> Kernel<W> for OnLanes<'_, C, A, B> {
     #[inline(always)]
-    fn block(&self, arguments: &[Lane], _: &[Lane], out: &mut [Lane]) {
-        self.lanes::<BUILT_WITH_FMA, 16>(&arguments[0], out);
+    fn block(&self, arguments: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
+        self.lanes::<BUILT_WITH_FMA, TOGETHER, W>(&arguments[0], out);
     }
 
     #[inline(always)]
-    fn fused_block(&self, arguments: &[Lane], _: &[Lane], out: &mut [Lane]) {
-        self.lanes::<true, 16>(&arguments[0], out);
+    fn fused_block(&self, arguments: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
+        self.lanes::<true, TOGETHER, W>(&arguments[0], out);
     }
 }
 
@@ -123,11 +175,41 @@ mod tests {
         }
     }
 
+    /// Its multiples by numbers of one curve or of one for each lane.
+    struct Multiples<const C: usize>([f64; C]);
+
+    impl<const C: usize> Curve<1, 2> for Multiples<C> {
+        #[inline(always)]
+        fn values<const W: usize, const FMA: bool>(&self, x: &[f64; W]) -> ([[f64; W]; 1], [[f64; W]; 2]) {
+            let (mut first, mut second) = Sample.values::<W, FMA>(x);
+            for l in 0..W {
+                let factor = self.0[if C == 1 { 0 } else { l }];
+                first[0][l] *= factor;
+                second[0][l] *= factor;
+                second[1][l] *= factor;
+            }
+            (first, second)
+        }
+    }
+
+    #[test]
+    fn curves_side_by_side_give_the_same_bits() {
+        let factors: [f64; TOGETHER] = std::array::from_fn(|l| 0.3 * l as f64 - 1.7);
+        let arguments = factors.map(|x| 0.1 * x);
+        for path in Path::available() {
+            let (mut a, mut b) = ([[0.5]; TOGETHER], [[0.5; 2]; TOGETHER]);
+            side_by_side(path, &Multiples(factors), &arguments, &mut a, &mut b);
+            for l in 0..TOGETHER {
+                assert_eq!((a[l], b[l]), value(&Multiples([factors[l]]), arguments[l]), "{path:?}");
+            }
+        }
+    }
+
     #[test]
     fn every_path_gives_the_same_bits() {
         let arguments: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.003_7 - 0.37).collect();
         for path in Path::available() {
-            for count in [0, 1, 15, 16, 17, 63, 64, 65, 200] {
+            for count in [0, 1, 15, 16, 17, 63, 64, 65, 80, 81, 200] {
                 let (mut a, mut b) = (vec![0.5; count], vec![0.5; 2 * count]);
                 piece(path, &Sample, &arguments[..count], &mut a, &mut b);
                 for (i, &x) in arguments[..count].iter().enumerate() {

@@ -6,8 +6,11 @@
 //!
 //! Closures do not inherit the instructions of the function around them, so that arithmetic is written in loops.
 
+use crate::lanes_math;
 use crate::simd::Path;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+pub use crate::simd::Lane;
 
 /// `W` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +80,17 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
         let mut result = self;
         for x in &mut result.0 {
             *x = x.abs();
+        }
+        result
+    }
+
+    /// The angle in [0, π/2] whose tangent is `self/|s|`, for `self >= 0` and not both 0: to some roundings of it, however
+    /// small.
+    #[inline(always)]
+    pub fn angle(self, s: Self) -> Self {
+        let mut result = self;
+        for l in 0..W {
+            result.0[l] = lanes_math::angle(self.0[l], s.0[l]);
         }
         result
     }

@@ -180,6 +180,19 @@ pub(crate) fn common_reciprocal(size: f64, s: f64) -> f64 {
     1.0 / (size * (only(above, size) + only(below, c)))
 }
 
+/// The angle in [0, π/2] of the point `(|s|, size)`, not both 0, to some roundings of it: [`Tangent::angle`] without the
+/// second numbers.
+#[inline(always)]
+pub(crate) fn angle(size: f64, s: f64) -> f64 {
+    let c = s.abs();
+    let (below, above) = turned_back(size, c);
+    let num = only(below, size) - only(above, c);
+    let den = only(above, size) + only(below, c);
+    let eighths = only(above, 1.0) + only(!below, 1.0);
+    let tangent = Tangent { u: num / den, rest: 0.0, eighths };
+    eighths * std::f64::consts::FRAC_PI_4 + (tangent.u + tangent.excess())
+}
+
 /// A quotient `u + rest` whose arc tangent is at most 22.5°, and how it makes up an angle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tangent {

@@ -40,7 +40,7 @@ pub(crate) const LANES: usize = 64;
 /// One component of a block of `W` rows, a multiple of eight.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Lane<const W: usize = LANES>(pub [f64; W]);
+pub struct Lane<const W: usize = LANES>(pub [f64; W]);
 
 impl<const W: usize> Lane<W> {
     /// The same number in every row.

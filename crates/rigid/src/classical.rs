@@ -116,10 +116,12 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     }
     if E::ACTS {
         let mut torque = exert.torque(&Place { rotor: r, omega: w, time });
-        let h = bodies.wheel;
-        torque[0] += h[2].times_from(w[1], h[1] * w[2]);
-        torque[1] += h[0].times_from(w[2], h[2] * w[0]);
-        torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+        if E::WHEELS {
+            let h = bodies.wheel;
+            torque[0] += h[2].times_from(w[1], h[1] * w[2]);
+            torque[1] += h[0].times_from(w[2], h[2] * w[0]);
+            torque[2] += h[1].times_from(w[0], h[0] * w[1]);
+        }
         for k in 0..3 {
             let driven = torque[k].times_plus(bodies.inverse[k], slope[4 + k]);
             slope[4 + k] = bodies.damping.times_from(w[k], driven);
@@ -153,10 +155,11 @@ fn turn<const W: usize, const F: bool>(
 /// `R/|R|` to the third power of what |R|² − 1 is.
 #[inline(always)]
 pub(crate) fn renormalize<const N: usize, const W: usize, const F: bool>(y: &mut State<N, W, F>) {
-    let mut excess = y[0].times_plus(y[0], Lanes::all(-1.0));
+    let mut square = y[0] * y[0];
     for k in 1..4 {
-        excess = y[k].times_plus(y[k], excess);
+        square = y[k].times_plus(y[k], square);
     }
+    let excess = square - Lanes::all(1.0);
     // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
     let missing = excess * excess.times_plus(Lanes::all(0.375), Lanes::all(-0.5));
     for k in 0..4 {

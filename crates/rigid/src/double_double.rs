@@ -118,12 +118,13 @@ impl Mul for DoubleDouble {
 
 impl Div for DoubleDouble {
     type Output = DoubleDouble;
+    /// What a rounded quotient of the first parts leaves of them, `hi − q o.hi`, is a number; the rest is smaller,
+    /// and needs no more than a rounded quotient again.
     fn div(self, o: DoubleDouble) -> DoubleDouble {
-        let q1 = self.hi / o.hi;
-        let rest = self - o * q1.into();
-        let q2 = rest.hi / o.hi;
-        let rest = rest - o * q2.into();
-        DoubleDouble::quick_two_sum(q1, q2) + (rest.hi / o.hi).into()
+        let q = self.hi / o.hi;
+        let product = DoubleDouble::two_product(q, o.hi);
+        let rest = ((self.hi - product.hi) - product.lo) + (self.lo - q * o.lo);
+        DoubleDouble::quick_two_sum(q, rest / o.hi)
     }
 }
 

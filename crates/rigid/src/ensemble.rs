@@ -5,6 +5,7 @@
 //! others are stepped in the lanes where the method has a form for them, the rest one by one. A body that fails is
 //! told, and the others go on.
 
+mod advance;
 mod block;
 mod fixed;
 mod laws;

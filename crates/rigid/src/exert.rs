@@ -23,6 +23,9 @@ pub(crate) trait Exert<const W: usize, const F: bool> {
     /// Whether there are torques at all, a wheel or damping.
     const ACTS: bool;
 
+    /// Whether there may be wheels.
+    const WHEELS: bool = true;
+
     /// The torque in principal axes at a point of the motion, without the part `−g I(Ω)` and that of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 

@@ -3,6 +3,11 @@
 //! A formula is read, compiled and checked once: the grades of its value, by what it is made of, must be those of what
 //! it stands for. Then it is run like any formula on single values, on what the motion gives for its names.
 
+mod beside;
+
+pub(crate) use beside::Formulas;
+
+use crate::phase::Gyrostat;
 use crate::point::Point;
 use crate::torque::{Axes, TorqueError};
 use polhode_ga::formula::{
@@ -172,16 +177,19 @@ impl Motion {
             Motion::OmegaSpace => bivector(state.rotor.apply_bivector(body.omega(state.momentum))),
             Motion::MomentumBody => bivector(frame.apply_bivector(state.momentum)),
             Motion::MomentumSpace => bivector(state.rotor.apply_bivector(state.momentum)),
-            Motion::Inertia => {
-                let (f, i) = (frame.to_matrix(), body.moments);
-                let entry = |j: usize, k: usize| (0..3).map(|a| f[j][a] * i[a] * f[k][a]).sum();
-                Given::Matrix(from_fn(|n| entry(n / 3, n % 3)))
-            }
+            Motion::Inertia => inertia(body, frame),
             Motion::Position => vector(center.position),
             Motion::Velocity => vector(center.velocity),
             Motion::Mass => Given::Value(Graded::default().map(|_| mass)),
         }
     }
+}
+
+/// The matrix of `I(…)`, `frame` leading from principal axes to the body's.
+fn inertia(body: &Gyrostat, frame: Rotor) -> Given {
+    let (f, i) = (frame.to_matrix(), body.moments);
+    let entry = |j: usize, k: usize| (0..3).map(|a| f[j][a] * i[a] * f[k][a]).sum();
+    Given::Matrix(from_fn(|n| entry(n / 3, n % 3)))
 }
 
 thread_local! {

@@ -94,12 +94,12 @@ use crate::simulate_error::SimulateError;
 pub use derivatives::{Differentiated, FlowDerivatives};
 use flow::{AnyFlow, Flow};
 use lanes::Phase;
-pub use many::at_each;
+pub use many::{TILE, Tile, Times, at_each};
 use orbit::Orbit;
 use polhode_ga::curve::{sample, value};
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use series::{Circular, Hyperbolic, LARGEST_NOME, Series};
+use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
 use std::f64::consts::PI;
 
 /// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
@@ -192,12 +192,12 @@ fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     let d = Rotor::from_unit_components([0.0, -plane.0[0], -plane.0[1], -plane.0[2]]);
     let still = Phase { rate: DoubleDouble::ZERO, start: [0.0; 2] };
     let flow = Flow {
-        scale,
-        orbit: still,
-        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), ..still },
+        scale: [scale],
+        orbit: still.into(),
+        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), ..still }.into(),
         series: Circular::steady(),
-        rotor: [[0.0; 4]; 4],
-        omega: frame.apply_bivector(omega).0.map(|w| [0.0, 0.0, w]),
+        rotor: [[[0.0]; 4]; 4],
+        omega: frame.apply_bivector(omega).0.map(|w| [[0.0], [0.0], [w]]),
     };
     AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
 }
@@ -208,10 +208,10 @@ fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     // AGM(1, k) = π/2K'.
     let other = mean(orbit.k2.sqrt());
     let Some(mean) = orbit.mean else {
-        let rate = orbit.lambda / Hyperbolic::NEVER.into();
-        let phase = Phase { rate, start: [rest / Hyperbolic::NEVER, 0.0] };
+        let rate = orbit.lambda / NEVER.into();
+        let phase = Phase { rate, start: [rest / NEVER, 0.0] };
         let series = Hyperbolic::separatrix(0.5 * orbit.eta() * other, orbit.s);
-        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame));
+        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame));
     };
     // 1/4K.
     let per_u = mean * DoubleDouble::OVER_TWO_PI;
@@ -220,16 +220,23 @@ fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     if nome <= LARGEST_NOME {
         let rho = (-orbit.rest_of_eta() * mean.hi).exp();
         let series = Circular::new(nome, rho, orbit.s);
-        AnyFlow::Circular(flow(orbit, scale, phase, series, rotor, frame))
+        AnyFlow::Circular(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame))
     } else {
         // πK/4K' and πη/4K'.
         let series = Hyperbolic::new(0.25 * PI * other / mean.hi, 0.5 * orbit.eta() * other, orbit.s);
-        AnyFlow::Hyperbolic(flow(orbit, scale, phase, series, rotor, frame))
+        AnyFlow::Hyperbolic(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame))
     }
 }
 
-/// Phases, series and frames together.
-fn flow<S: Series>(top: &Orbit, scale: f64, phase: Phase, series: S, rotor: Rotor, frame: Rotor) -> Flow<S> {
+/// Phases, series with their normalizers, and frames together.
+fn flow<S: Series<1>>(
+    top: &Orbit,
+    scale: f64,
+    phase: Phase,
+    (series, factors): (S, [f64; 3]),
+    rotor: Rotor,
+    frame: Rotor,
+) -> Flow<S> {
     let rate = top.precession * DoubleDouble::OVER_TWO_PI * 0.5.into();
     let precession = Phase { rate, start: [0.0; 2] };
     let axis = |k: usize| {
@@ -242,11 +249,11 @@ fn flow<S: Series>(top: &Orbit, scale: f64, phase: Phase, series: S, rotor: Roto
         let [x, y, z] = axis(k).map(|x| -top.signs[k] * x);
         Rotor::from_unit_components([0.0, x, y, z])
     };
-    let factors = series.normalizers();
     let columns: [[f64; 3]; 3] = std::array::from_fn(|k| {
         frame.apply_bivector(Bivector(axis(k)) * (top.amplitudes[k] * factors[k] * scale)).0
     });
-    let omega = std::array::from_fn(|i| columns.map(|c| c[i]));
-    let flow = Flow { scale, orbit: phase, precession, series, rotor: [[0.0; 4]; 4], omega };
+    let omega = std::array::from_fn(|i| columns.map(|c| [c[i]]));
+    let (scale, orbit, precession) = ([scale], phase.into(), precession.into());
+    let flow = Flow { scale, orbit, precession, series, rotor: [[[0.0]; 4]; 4], omega };
     flow.with_frames(rotor, [Rotor::IDENTITY, unit(0), unit(1), unit(2)], frame.reverse())
 }

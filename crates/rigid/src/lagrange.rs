@@ -67,7 +67,7 @@ mod start;
 use crate::double_double::DoubleDouble;
 use crate::elliptic::mean;
 use crate::free::lanes::Phase;
-use crate::free::series::LARGEST_NOME;
+use crate::free::series::{LARGEST_NOME, NEVER};
 use crate::free::{FreeMotion, MOST_TURNS};
 use crate::inertia::Inertia;
 use crate::phase::Gyrostat;
@@ -182,8 +182,8 @@ fn form(axes: &Axes, start: &Start, orbit: Orbit) -> Form {
     let other = mean(orbit.k2.sqrt());
     let gammas = orbit.zeros.map(|zero| (zero.side, zero.eta * other));
     let Some(mean) = orbit.mean else {
-        let rate = orbit.lambda / crate::free::series::Hyperbolic::NEVER.into();
-        let phase = Phase { rate, start: [rest / crate::free::series::Hyperbolic::NEVER, 0.0] };
+        let rate = orbit.lambda / NEVER.into();
+        let phase = Phase { rate, start: [rest / NEVER, 0.0] };
         let series = Hyperbolic::separatrix(gammas[0].1, gammas[0].0);
         return Form::Hyperbolic(orbit, flow(axes, start, &orbit, phase, series));
     };

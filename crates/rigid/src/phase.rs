@@ -1,5 +1,7 @@
 //! A body in its principal axes, and a point of its motion.
 
+use crate::torque::lanes::vertical;
+use polhode_ga::lanes::One;
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// A body in its principal axes, with a wheel inside whose momentum relative to the body is constant (a gyrostat;
@@ -27,8 +29,7 @@ impl Phase {
     /// `γ = ~R e3 R`: what is vertical in space, seen from the body.
     #[inline]
     pub fn vertical(&self) -> Vector {
-        let [s, x, y, z] = self.rotor.components();
-        Vector([2.0 * (x * z + s * y), 2.0 * (y * z - s * x), s * s + z * z - (x * x + y * y)])
+        Vector(One::alone(vertical(&One::each(self.rotor.components()))))
     }
 }
 

@@ -6,6 +6,7 @@
 mod formula;
 mod function;
 mod gains;
+pub(crate) mod lanes;
 mod orbit;
 mod table;
 
@@ -17,6 +18,8 @@ pub use table::{Kind, Table};
 
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
+use lanes::{gradient, quadratic, seen};
+use polhode_ga::lanes::One;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::fmt;
 use std::sync::Arc;
@@ -178,33 +181,36 @@ impl Torque {
     /// wheel.
     pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
         let rotor = state.rotor;
+        let r = One::each(rotor.components());
+        let from_space = |b: Bivector| Bivector(One::alone(seen(&r, &One::each(b.0))));
         Ok(match self {
             Torque::Heavy(c) => state.vertical().wedge(*c),
             Torque::GravityGradient(orbit) => {
-                let (u, nearness) = orbit.place(state.time);
-                let u = rotor.reverse().apply(u);
-                u.wedge(body.stretched(u)) * (3.0 * orbit.rate() * orbit.rate() * nearness)
+                let (Vector(u), nearness) = orbit.place(state.time);
+                let strength = 3.0 * orbit.rate() * orbit.rate() * nearness;
+                let u = seen(&r, &One::each(u));
+                Bivector(One::alone(gradient(&One::each(body.moments), &u, One::all(strength))))
             }
             Torque::ConstantBody(torque) => *torque,
-            Torque::ConstantSpace(torque) => rotor.reverse().apply_bivector(*torque),
+            Torque::ConstantSpace(torque) => from_space(*torque),
             Torque::Damping(_) | Torque::Wheel(_) => Bivector::default(),
             Torque::QuadraticDamping(k) => {
-                let omega = body.omega(state.momentum);
-                omega * (-k * omega.norm())
+                let omega = One::each(body.omega(state.momentum).0);
+                Bivector(One::alone(quadratic(One::all(*k), &omega)))
             }
             Torque::ViscousDamping(d) => -d.times(body.omega(state.momentum)),
-            Torque::Magnetic { dipole, field } => dipole.wedge(rotor.reverse().apply(*field)),
+            Torque::Magnetic { dipole, field } => dipole.wedge(from_space(field.undual()).dual()),
             Torque::TorsionSpring { stiffness, rest } => turn_from(*rest, rotor) * -stiffness,
             Torque::Control { stiffness, damping, target } => {
                 let pull = stiffness.times(turn_from(*target, rotor));
                 -(pull + damping.times(body.omega(state.momentum)))
             }
-            Torque::Larmor(b) => state.momentum.dual().wedge(rotor.reverse().apply(*b)),
+            Torque::Larmor(b) => state.momentum.dual().wedge(from_space(b.undual()).dual()),
             Torque::Tabulated(table) => {
                 let torque = table.at(state.time)?;
                 match table.axes {
                     Axes::Body => torque,
-                    Axes::Space => rotor.reverse().apply_bivector(torque),
+                    Axes::Space => from_space(torque),
                 }
             }
             Torque::Formula(law) => law.value(body, state)?,
@@ -285,13 +291,8 @@ impl Torque {
 /// motion `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. Half a turn away
 /// the two ways are equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
 pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
-    let turn = rest.reverse() * rotor;
-    let [s, x, y, z] = if turn.components()[0] < 0.0 { -turn } else { turn }.components();
-    let plane = Bivector([x, y, z]);
-    let size = plane.norm();
-    // `q = cos ½θ − sin ½θ Θ/θ`, and θ/sin ½θ = 2 where there is no turn.
-    let factor = if size == 0.0 { 2.0 } else { 2.0 * size.atan2(s) / size };
-    plane * -factor
+    let [rest, rotor] = [rest, rotor].map(|r| One::each(r.components()));
+    Bivector(One::alone(lanes::turn_from(&rest, &rotor)))
 }
 
 /// The sum of all laws at a point of the motion, without damping and wheels; why and when there is none.

@@ -21,6 +21,7 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+mod beside;
 mod builder;
 mod compile;
 mod define;
@@ -47,6 +48,7 @@ mod steps;
 mod token;
 mod tree;
 
+pub use beside::Beside;
 pub use compile::{compile, types};
 pub use define::{define, heading};
 pub use names::{Definition, Meaning, Names, Type};

@@ -123,7 +123,7 @@ impl Runner {
         failure.map_or(Ok(()), |error| Err(late(error)))
     }
 
-    fn size_of_result(&self, k: usize) -> usize {
+    pub(super) fn size_of_result(&self, k: usize) -> usize {
         size(self.steps[self.results[k]].grades)
     }
 
@@ -264,7 +264,7 @@ impl Sweep<'_> {
 }
 
 /// The lanes of two operands to read, and others to write.
-fn apart<'a, const W: usize>(
+pub(super) fn apart<'a, const W: usize>(
     lanes: &'a mut [Lane<W>],
     [a, b]: &[Range<usize>; 2],
     to: &Range<usize>,

@@ -1,7 +1,8 @@
 //! Equal steps of bodies side by side.
 
+use super::advance::Stretch;
 use super::block::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
-use super::laws::{Laws, Nothing};
+use super::laws::{Acting, Laws};
 use super::steppers::{Components, Kicks, Stepper, of};
 use crate::certificate::{Certificate, Watch};
 use crate::classical::Bodies;
@@ -29,31 +30,6 @@ pub(super) struct FixedSteps<'a, 'b> {
     pub progress: &'b mut dyn FnMut(Progress) -> bool,
 }
 
-/// Equal steps from one time to another.
-#[derive(Clone, Copy)]
-struct Stretch {
-    from: f64,
-    to: f64,
-    count: u64,
-}
-
-impl Stretch {
-    /// Where a step ends. The differences of these rounded times are the steps, so that they add up to the time.
-    #[inline(always)]
-    fn end(&self, step: u64) -> f64 {
-        if step + 1 == self.count {
-            self.to
-        } else {
-            self.from + (self.to - self.from) * ((step + 1) as f64 / self.count as f64)
-        }
-    }
-
-    #[inline(always)]
-    fn begin(&self, step: u64) -> f64 {
-        if step == 0 { self.from } else { self.end(step - 1) }
-    }
-}
-
 impl Work for FixedSteps<'_, '_> {
     type Output = ();
 
@@ -69,22 +45,17 @@ impl Work for FixedSteps<'_, '_> {
             let (stages, last) = sequence.stages();
             let fixed = |l: usize| fixed_momentum(laws(l), &of(members, l).start).map(|momentum| momentum.0);
             let turns = Turns::new(array::from_fn(|l| (gyrostats[l], damping(l), fixed(l))));
-            let (stages, exert) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
-            self.walk(&mut Kicks::<_, F> { turns, stages, exert }, &torques);
+            let (stages, laws) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
+            self.walk(&mut Kicks::<F> { turns, stages, laws }, &torques);
         } else {
             let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
-            if torques.iter().all(Vec::is_empty) {
-                self.walk(&mut Components::<_, F> { bodies, exert: Nothing }, &torques);
-            } else {
-                let exert = Laws::new(gyrostats, array::from_fn(laws));
-                self.walk(&mut Components::<_, F> { bodies, exert }, &torques);
-            }
+            let acting = Acting::new(gyrostats, array::from_fn(laws));
+            self.walk(&mut Components::<F> { bodies, acting }, &torques);
         }
     }
 }
 
 impl FixedSteps<'_, '_> {
-    #[inline(always)]
     fn walk<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
         let FixedSteps { crew, plan, mut members, progress } = self;
         let Plan { step, method, .. } = plan;
@@ -108,20 +79,17 @@ impl FixedSteps<'_, '_> {
                     for first in (0..stretch.count).step_by(BETWEEN_LOOKS as usize) {
                         let last = stretch.count.min(first + BETWEEN_LOOKS);
                         let before = state;
-                        for i in first..last {
-                            let (from, to) = (stretch.begin(i), stretch.end(i));
-                            stepper.step(&mut state, from, to - from);
-                        }
+                        stepper.advance(&mut state, stretch, &(first..last));
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
-                            let now = stepper.phase(&member.gyrostat, &state, l, stretch.end(last - 1));
+                            let now = stepper.phase(&member.gyrostat, &state, l, stretch.begin(last));
                             if failures[l].is_none() && !is_finite(&Carried::new(now, Center::default())) {
                                 let from = stepper.phase(&member.gyrostat, &before, l, stretch.begin(first));
                                 let part = (&stretch, first..last);
                                 failures[l] = Some(diagnose(method, member, &torques[l], from, part));
                             }
                         }
-                        let gone = stretch.end(last - 1);
+                        let gone = stretch.begin(last);
                         let walked = if side == 0 { -gone } else { gone - begin };
                         crew.count(&mut so_far, walked / total, members.len());
                         if !crew.report(progress) {
@@ -205,7 +173,7 @@ fn diagnose(
         Err(error) => return (from.time, error),
     };
     for i in steps {
-        let (begin, end) = (stretch.begin(i), stretch.end(i));
+        let (begin, end) = (stretch.begin(i), stretch.begin(i + 1));
         match alone.step(&at, end - begin, 0.0) {
             Ok((next, _)) if is_finite(&next) => at = next,
             Ok(_) => return (begin, SimulateError::Diverged { time: end }),

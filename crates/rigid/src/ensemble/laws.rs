@@ -1,11 +1,17 @@
 //! Torque laws of bodies side by side.
+//!
+//! Laws of one kind whose parameters add up become one. What all bodies share at a time, as an orbit or a table, is
+//! evaluated once for all, and not again while the time stays.
 
 use crate::exert::{Exert, Place};
+use crate::formula::{Formula, Formulas};
 use crate::phase::{Gyrostat, Phase};
-use crate::torque::Torque;
-use polhode_ga::lanes::{Lanes, cross, matrix};
-use polhode_ga::{Bivector, Rotor};
+use crate::torque::lanes::{Three, gradient, quadratic, seen, turn_from, vertical};
+use crate::torque::{Axes, Gains, Orbit, Table, Torque};
+use polhode_ga::lanes::{Lanes, Work, cross, fastest, mapped};
+use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
+use std::sync::Arc;
 
 /// Free bodies without wheels.
 pub(super) struct Nothing;
@@ -24,54 +30,421 @@ impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
     }
 }
 
+/// Nothing but weights and damping, without wheels: what stays in registers.
+pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
+
+impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
+    const ACTS: bool = true;
+    const WHEELS: bool = false;
+
+    /// γ∧c: its axial vector is γ x c.
+    #[inline(always)]
+    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+        cross(&vertical(&at.rotor), &self.0)
+    }
+
+    #[inline(always)]
+    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
+        [Lanes::ZERO; 3]
+    }
+}
+
+/// Nothing but the gradient along one orbit and damping, without wheels.
+pub(super) struct Gradient<const W: usize, const F: bool> {
+    moments: Three<W, F>,
+    orbits: Orbits<W>,
+}
+
+impl<const W: usize, const F: bool> Exert<W, F> for Gradient<W, F> {
+    const ACTS: bool = true;
+    const WHEELS: bool = false;
+
+    #[inline(always)]
+    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
+        self.orbits.torque(&self.moments, at)
+    }
+
+    #[inline(always)]
+    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
+        [Lanes::ZERO; 3]
+    }
+}
+
+/// What turns bodies side by side, by how much of it there is.
+pub(super) enum Acting<'t, const W: usize, const F: bool> {
+    Nothing,
+    Weight(Weight<W, F>),
+    Gradient(Gradient<W, F>),
+    Laws(Laws<'t, W, F>),
+}
+
+impl<'t, const W: usize, const F: bool> Acting<'t, W, F> {
+    /// Every body has laws of the same kinds in the same order.
+    pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> Acting<'t, W, F> {
+        if torques[0].is_empty() {
+            return Acting::Nothing;
+        }
+        let mut laws = Laws::new(gyrostats, torques);
+        let wheels = gyrostats.iter().any(|body| body.wheel != Bivector::default());
+        match laws.laws.pop() {
+            Some(Law::Heavy(c)) if laws.laws.is_empty() && !wheels => Acting::Weight(Weight(c)),
+            Some(Law::GravityGradient(orbits)) if laws.laws.is_empty() && !wheels => {
+                Acting::Gradient(Gradient { moments: laws.moments, orbits })
+            }
+            last => {
+                laws.laws.extend(last);
+                Acting::Laws(laws)
+            }
+        }
+    }
+}
+
 /// The laws of bodies side by side, in principal axes.
 pub(super) struct Laws<'t, const W: usize, const F: bool> {
     gyrostats: [Gyrostat; W],
-    /// `c` of all weights together.
-    weight: Option<[Lanes<W, F>; 3]>,
-    /// Others, lane by lane.
-    others: Vec<[&'t Torque; W]>,
+    moments: Three<W, F>,
+    wheel: Three<W, F>,
+    laws: Vec<Law<'t, W, F>>,
+}
+
+/// A law, or some that act as one, with the parameters of each body.
+enum Law<'t, const W: usize, const F: bool> {
+    /// `c` of all weights.
+    Heavy(Three<W, F>),
+    GravityGradient(Orbits<W>),
+    ConstantBody(Three<W, F>),
+    ConstantSpace(Three<W, F>),
+    QuadraticDamping(Lanes<W, F>),
+    /// By rows of d.
+    ViscousDamping([Three<W, F>; 3]),
+    Magnetic {
+        dipole: Three<W, F>,
+        field: Three<W, F>,
+    },
+    /// By rows of k.
+    Spring {
+        stiffness: [Three<W, F>; 3],
+        rest: [Lanes<W, F>; 4],
+    },
+    Larmor(Three<W, F>),
+    /// A table that all share, in its axes.
+    Tabulated(Latest<'t>),
+    Formula(Box<Formulas<'t, W, F>>),
+    /// Lane by lane.
+    Other([&'t Torque; W]),
+}
+
+/// The orbits of all bodies, with their latest places.
+struct Orbits<const W: usize> {
+    orbits: [Orbit; W],
+    shared: bool,
+    times: [f64; W],
+    /// Directions u, whose third component is 0, and `3n² (a/r)³`.
+    places: [[f64; W]; 3],
+}
+
+/// A table with its latest value.
+struct Latest<'t> {
+    table: &'t Table,
+    time: f64,
+    torque: [f64; 3],
+}
+
+/// The numbers of each lane, for values of `N` numbers.
+fn rows<const N: usize, const W: usize, const F: bool>(
+    each: &[&Torque; W],
+    of: impl Fn(&Torque) -> Option<[f64; N]>,
+) -> [Lanes<W, F>; N] {
+    let mut rows = [Lanes::ZERO; N];
+    for (l, law) in each.iter().enumerate() {
+        // A body without this law has it with zeros.
+        let numbers = of(law).unwrap_or([0.0; N]);
+        for k in 0..N {
+            rows[k].0[l] = numbers[k];
+        }
+    }
+    rows
+}
+
+fn square<const W: usize, const F: bool>(rows: [Lanes<W, F>; 9]) -> [Three<W, F>; 3] {
+    let [a, b, c, d, e, f, g, h, i] = rows;
+    [[a, b, c], [d, e, f], [g, h, i]]
+}
+
+impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
+    /// The same law of each body as one in lanes; a controller is a spring and a damper. Damping and wheels are with the
+    /// bodies.
+    fn new(each: [&'t Torque; W], gyrostats: &[Gyrostat; W]) -> Vec<Law<'t, W, F>> {
+        let three = |of: fn(&Torque) -> Option<[f64; 3]>| rows(&each, of);
+        let spring = |of: fn(&Torque) -> Option<(Gains, Rotor)>| Law::Spring {
+            stiffness: square(rows(&each, |law| Some(of(law)?.0.entries()))),
+            rest: rows(&each, |law| Some(of(law)?.1.components())),
+        };
+        let law = match each[0] {
+            Torque::Damping(_) | Torque::Wheel(_) => return Vec::new(),
+            Torque::Heavy(_) => {
+                Law::Heavy(three(|law| if let Torque::Heavy(c) = law { Some(c.0) } else { None }))
+            }
+            Torque::GravityGradient(_) => Orbits::new(each).map_or(Law::Other(each), Law::GravityGradient),
+            Torque::ConstantBody(_) => {
+                Law::ConstantBody(three(
+                    |law| if let Torque::ConstantBody(n) = law { Some(n.0) } else { None },
+                ))
+            }
+            Torque::ConstantSpace(_) => {
+                Law::ConstantSpace(three(
+                    |law| {
+                        if let Torque::ConstantSpace(n) = law { Some(n.0) } else { None }
+                    },
+                ))
+            }
+            Torque::QuadraticDamping(_) => Law::QuadraticDamping(
+                rows(&each, |law| if let Torque::QuadraticDamping(k) = law { Some([*k]) } else { None })[0],
+            ),
+            Torque::ViscousDamping(_) => Law::ViscousDamping(square(rows(&each, |law| {
+                if let Torque::ViscousDamping(d) = law { Some(d.entries()) } else { None }
+            }))),
+            Torque::Magnetic { .. } => Law::Magnetic {
+                dipole: three(
+                    |law| if let Torque::Magnetic { dipole, .. } = law { Some(dipole.0) } else { None },
+                ),
+                field: three(
+                    |law| if let Torque::Magnetic { field, .. } = law { Some(field.0) } else { None },
+                ),
+            },
+            Torque::TorsionSpring { .. } => spring(|law| match law {
+                Torque::TorsionSpring { stiffness, rest } => Some((Gains::new([*stiffness; 3]), *rest)),
+                _ => None,
+            }),
+            Torque::Control { .. } => {
+                let pull = spring(|law| match law {
+                    Torque::Control { stiffness, target, .. } => Some((*stiffness, *target)),
+                    _ => None,
+                });
+                let damping = rows(&each, |law| match law {
+                    Torque::Control { damping, .. } => Some(damping.entries()),
+                    _ => None,
+                });
+                return vec![pull, Law::ViscousDamping(square(damping))];
+            }
+            Torque::Larmor(_) => {
+                Law::Larmor(three(|law| if let Torque::Larmor(b) = law { Some(b.0) } else { None }))
+            }
+            Torque::Tabulated(table) => {
+                let same =
+                    |law: &&Torque| matches!(law, Torque::Tabulated(other) if Arc::ptr_eq(table, other));
+                if each.iter().all(same) {
+                    Law::Tabulated(Latest { table, time: f64::NAN, torque: [f64::NAN; 3] })
+                } else {
+                    Law::Other(each)
+                }
+            }
+            Torque::Formula(first) => {
+                let mut formulas: [&Formula; W] = [first.formula(); W];
+                for l in 0..W {
+                    let Torque::Formula(law) = each[l] else { return vec![Law::Other(each)] };
+                    formulas[l] = law.formula();
+                }
+                let formulas = Formulas::new(formulas, gyrostats);
+                formulas.map_or(Law::Other(each), |formulas| Law::Formula(Box::new(formulas)))
+            }
+            Torque::Function(_) => Law::Other(each),
+        };
+        vec![law]
+    }
+
+    /// Adds the parameters of a law of the same kind; false where they do not add up.
+    fn join(&mut self, other: &Law<'t, W, F>) -> bool {
+        match (self, other) {
+            (Law::Heavy(a), Law::Heavy(b))
+            | (Law::ConstantBody(a), Law::ConstantBody(b))
+            | (Law::ConstantSpace(a), Law::ConstantSpace(b))
+            | (Law::Larmor(a), Law::Larmor(b)) => add(a, b),
+            (Law::QuadraticDamping(a), Law::QuadraticDamping(b)) => *a += *b,
+            (Law::ViscousDamping(a), Law::ViscousDamping(b)) => {
+                for k in 0..3 {
+                    add(&mut a[k], &b[k]);
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+}
+
+#[inline(always)]
+fn add<const W: usize, const F: bool>(a: &mut Three<W, F>, b: &Three<W, F>) {
+    for k in 0..3 {
+        a[k] += b[k];
+    }
+}
+
+impl<const W: usize> Orbits<W> {
+    fn new(each: [&Torque; W]) -> Option<Orbits<W>> {
+        let mut orbits = [Orbit::circular(0.0); W];
+        for (l, law) in each.into_iter().enumerate() {
+            let Torque::GravityGradient(orbit) = law else { return None };
+            orbits[l] = *orbit;
+        }
+        let shared = orbits.iter().all(|orbit| *orbit == orbits[0]);
+        Some(Orbits { orbits, shared, times: [f64::NAN; W], places: [[0.0; W]; 3] })
+    }
+
+    #[inline(always)]
+    fn torque<const F: bool>(&mut self, moments: &Three<W, F>, at: &Place<W, F>) -> Three<W, F> {
+        let mut elsewhere = false;
+        for l in 0..W {
+            elsewhere |= at.time.0[l] != self.times[l];
+        }
+        if elsewhere {
+            self.go_to(&at.time.0);
+        }
+        let [x, y, strength] = self.places;
+        gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
+    }
+
+    /// Brings the places to these times.
+    fn go_to(&mut self, times: &[f64; W]) {
+        self.times = *times;
+        if self.shared && times.iter().all(|time| *time == times[0]) {
+            let place = place(&self.orbits[0], times[0]);
+            for k in 0..3 {
+                self.places[k] = [place[k]; W];
+            }
+            return;
+        }
+        for l in 0..W {
+            let place = place(&self.orbits[l], times[l]);
+            for k in 0..3 {
+                self.places[k][l] = place[k];
+            }
+        }
+    }
+}
+
+/// Two components of u, and the strength of the field.
+fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
+    let (Vector([x, y, _]), nearness) = orbit.place(time);
+    [x, y, 3.0 * orbit.rate() * orbit.rate() * nearness]
+}
+
+impl Latest<'_> {
+    /// The torque at a time, NaN where the table has none.
+    fn at(&mut self, time: f64) -> [f64; 3] {
+        if time != self.time {
+            self.time = time;
+            self.torque = self.table.at(time).map_or([f64::NAN; 3], |torque| torque.0);
+        }
+        self.torque
+    }
 }
 
 impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
     /// Every body has laws of the same kinds in the same order.
     pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> Laws<'t, W, F> {
-        let mut laws = Laws { gyrostats, weight: None, others: Vec::new() };
+        let mut laws: Vec<Law<'t, W, F>> = Vec::new();
         for law in 0..torques[0].len() {
-            let each: [&Torque; W] = array::from_fn(|l| &torques[l][law]);
-            match each[0] {
-                Torque::Damping(_) | Torque::Wheel(_) => {}
-                Torque::Heavy(_) => {
-                    let sum = laws.weight.get_or_insert([Lanes::ZERO; 3]);
-                    for (l, law) in each.iter().enumerate() {
-                        let Torque::Heavy(c) = law else { continue };
+            for law in Law::new(array::from_fn(|l| &torques[l][law]), &gyrostats) {
+                if !laws.iter_mut().any(|known| known.join(&law)) {
+                    laws.push(law);
+                }
+            }
+        }
+        let (mut moments, mut wheel) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
+        for (l, body) in gyrostats.iter().enumerate() {
+            for k in 0..3 {
+                moments[k].0[l] = body.moments[k];
+                wheel[k].0[l] = body.wheel.0[k];
+            }
+        }
+        Laws { gyrostats, moments, wheel, laws }
+    }
+}
+
+/// By the law of each body; NaN where one has no torque.
+#[inline(never)]
+fn lane_by_lane<const W: usize, const F: bool>(
+    gyrostats: &[Gyrostat; W],
+    each: &[&Torque; W],
+    at: &Place<W, F>,
+) -> Three<W, F> {
+    let mut torques = [Lanes::ZERO; 3];
+    for l in 0..W {
+        let body = &gyrostats[l];
+        let rotor = at.rotor.map(|lanes| lanes.0[l]);
+        let known = rotor[0].is_finite();
+        let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
+        let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
+        // A body that failed is asked no more.
+        let torque = if known { each[l].value(body, &phase).ok() } else { None };
+        let torque = torque.unwrap_or(Bivector([f64::NAN; 3]));
+        for k in 0..3 {
+            torques[k].0[l] = torque.0[k];
+        }
+    }
+    torques
+}
+
+impl<const W: usize, const F: bool> Laws<'_, W, F> {
+    #[inline(always)]
+    fn total(&mut self, at: &Place<W, F>) -> Three<W, F> {
+        let mut sum = [Lanes::ZERO; 3];
+        for law in &mut self.laws {
+            let torque = match law {
+                // γ∧c: its axial vector is γ x c.
+                Law::Heavy(c) => cross(&vertical(&at.rotor), c),
+                Law::GravityGradient(orbits) => orbits.torque(&self.moments, at),
+                Law::ConstantBody(torque) => *torque,
+                Law::ConstantSpace(torque) => seen(&at.rotor, torque),
+                Law::QuadraticDamping(k) => quadratic(*k, &at.omega),
+                Law::ViscousDamping(d) => {
+                    let [x, y, z] = mapped(d, &at.omega);
+                    [-x, -y, -z]
+                }
+                Law::Magnetic { dipole, field } => cross(dipole, &seen(&at.rotor, field)),
+                Law::Spring { stiffness, rest } => {
+                    let [x, y, z] = mapped(stiffness, &turn_from(rest, &at.rotor));
+                    [-x, -y, -z]
+                }
+                Law::Larmor(b) => {
+                    let mut momentum = self.wheel;
+                    for k in 0..3 {
+                        momentum[k] = self.moments[k].times_plus(at.omega[k], self.wheel[k]);
+                    }
+                    cross(&momentum, &seen(&at.rotor, b))
+                }
+                Law::Tabulated(latest) => {
+                    let mut torque = [Lanes::ZERO; 3];
+                    for l in 0..W {
+                        let numbers = latest.at(at.time.0[l]);
                         for k in 0..3 {
-                            sum[k].0[l] += c.0[k];
+                            torque[k].0[l] = numbers[k];
                         }
                     }
+                    if latest.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
                 }
-                _ => laws.others.push(each),
-            }
-        }
-        laws
-    }
-
-    /// By the laws of single bodies; NaN where one has no torque.
-    fn others(&self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
-        let mut sum = [Lanes::ZERO; 3];
-        for l in 0..W {
-            let body = &self.gyrostats[l];
-            let rotor = Rotor::from_unit_components(at.rotor.map(|lanes| lanes.0[l]));
-            let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
-            let phase = Phase { rotor, momentum, time: at.time.0[l] };
-            for law in &self.others {
-                let torque = law[l].value(body, &phase).unwrap_or(Bivector([f64::NAN; 3]));
-                for k in 0..3 {
-                    sum[k].0[l] += torque.0[k];
-                }
-            }
+                Law::Formula(formulas) => formulas.torque(at),
+                Law::Other(each) => lane_by_lane(&self.gyrostats, each, at),
+            };
+            add(&mut sum, &torque);
         }
         sum
+    }
+}
+
+/// The torques of all laws. Apart from the steps, in whose stages the code would stand many times.
+struct Total<'a, 't, const W: usize, const F: bool> {
+    laws: &'a mut Laws<'t, W, F>,
+    at: &'a Place<W, F>,
+}
+
+impl<const W: usize, const F: bool> Work for Total<'_, '_, W, F> {
+    type Output = Three<W, F>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Three<W, F> {
+        // The caller is on the same path; nothing need be compiled for others.
+        if FUSED == F { self.laws.total(self.at) } else { [Lanes::ZERO; 3] }
     }
 }
 
@@ -80,16 +453,7 @@ impl<const W: usize, const F: bool> Exert<W, F> for Laws<'_, W, F> {
 
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
-        let mut torque = if self.others.is_empty() { [Lanes::ZERO; 3] } else { self.others(at) };
-        if let Some(c) = &self.weight {
-            // γ∧c: its axial vector is γ x c.
-            let [_, _, vertical] = matrix(&at.rotor);
-            let pull = cross(&vertical, c);
-            for k in 0..3 {
-                torque[k] += pull[k];
-            }
-        }
-        torque
+        fastest(Total { laws: self, at })
     }
 
     #[inline(always)]

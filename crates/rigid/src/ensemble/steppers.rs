@@ -1,13 +1,16 @@
 //! Methods of equal steps over bodies side by side.
 
+use super::advance::{Advance, Steps, Stretch};
 use super::block::{Member, SIDE_BY_SIDE as W};
+use super::laws::{Acting, Laws, Nothing};
 use crate::classical::{self, Bodies, State};
 use crate::exert::Exert;
 use crate::phase::{Gyrostat, Phase};
 use crate::splitting::turns::{Spin, Turns};
-use polhode_ga::lanes::Lanes;
+use polhode_ga::lanes::{Lanes, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::array;
+use std::ops::Range;
 
 /// A method at work.
 pub(super) trait Stepper<const F: bool> {
@@ -17,24 +20,24 @@ pub(super) trait Stepper<const F: bool> {
     /// The bodies at time 0; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
-    /// One step of length h.
-    fn step(&mut self, state: &mut Self::State, time: f64, h: f64);
+    /// Some of the steps of a stretch.
+    fn advance(&mut self, state: &mut Self::State, stretch: Stretch, steps: &Range<u64>);
 
     /// Where the body of a lane is.
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase;
 }
 
 /// The classical method.
-pub(super) struct Components<E, const F: bool> {
+pub(super) struct Components<'t, const F: bool> {
     pub bodies: Bodies<W, F>,
-    pub exert: E,
+    pub acting: Acting<'t, W, F>,
 }
 
 /// A splitting, with its kicks and drifts.
-pub(super) struct Kicks<'a, E, const F: bool> {
+pub(super) struct Kicks<'t, const F: bool> {
     pub turns: Turns<W, F>,
-    pub stages: (&'a [(f64, f64)], f64),
-    pub exert: E,
+    pub stages: (&'t [(f64, f64)], f64),
+    pub laws: Laws<'t, W, F>,
 }
 
 /// The member of each lane.
@@ -42,7 +45,7 @@ pub(super) fn of<'m, 'a>(members: &'m [Member<'a>], lane: usize) -> &'m Member<'
     members.get(lane).unwrap_or(&members[0])
 }
 
-impl<E: Exert<W, F>, const F: bool> Stepper<F> for Components<E, F> {
+impl<const F: bool> Stepper<F> for Components<'_, F> {
     type State = State<7, W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
@@ -58,9 +61,23 @@ impl<E: Exert<W, F>, const F: bool> Stepper<F> for Components<E, F> {
         state
     }
 
-    #[inline(always)]
-    fn step(&mut self, state: &mut Self::State, time: f64, h: f64) {
-        classical::step(&self.bodies, &mut self.exert, state, time, h);
+    fn advance(&mut self, state: &mut Self::State, stretch: Stretch, steps: &Range<u64>) {
+        let bodies = &self.bodies;
+        match &mut self.acting {
+            Acting::Nothing => {
+                let method = OnComponents { bodies, exert: &mut Nothing, state };
+                fastest(Advance::<_, F> { method, stretch, steps });
+            }
+            Acting::Weight(exert) => {
+                fastest(Advance::<_, F> { method: OnComponents { bodies, exert, state }, stretch, steps });
+            }
+            Acting::Gradient(exert) => {
+                fastest(Advance::<_, F> { method: OnComponents { bodies, exert, state }, stretch, steps });
+            }
+            Acting::Laws(exert) => {
+                fastest(Advance::<_, F> { method: OnComponents { bodies, exert, state }, stretch, steps });
+            }
+        }
     }
 
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
@@ -69,7 +86,7 @@ impl<E: Exert<W, F>, const F: bool> Stepper<F> for Components<E, F> {
     }
 }
 
-impl<E: Exert<W, F>, const F: bool> Stepper<F> for Kicks<'_, E, F> {
+impl<const F: bool> Stepper<F> for Kicks<'_, F> {
     type State = Spin<W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
@@ -87,9 +104,9 @@ impl<E: Exert<W, F>, const F: bool> Stepper<F> for Kicks<'_, E, F> {
         spin
     }
 
-    #[inline(always)]
-    fn step(&mut self, state: &mut Self::State, time: f64, h: f64) {
-        self.turns.step(self.stages, &mut self.exert, state, time, h);
+    fn advance(&mut self, state: &mut Self::State, stretch: Stretch, steps: &Range<u64>) {
+        let method = BySplitting { turns: &self.turns, stages: self.stages, laws: &mut self.laws, state };
+        fastest(Advance::<_, F> { method, stretch, steps });
     }
 
     fn phase(&self, _: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
@@ -98,5 +115,41 @@ impl<E: Exert<W, F>, const F: bool> Stepper<F> for Kicks<'_, E, F> {
             momentum: Bivector(array::from_fn(|k| state.momentum[k].0[lane])),
             time,
         }
+    }
+}
+
+struct OnComponents<'a, E, const F: bool> {
+    bodies: &'a Bodies<W, F>,
+    exert: &'a mut E,
+    state: &'a mut State<7, W, F>,
+}
+
+impl<E: Exert<W, F>, const F: bool> Steps for OnComponents<'_, E, F> {
+    #[inline(always)]
+    fn walk(&mut self, times: &[f64]) {
+        // Copies, which the compiler may keep in registers.
+        let (bodies, mut now) = (*self.bodies, *self.state);
+        for k in 1..times.len() {
+            classical::step(&bodies, self.exert, &mut now, times[k - 1], times[k] - times[k - 1]);
+        }
+        *self.state = now;
+    }
+}
+
+struct BySplitting<'a, 't, const F: bool> {
+    turns: &'a Turns<W, F>,
+    stages: (&'t [(f64, f64)], f64),
+    laws: &'a mut Laws<'t, W, F>,
+    state: &'a mut Spin<W, F>,
+}
+
+impl<const F: bool> Steps for BySplitting<'_, '_, F> {
+    #[inline(always)]
+    fn walk(&mut self, times: &[f64]) {
+        let mut now = *self.state;
+        for k in 1..times.len() {
+            self.turns.step(self.stages, self.laws, &mut now, times[k - 1], times[k] - times[k - 1]);
+        }
+        *self.state = now;
     }
 }

@@ -84,3 +84,19 @@ pub(crate) fn horner<const N: usize>(c: &[f64; N], x: f64) -> f64 {
     }
     sum
 }
+
+/// The same whose coefficients are one number for all lanes, or one for each.
+#[inline(always)]
+pub(super) fn horner_in_lane<const N: usize, const C: usize>(c: &[[f64; C]; N], l: usize, x: f64) -> f64 {
+    let mut sum = in_lane(&c[N - 1], l);
+    for k in (0..N - 1).rev() {
+        sum = sum * x + in_lane(&c[k], l);
+    }
+    sum
+}
+
+/// What lane l has of one number for all lanes, or one for each.
+#[inline(always)]
+pub(super) fn in_lane<const C: usize>(numbers: &[f64; C], l: usize) -> f64 {
+    numbers[if C == 1 { 0 } else { l }]
+}

@@ -12,7 +12,7 @@
 //! all with `p_{n+1} = 2x p_n − p_{n−1}`. So sin v and its like are factors, and nothing is lost where a
 //! function vanishes.
 
-use super::lanes::{exp_minus, horner, sin_cos_turns};
+use super::lanes::{exp_minus, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The nome up to which the trigonometric series serve.
@@ -27,13 +27,22 @@ pub(super) struct State<const W: usize> {
     pub ahead: [f64; W],
 }
 
-/// Series in one form or the other.
-pub(super) trait Series: Copy + Sync {
+/// Series in one form or the other, of one motion or of `C` in lanes.
+pub(super) trait Series<const C: usize>: Copy + Sync {
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
 
-    /// What makes cn 0, sn K and dn 0 equal to 1.
-    fn normalizers(&self) -> [f64; 3];
+    /// The same of one motion.
+    type One: Series<1>;
+
+    /// Without any coefficients.
+    fn empty() -> Self;
+
+    /// All coefficients, always in the same order.
+    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]>;
+
+    /// All coefficients, to be set.
+    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
 }
 
 /// `Σ h_n p_n(x)` in powers of x; `p_0 = 1`, and `p_{−1}`, in powers of x too, tells which polynomials.
@@ -68,10 +77,10 @@ fn power(x: f64, n: usize) -> f64 {
 
 /// Series in the nome q.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Circular {
-    z: [[f64; 4]; 4],
-    functions: [[f64; 5]; 3],
-    denominator: [f64; 5],
+pub(super) struct Circular<const C: usize = 1> {
+    z: [[[f64; C]; 4]; 4],
+    functions: [[[f64; C]; 5]; 3],
+    denominator: [[f64; C]; 5],
 }
 
 impl Circular {
@@ -103,7 +112,7 @@ impl Circular {
         ];
         let denominator = chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST);
         // Subnormal numbers, slow on many machines, are nothing beside the first coefficients.
-        let normal = |c: f64| if c.abs() < 1e-100 { 0.0 } else { c };
+        let normal = |c: f64| [if c.abs() < 1e-100 { 0.0 } else { c }];
         Circular {
             z: z.map(|z| z.map(normal)),
             functions: functions.map(|f| f.map(normal)),
@@ -115,9 +124,17 @@ impl Circular {
     pub fn steady() -> Circular {
         Circular::new(0.0, 0.0, 1.0)
     }
+
+    /// What makes cn 0, sn K and dn 0 equal to 1.
+    pub fn normalizers(&self) -> [f64; 3] {
+        let ratio = |k: usize, x: f64| {
+            horner_in_lane(&self.denominator, 0, x) / horner_in_lane(&self.functions[k], 0, x)
+        };
+        [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
+    }
 }
 
-impl Series for Circular {
+impl<const C: usize> Series<C> for Circular<C> {
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
         let (mut sin, mut cos, mut x) = ([0.0; W], [0.0; W], [0.0; W]);
@@ -128,40 +145,55 @@ impl Series for Circular {
         }
         let mut z = [[0.0; W]; 4];
         for l in 0..W {
-            z[0][l] = horner(&self.z[0], x[l]);
-            z[1][l] = sin[l] * horner(&self.z[1], x[l]);
-            z[2][l] = cos[l] * horner(&self.z[2], x[l]);
+            z[0][l] = horner_in_lane(&self.z[0], l, x[l]);
+            z[1][l] = sin[l] * horner_in_lane(&self.z[1], l, x[l]);
+            z[2][l] = cos[l] * horner_in_lane(&self.z[2], l, x[l]);
             let [c0, c1, c2, _] = self.z[3];
-            z[3][l] = (2.0 * sin[l] * cos[l]) * horner(&[c0, c1, c2], x[l]);
+            z[3][l] = (2.0 * sin[l] * cos[l]) * horner_in_lane(&[c0, c1, c2], l, x[l]);
         }
         let (mut functions, mut denominator) = ([[0.0; W]; 3], [0.0; W]);
         for l in 0..W {
-            functions[0][l] = cos[l] * horner(&self.functions[0], x[l]);
-            functions[1][l] = sin[l] * horner(&self.functions[1], x[l]);
-            functions[2][l] = horner(&self.functions[2], x[l]);
-            denominator[l] = horner(&self.denominator, x[l]);
+            functions[0][l] = cos[l] * horner_in_lane(&self.functions[0], l, x[l]);
+            functions[1][l] = sin[l] * horner_in_lane(&self.functions[1], l, x[l]);
+            functions[2][l] = horner_in_lane(&self.functions[2], l, x[l]);
+            denominator[l] = horner_in_lane(&self.denominator, l, x[l]);
         }
         State { z, functions, denominator, ahead: [0.0; W] }
     }
 
-    fn normalizers(&self) -> [f64; 3] {
-        let ratio = |k: usize, x: f64| horner(&self.denominator, x) / horner(&self.functions[k], x);
-        [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
+    type One = Circular;
+
+    fn empty() -> Circular<C> {
+        let none = [0.0; C];
+        Circular { z: [[none; 4]; 4], functions: [[none; 5]; 3], denominator: [none; 5] }
+    }
+
+    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
+        let (z, functions) = (self.z.as_flattened(), self.functions.as_flattened());
+        z.iter().chain(functions).chain(&self.denominator)
+    }
+
+    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
+        z.iter_mut().chain(functions).chain(&mut self.denominator)
     }
 }
 
 /// Series in the nome q', by Jacobi's imaginary transformation, in `x = πu/4K'` for u within a half period; at
 /// u = ±K it is ±X.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hyperbolic {
+pub(super) struct Hyperbolic<const C: usize = 1> {
     /// X.
-    border: f64,
-    nome: f64,
-    z: [[f64; 4]; 4],
-    functions: [[f64; 4]; 3],
-    denominator: [f64; 4],
-    ahead: f64,
+    border: [f64; C],
+    nome: [f64; C],
+    z: [[[f64; C]; 4]; 4],
+    functions: [[[f64; C]; 4]; 3],
+    denominator: [[f64; C]; 4],
+    ahead: [f64; C],
 }
+
+/// u over the turns that are no more than its start, on the separatrix: so much is never reached.
+pub(crate) const NEVER: f64 = (1u128 << 70) as f64;
 
 impl Hyperbolic {
     /// From X, `γ = πη/4K'` and s.
@@ -175,35 +207,47 @@ impl Hyperbolic {
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(nome, n * n) };
         // θ4(2ix|q') without the factor that vanishes at ±X: 1 − 2q'³ cosh 4x and 1 − 2q'⁵ cosh 4x.
         let (third, fifth) = (2.0 * power(nome, 3), 2.0 * power(nome, 5));
+        let z: [[f64; 4]; 4] = [
+            chebyshev(std::array::from_fn(|n| weight(n) * cos(n)), THIRD),
+            chebyshev(std::array::from_fn(|n| s * sign(n) * weight(n) * cos(n)), FOURTH),
+            chebyshev(std::array::from_fn(|n| -sign(n) * weight(n) * sin(n)), THIRD),
+            chebyshev(std::array::from_fn(|n| -s * weight(n) * sin(n)), FOURTH),
+        ];
+        let functions: [[f64; 4]; 3] = [
+            [1.0, -(third + fifth), third * fifth, 0.0],
+            chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
+            chebyshev(std::array::from_fn(squares), FIRST),
+        ];
+        let denominator: [f64; 4] = chebyshev(std::array::from_fn(pronics), THIRD);
         Hyperbolic {
-            border,
-            nome,
-            z: [
-                chebyshev(std::array::from_fn(|n| weight(n) * cos(n)), THIRD),
-                chebyshev(std::array::from_fn(|n| s * sign(n) * weight(n) * cos(n)), FOURTH),
-                chebyshev(std::array::from_fn(|n| -sign(n) * weight(n) * sin(n)), THIRD),
-                chebyshev(std::array::from_fn(|n| -s * weight(n) * sin(n)), FOURTH),
-            ],
-            functions: [
-                [1.0, -(third + fifth), third * fifth, 0.0],
-                chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
-                chebyshev(std::array::from_fn(squares), FIRST),
-            ],
-            denominator: chebyshev(std::array::from_fn(pronics), THIRD),
-            ahead: s * gamma / PI,
+            border: [border],
+            nome: [nome],
+            z: z.map(|z| z.map(|c| [c])),
+            functions: functions.map(|f| f.map(|c| [c])),
+            denominator: denominator.map(|c| [c]),
+            ahead: [s * gamma / PI],
         }
     }
 
-    /// u over the turns that are no more than its start, on the separatrix: so much is never reached.
-    pub(crate) const NEVER: f64 = (1u128 << 70) as f64;
-
     /// The limit K → ∞, with `u = NEVER · turns`.
     pub fn separatrix(gamma: f64, s: f64) -> Hyperbolic {
-        Hyperbolic { ahead: 0.0, ..Hyperbolic::new(Hyperbolic::NEVER / 8.0, gamma, s) }
+        Hyperbolic { ahead: [0.0], ..Hyperbolic::new(NEVER / 8.0, gamma, s) }
+    }
+
+    /// cn and dn at x = 0; sn at X, where the sum of what is normalised is `k² sn² + dn² = 1` with dn = k'.
+    pub fn normalizers(&self) -> [f64; 3] {
+        let denominator = |y: f64| horner_in_lane(&self.denominator, 0, y);
+        let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], 0, y);
+        let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
+        let double = 2.0 * self.border[0].min(176.0);
+        let (g, y) = ((-double).exp(), (2.0 * double).cosh());
+        let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
+        let less = (1.0 - self.nome[0]) * (1.0 - self.nome[0]);
+        [at_0(0) / less, denominator(y) / sinh, at_0(2)]
     }
 }
 
-impl Series for Hyperbolic {
+impl<const C: usize> Series<C> for Hyperbolic<C> {
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
         /// `cosh² ` of it is a number still. On a periodic motion 2X is less, by the range of k'.
@@ -224,10 +268,11 @@ impl Series for Hyperbolic {
             let f = 2.0 * turn - whole;
             odd[l] = 1.0 - 2.0 * f64::abs(whole);
             side[l] = 1f64.copysign(f);
-            ahead[l] = self.ahead * (f + 2.0 * rest[l]);
+            ahead[l] = in_lane(&self.ahead, l) * (f + 2.0 * rest[l]);
             let more = 2.0 * side[l] * rest[l];
-            near[l] = (4.0 * self.border * (f.abs() + more).max(0.0)).min(MOST);
-            far[l] = (8.0 * self.border * ((0.5 - f.abs()) - more).max(0.0)).min(700.0);
+            let border = in_lane(&self.border, l);
+            near[l] = (4.0 * border * (f.abs() + more).max(0.0)).min(MOST);
+            far[l] = (8.0 * border * ((0.5 - f.abs()) - more).max(0.0)).min(700.0);
         }
         // e^{−2|x|} and less 1; 1 − e^{−4(X − |x|)}.
         let (mut g, mut m, mut last) = ([0.0; W], [0.0; W], [0.0; W]);
@@ -243,32 +288,49 @@ impl Series for Hyperbolic {
         let mut z = [[0.0; W]; 4];
         for l in 0..W {
             let (cosh, sinh) = (1.0 + g[l], -m[l] * side[l]);
-            z[0][l] = cosh * horner(&self.z[0], c[l]);
-            z[1][l] = odd[l] * (sinh * horner(&self.z[1], c[l]));
-            z[2][l] = odd[l] * (cosh * horner(&self.z[2], c[l]));
-            z[3][l] = sinh * horner(&self.z[3], c[l]);
+            z[0][l] = cosh * horner_in_lane(&self.z[0], l, c[l]);
+            z[1][l] = odd[l] * (sinh * horner_in_lane(&self.z[1], l, c[l]));
+            z[2][l] = odd[l] * (cosh * horner_in_lane(&self.z[2], l, c[l]));
+            z[3][l] = sinh * horner_in_lane(&self.z[3], l, c[l]);
         }
         // And these in units of ½ e^{2|x|}.
         let (mut functions, mut denominator) = ([[0.0; W]; 3], [0.0; W]);
         for l in 0..W {
             let y = 2.0 * (c[l] * c[l]) - 1.0;
             let square = g[l] * g[l];
-            let cosine = (2.0 * g[l]) * (last[l] * (1.0 - self.nome * square));
-            functions[0][l] = odd[l] * (cosine * horner(&self.functions[0], y));
-            functions[1][l] = (odd[l] * side[l]) * ((-m[l] * (1.0 + g[l])) * horner(&self.functions[1], y));
-            functions[2][l] = (2.0 * g[l]) * horner(&self.functions[2], y);
-            denominator[l] = (1.0 + square) * horner(&self.denominator, y);
+            let cosine = (2.0 * g[l]) * (last[l] * (1.0 - in_lane(&self.nome, l) * square));
+            functions[0][l] = odd[l] * (cosine * horner_in_lane(&self.functions[0], l, y));
+            functions[1][l] =
+                (odd[l] * side[l]) * ((-m[l] * (1.0 + g[l])) * horner_in_lane(&self.functions[1], l, y));
+            functions[2][l] = (2.0 * g[l]) * horner_in_lane(&self.functions[2], l, y);
+            denominator[l] = (1.0 + square) * horner_in_lane(&self.denominator, l, y);
         }
         State { z, functions, denominator, ahead }
     }
 
-    /// cn and dn at x = 0; sn at X, where the sum of what is normalised is `k² sn² + dn² = 1` with dn = k'.
-    fn normalizers(&self) -> [f64; 3] {
-        let at_0 = |k: usize| horner(&self.denominator, 1.0) / horner(&self.functions[k], 1.0);
-        let double = 2.0 * self.border.min(176.0);
-        let (g, y) = ((-double).exp(), (2.0 * double).cosh());
-        let sinh = (1.0 - g * g) / (1.0 + g * g) * horner(&self.functions[1], y);
-        let less = (1.0 - self.nome) * (1.0 - self.nome);
-        [at_0(0) / less, horner(&self.denominator, y) / sinh, at_0(2)]
+    type One = Hyperbolic;
+
+    fn empty() -> Hyperbolic<C> {
+        let none = [0.0; C];
+        Hyperbolic {
+            border: none,
+            nome: none,
+            z: [[none; 4]; 4],
+            functions: [[none; 4]; 3],
+            denominator: [none; 4],
+            ahead: none,
+        }
+    }
+
+    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
+        let (z, functions) = (self.z.as_flattened(), self.functions.as_flattened());
+        let single = [&self.border, &self.nome, &self.ahead];
+        z.iter().chain(functions).chain(&self.denominator).chain(single)
+    }
+
+    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
+        let single = [&mut self.border, &mut self.nome, &mut self.ahead];
+        z.iter_mut().chain(functions).chain(&mut self.denominator).chain(single)
     }
 }

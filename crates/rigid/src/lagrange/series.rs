@@ -5,7 +5,7 @@
 //! `q = exp(−πK'/K)`, up to 0.2, and one in hyperbolic functions for a small `q' = exp(−πK/K')`, then below 0.0022.
 
 use crate::free::lanes::{exp_minus, horner, sin_cos_turns};
-use crate::free::series::{FIRST, FOURTH, THIRD, chebyshev};
+use crate::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev};
 use std::f64::consts::PI;
 
 /// Where the three functions have their zeros, each at `v = i s y` or `π/2 + i s y`.
@@ -170,7 +170,7 @@ impl Hyperbolic {
 
     /// The limit K → ∞, with `u = NEVER · turns`.
     pub fn separatrix(gamma: f64, side: f64) -> Hyperbolic {
-        let border = crate::free::series::Hyperbolic::NEVER / 4.0;
+        let border = NEVER / 4.0;
         let zeros = [(side, gamma), (1.0, 0.0), (1.0, 0.0)];
         Hyperbolic { ahead: [0.0; 3], ..Hyperbolic::new(border, zeros) }
     }

@@ -13,6 +13,13 @@ pub(crate) struct Spin<const W: usize, const F: bool> {
     pub momentum: [Lanes<W, F>; 3],
 }
 
+/// A turn of a splitting: about the axis a or b, or about that of a wheel.
+#[derive(Clone, Copy, Debug)]
+enum Turn {
+    About(usize),
+    AboutWheel,
+}
+
 /// Bodies of one kind are turned about the same axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
@@ -31,6 +38,18 @@ impl Kind {
         let [a, b] = if kappa(body, a, p) == 0.0 { [b, a] } else { [a, b] };
         let wheel = body.wheel.0 != [0.0; 3];
         Kind { axes: [a, b, p], symmetric: kappa(body, b, p) == 0.0, wheel }
+    }
+
+    /// The turns but that about L, and for which part of a step.
+    fn order(self) -> &'static [(Turn, f64)] {
+        use Turn::{About, AboutWheel};
+        match (self.wheel, self.symmetric) {
+            (true, _) => {
+                &[(About(0), 0.5), (About(1), 0.5), (AboutWheel, 1.0), (About(1), 0.5), (About(0), 0.5)]
+            }
+            (false, true) => &[(About(0), 1.0)],
+            (false, false) => &[(About(0), 0.5), (About(1), 1.0), (About(0), 0.5)],
+        }
     }
 
     /// Whether one turn about an axis is all.
@@ -125,20 +144,23 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         time: f64,
         h: f64,
     ) {
+        // A turn about a constant L is the same whenever it is made.
         if self.fixed.is_some() {
             self.about_momentum(spin, h);
-            for &(_, drift) in stages {
-                self.about_axes(spin, drift * h);
-            }
-        } else {
-            let mut now = time;
-            for &(kick, drift) in stages {
+        }
+        let mut now = time;
+        for k in 0..=stages.len() {
+            let (kick, drift) = if k < stages.len() { stages[k] } else { (last, 0.0) };
+            if self.fixed.is_none() {
                 self.kick(exert, spin, now, kick * h);
-                self.about_momentum(spin, drift * h);
+            }
+            if k < stages.len() {
+                if self.fixed.is_none() {
+                    self.about_momentum(spin, drift * h);
+                }
                 self.about_axes(spin, drift * h);
                 now += drift * h;
             }
-            self.kick(exert, spin, now, last * h);
         }
         self.finish(spin);
     }
@@ -198,21 +220,14 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         spin.rotor = composed(&spin.rotor, &turn);
     }
 
-    /// The other turns.
+    /// The other turns. In a loop, so that the code of a turn stands once.
     #[inline(always)]
     pub fn about_axes(&self, spin: &mut Spin<W, F>, h: f64) {
-        if self.kind.wheel {
-            self.about_axis(spin, 0, 0.5 * h);
-            self.about_axis(spin, 1, 0.5 * h);
-            self.about_wheel(spin, h);
-            self.about_axis(spin, 1, 0.5 * h);
-            self.about_axis(spin, 0, 0.5 * h);
-        } else if self.kind.symmetric {
-            self.about_axis(spin, 0, h);
-        } else {
-            self.about_axis(spin, 0, 0.5 * h);
-            self.about_axis(spin, 1, h);
-            self.about_axis(spin, 0, 0.5 * h);
+        for &(which, part) in self.kind.order() {
+            match which {
+                Turn::About(which) => self.about_axis(spin, which, part * h),
+                Turn::AboutWheel => self.about_wheel(spin, part * h),
+            }
         }
     }
 

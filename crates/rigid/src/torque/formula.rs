@@ -1,11 +1,13 @@
 //! Laws that are formulas: `-c ∧ (~R e3 R)`.
 
+use super::lanes::seen;
 use super::{Axes, Dependence, TorqueError};
 use crate::force::Center;
 use crate::formula::{Formula, Motion, Purpose, given};
 use crate::phase::{Gyrostat, Phase};
 use crate::point::Point;
 use polhode_ga::formula::{Error, Given, Input, Names};
+use polhode_ga::lanes::One;
 use polhode_ga::{Bivector, Rotor};
 
 /// A law that is a formula.
@@ -48,6 +50,10 @@ impl FormulaTorque {
         self.0.known()
     }
 
+    pub(crate) fn formula(&self) -> &Formula {
+        &self.0
+    }
+
     pub(super) fn in_axes(self, frame: Rotor) -> FormulaTorque {
         FormulaTorque(self.0.in_axes(frame))
     }
@@ -63,11 +69,12 @@ impl FormulaTorque {
     pub(super) fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
         let at = Point { body, mass: f64::NAN, phase: state, center: &Center::default() };
         let value = self.0.value(&at)?;
-        let torque = Bivector(value.components().try_into().unwrap_or_default());
+        let torque = One::each(value.components().try_into().unwrap_or_default());
+        let by = |r: Rotor| Bivector(One::alone(seen(&One::each(r.components()), &torque)));
         Ok(match (self.0.purpose(), self.0.frame()) {
-            (Purpose::Torque(Axes::Space), _) => state.rotor.reverse().apply_bivector(torque),
-            (_, Rotor::IDENTITY) => torque,
-            (_, frame) => frame.reverse().apply_bivector(torque),
+            (Purpose::Torque(Axes::Space), _) => by(state.rotor),
+            (_, Rotor::IDENTITY) => Bivector(One::alone(torque)),
+            (_, frame) => by(frame),
         })
     }
 }

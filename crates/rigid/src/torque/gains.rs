@@ -18,6 +18,11 @@ impl Gains {
         from_fn(|i| self.0[i][i])
     }
 
+    /// The entries of its matrix, by rows.
+    pub(crate) fn entries(&self) -> [f64; 9] {
+        from_fn(|k| self.0[k / 3][k % 3])
+    }
+
     /// The map seen from other axes: `B ↦ ~F G(F B ~F) F`. A multiple of 1 stays exactly what it is.
     pub fn in_axes(self, frame: Rotor) -> Gains {
         let Gains(g) = self;

@@ -1,0 +1,65 @@
+//! Equal steps of bodies side by side, one after the other.
+
+use polhode_ga::lanes::Work;
+use std::ops::Range;
+
+/// So many steps get their times at once, by one division for many.
+const TIMED: usize = 32;
+
+/// Equal steps from one time to another.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch {
+    pub from: f64,
+    pub to: f64,
+    pub count: u64,
+}
+
+impl Stretch {
+    /// Where a step begins, and the one before it ends. The differences of these rounded times are the steps, so that they
+    /// add up to the time.
+    #[inline(always)]
+    pub fn begin(&self, step: u64) -> f64 {
+        if step == self.count {
+            self.to
+        } else {
+            self.from + (self.to - self.from) * (step as f64 / self.count as f64)
+        }
+    }
+}
+
+/// Some of the steps of a stretch. Apart from what is done between them, so that the compiler has the registers for the
+/// steps alone.
+pub(super) struct Advance<'a, M, const F: bool> {
+    pub method: M,
+    pub stretch: Stretch,
+    pub steps: &'a Range<u64>,
+}
+
+/// A method that goes from each of some times to the next.
+pub(super) trait Steps {
+    /// `#[inline(always)]`.
+    fn walk(&mut self, times: &[f64]);
+}
+
+/// Times in whole registers: memory that is aligned makes all of the function's so.
+#[repr(align(64))]
+struct Times([f64; TIMED + 1]);
+
+impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(mut self) {
+        // The caller is on the same path; nothing need be compiled for others.
+        if FUSED == F {
+            for first in self.steps.clone().step_by(TIMED) {
+                let mut times = Times([0.0; TIMED + 1]);
+                for k in 0..=TIMED {
+                    times.0[k] = self.stretch.begin(first + k as u64);
+                }
+                let count = TIMED.min((self.steps.end - first) as usize);
+                self.method.walk(&times.0[..count + 1]);
+            }
+        }
+    }
+}

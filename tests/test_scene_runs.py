@@ -30,20 +30,20 @@ TORQUED = FREE.replace("[run]", LAWS + "[run]") + (
     "torque.viscous_damping = { relative = 0.3 }\ntorque.magnetic.dipole = { normal = 0.1 }\n"
     '[method]\nname = "rk4"\nstep = 0.01\n'
 )
-# The root has no value for a body that turns faster than 1 rad/s; one in 40 does, at the start.
+# Steps of 0.1 s are too long for k |Ω| h/i > 2.8, so that ω grows without bounds: a k above 62, one in 29.
 FAILING = """\
 [body]
 moments = [2, 2, 2]
 [initial]
 spin = { vector = [0.9, 0, 0] }
 [torque]
-torque_body = "1e-3 sqrt(1 - norm(Ω)) e2e3"
+quadratic_damping = 10
 [ensemble]
 number = 600
 seed = 1
-spin = { normal = [0.05, 0, 0] }
+torque.quadratic_damping = { relative = 1 }
 [run]
-duration = "1 s"
+duration = "2 s"
 samples = 5
 method = "rk4"
 step = "0.1 s"
@@ -98,7 +98,8 @@ def test_an_ensemble_is_its_bodies_each_alone(write):
     torque = ph.torque.viscous_damping(damping.arguments[0]) + ph.torque.magnetic(*magnetic.arguments)
     start = ph.State(state.rotor[0], state.omega_body[0])
     alone = ph.simulate(inertias[0], start, scene.times, torque, method="rk4", step=0.01)
-    np.testing.assert_array_equal(alone.rotor.components, scene.run().rotor.components[37])
+    whole = scene.run().rotor.components[37]
+    np.testing.assert_allclose(whole, alone.rotor.components, rtol=0, atol=1e-14)
 
 
 def test_forces_move_bodies_whose_moments_differ(write):
@@ -124,8 +125,7 @@ def test_progress_tells_of_all_bodies(write):
     for _ in ph.Scene.read(write(TORQUED)).run_blocks(100, lambda _, fraction: told.append(fraction), 1):
         pass
     assert told == sorted(told)
-    assert 0 <= told[0] < 1 / 7
-    assert 6 / 7 < told[-1] <= 1
+    assert {k / 7 for k in range(1, 8)} <= {*told}
 
 
 # --- the file
@@ -253,7 +253,7 @@ def test_a_horizon_is_where_the_quantile_passes_the_angle(write):
     # About one axis: each body is off by its own rate times the time, and the 95 % quantile passes 10° once.
     text = SCENE.replace("[0.01, 1, 0.01]", "[0, 1, 0]").replace('duration = "1 s"', 'duration = "20 s"')
     text = (
-        text.replace("[1, 2, 3]", "[1, 1, 3]")
+        text.replace("[1, 2, 3]", "[1, 1, 2]")
         + "[ensemble]\nnumber = 2000\nspin = { normal = [0, 0.05, 0] }\n"
     )
     path = write(text)
@@ -282,9 +282,10 @@ def test_bodies_that_fail_are_told_and_the_others_go_on(write, tmp_path):
     np.testing.assert_array_equal(data.failure_body.values, failed)
     assert data.failure_message.values.tolist() == [failure.message for failure in motion.failures]
     np.testing.assert_array_equal(data.omega_body.values, motion.omega_body.components)
+    lost = motion.failures[0]
     page = polhode("run", path).stdout
     assert f"{len(failed)} of 600 bodies could not be followed" in page
-    assert f"body {failed[0]}, after 0 s: " in page
+    assert f"body {failed[0]}, after {lost.time:.6g} s: {lost.message}" in page
     assert f"and {len(failed) - 5} more" in page
 
 
@@ -384,8 +385,8 @@ def test_densities_have_the_mean_1():
     bundle /= np.linalg.norm(bundle, axis=1, keepdims=True)
     density = _density(bundle, _unit_vectors(*grid))
     mean = np.average(density.mean(axis=1), weights=np.cos(latitude))
-    # By the midpoint rule with 0.5° for kernels of 4°; single precision.
-    assert mean == pytest.approx(1, rel=1e-4)
+    # The midpoint rule on the meridians, h = 0.5°, is off by h²/24σ² for a kernel at the pole, σ = 4°.
+    assert mean == pytest.approx(1, rel=(0.5 / 4) ** 2 / 24)
     assert density[-1].mean() > 10
     assert density[0].mean() < 1e-6
 

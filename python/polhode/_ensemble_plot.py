@@ -23,6 +23,8 @@ _WIDE, _NARROW = "#CFE3F1", "#86BBDD"
 # and in which the density is drawn.
 _SMEAR = np.radians(4.0)
 _COUNTED, _DRAWN = (180, 90), (240, 120)
+# Cells whose kernels are computed at once: some 30 MB.
+_AT_ONCE = 256
 # The cosine above which a direction is said to be along another.
 _ALONG = 0.999
 # The colours' range, of the density over that of directions all alike.
@@ -114,7 +116,7 @@ def directions_figure(gathered: Gathered) -> Figure:
     """
     figure = new_figure(11, 3.7)
     frame = _frame(gathered)
-    panels = figure.subplots(1, 3, subplot_kw={"projection": "mollweide"})
+    panels = figure.subplots(1, 3, subplot_kw={"projection": "hammer"})
     times = gathered.scene.times
     drawn: Any = None
     for k, axes in enumerate(panels):
@@ -217,9 +219,10 @@ def _density(directions: Array, points: Array) -> Array:
     sharpness = 1 / _SMEAR**2
     flat = points.reshape(-1, 3).astype(np.float32)
     total = np.zeros(len(flat))
-    for start in range(0, len(cells), 1024):
-        near = flat @ means[start : start + 1024].T.astype(np.float32)
-        total += np.exp(np.float32(sharpness) * (near - 1)) @ counts[start : start + 1024].astype(np.float32)
+    for start in range(0, len(cells), _AT_ONCE):
+        some = slice(start, start + _AT_ONCE)
+        near = flat @ means[some].T.astype(np.float32)
+        total += np.exp(np.float32(sharpness) * (near - 1)) @ counts[some].astype(np.float32)
     size = (1 - np.exp(-2 * sharpness)) / (2 * sharpness)
     density: Array = total / (max(len(directions), 1) * size)
     return density.reshape(points.shape[:-1])

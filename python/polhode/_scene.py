@@ -173,7 +173,9 @@ class Scene:
                 if progress is not None:
                     progress(one, (rows.start + fraction * (rows.stop - rows.start)) / number)
 
-            yield rows, self._drawn(rows, of_all if progress else None, threads)
+            trajectory = self._drawn(rows, of_all if progress else None, threads)
+            of_all(1, 1.0)
+            yield rows, trajectory
 
     @property
     def block(self) -> int:

@@ -60,7 +60,11 @@ def _motion(motion: dict[str, Any], bodies: int, row: Row) -> None:
         row("regime", f"{regime}: {count} of {bodies} bodies")
     for entry in motion["horizons"]:
         until = "to the end" if entry["time"] is None else f"for {time(entry['time'], 4)}"
-        row(f"within {np.degrees(entry['angle']):g}°", f"95 % of the bodies, {until}, of the undisturbed one")
+        told = f"95 % of the bodies, {until}, of the undisturbed one"
+        row(
+            f"within {np.degrees(entry['angle']):g}°",
+            told if entry["time"] != 0 else "fewer from the start on",
+        )
 
 
 def _quantiles(motion: dict[str, Any], row: Row) -> None:

@@ -27,6 +27,8 @@ _COUNTED, _DRAWN = (180, 90), (240, 120)
 _AT_ONCE = 256
 # The cosine above which a direction is said to be along another.
 _ALONG = 0.999
+# The latitude in rad from which a label finds no room above.
+_HIGH = np.radians(70)
 # The colours' range, of the density over that of directions all alike.
 _FAINTEST, _DENSEST = 0.03, 100.0
 
@@ -89,17 +91,21 @@ def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
     axes.set_yticks(range(0, 181, 45))
     for angle in (10, 90):
         moment = first_above(gathered.scene.times, highest, np.radians(angle))
-        if moment is None:
+        if not moment:
             continue
+        # To the left, above the bands, if there is room.
+        left = axes.transLimits.transform(axes.transScale.transform((moment / seconds, angle)))[0] > 0.35
         axes.plot(moment / seconds, angle, "o", color=_ORANGE, ms=5, mec="white", mew=0.8, zorder=5)
         axes.annotate(
             f"95 % within {angle}° for {told_time(moment, 3)}",
             (moment / seconds, angle),
-            xytext=(-7, 7),
+            xytext=(-7, 7) if left else (9, 0),
             textcoords="offset points",
-            ha="right",
+            ha="right" if left else "left",
+            va="baseline" if left else "center",
             color=_ORANGE,
             fontsize=9,
+            bbox={"fc": "white", "ec": "none", "alpha": 0.0 if left else 0.75, "pad": 1.5},
         )
 
 
@@ -112,10 +118,11 @@ def _counted(gathered: Gathered) -> str:
 def directions_figure(gathered: Gathered) -> Figure:
     """Draw maps of the sphere, equal in area, of where the axis points in space at three times.
 
-    In the middle of each is L of the undisturbed body, if the axis' tilt is from there, else e1.
+    In the middle of each is that from which the axis is tilted, L of the undisturbed body or e3; else e1.
     """
-    figure = new_figure(11, 3.7)
-    frame = _frame(gathered)
+    figure = new_figure(11, 3.5)
+    middle, name = _middle(gathered)
+    frame = _frame(middle)
     panels = figure.subplots(1, 3, subplot_kw={"projection": "hammer"})
     times = gathered.scene.times
     drawn: Any = None
@@ -130,27 +137,29 @@ def directions_figure(gathered: Gathered) -> Figure:
     )
     bar.set_label("density, over that of directions all alike", fontsize=9)
     figure.suptitle(gathered.scene.name)
-    middle = "the momentum L of the undisturbed body" if gathered.tilt_name == "L" else "e1"
     figure.supxlabel(
         f"Where {gathered.axis_name} points in space, of {_counted(gathered)}, smeared over "
         f"{np.degrees(_SMEAR):.0f}°; ring: the undisturbed body.\n"
-        f"The sphere of space axes from outside, in equal areas, about {middle}; "
+        f"The sphere of space axes from outside, in equal areas, about {name}; "
         f"{'e2' if abs(frame[0, 2]) > _ALONG else 'e3'} is above it.",
         fontsize=9,
     )
     return figure
 
 
-def _frame(gathered: Gathered) -> Array:
-    """Return the rotation (3, 3) that puts a direction to the middle of the maps and e3 above it.
-
-    Above e3 itself is e2.
-    """
+def _middle(gathered: Gathered) -> tuple[Array, str]:
+    """Return the direction in the middle of the maps, from which the axis is tilted if it stays, and its name."""
     momentum = gathered.nominal.momentum_space.components[0]
     size = float(np.linalg.norm(momentum))
-    if gathered.tilt_name != "L" or size == 0:
-        return np.eye(3)
-    middle = momentum / size
+    if gathered.tilt_name == "L" and size > 0:
+        return momentum / size, "the momentum L of the undisturbed body"
+    if gathered.tilt_name == "the vertical":
+        return np.array([0.0, 0.0, 1.0]), "e3"
+    return np.array([1.0, 0.0, 0.0]), "e1"
+
+
+def _frame(middle: Array) -> Array:
+    """Return the rotation (3, 3) that puts a direction to the middle of a map and e3 above it; e2 above e3."""
     up = np.array([0.0, 1.0, 0.0]) if abs(middle[2]) > _ALONG else np.array([0.0, 0.0, 1.0])
     up = up - (up @ middle) * middle
     up = up / np.linalg.norm(up)
@@ -189,7 +198,9 @@ def _mark(axes: Axes, gathered: Gathered, frame: Array, k: int) -> None:
     for name, direction in zip(("e1", "e2", "e3"), frame.T, strict=True):
         place = _angles(direction)
         axes.plot(*place, ".", color=_BLACK, ms=4, zorder=4)
-        axes.annotate(name, place, xytext=(3, 3), textcoords="offset points", fontsize=8, zorder=4)
+        above = place[1] > _HIGH
+        offset = (7, -10) if above else (7, 4)
+        axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=8, zorder=4)
 
 
 def _unit_vectors(longitude: Array, latitude: Array) -> Array:

@@ -23,8 +23,8 @@ SERIES = ("from_nominal", "tilt", "rate")
 ENDS = ("energy", "angular_momentum")
 PERIODS = ("period", "precession_period")
 
-# Of what is passing by: the results, what is made of them, and what is being written.
-_PASSING = 4
+# Of what is passing by: the results, what is made of them, and what is being written. Bytes of the figures.
+_PASSING, _FIGURES = 4, 100 << 20
 
 
 class Gathered:
@@ -87,7 +87,7 @@ class Gathered:
         assert scene.ensemble is not None
         number, n = scene.ensemble.number, len(scene.times)
         kept = 4 * (len(SERIES) * n + 9) + 8 * (2 * len(ENDS) + len(PERIODS) + 3 + 4)
-        return number * kept + _PASSING * scene.block * (scene.result_bytes // number + 1000)
+        return _FIGURES + number * kept + _PASSING * scene.block * (scene.result_bytes // number + 1000)
 
     def add(self, rows: slice, trajectory: Trajectory) -> None:
         """Take in the motions of the bodies that follow those before."""
@@ -145,7 +145,7 @@ def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
         moments = nominal.inertia.principal_moments
         k = int(np.argmin(moments))
         frame: Array = nominal.inertia.principal_frame.to_matrix()
-        return frame[:, k], f"principal axis {k + 1}, that of the least moment"
+        return frame[:, k], f"the axis of the least moment (principal axis {k + 1})"
     number, axis = main_axis(nominal)
     moments = nominal.inertia.principal_moments
     long = number - 1 == int(np.argmin(moments)) and np.sum(moments == moments.min()) == 1
@@ -158,7 +158,7 @@ def _reference(scene: Scene, nominal: Trajectory) -> tuple[Array | None, str]:
         return np.array([[0.0, 0.0, 1.0]]), "the vertical"
     if kind_of(scene.torque) == "satellite":
         up = _native.orbit_directions(*orbit_of(scene.torque), np.ascontiguousarray(nominal.time))
-        return up, "up from the planet"
+        return up, "up"
     return None, "L"
 
 

@@ -110,6 +110,19 @@ def test_forces_move_bodies_whose_moments_differ(write):
     np.testing.assert_allclose(motion.position.components[:, -1, 2], -0.25, rtol=1e-12)
 
 
+def test_a_thrust_beside_the_centre_is_no_free_motion(write, tmp_path):
+    text = FREE.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2").replace("700", "20")
+    path = write(text.replace("[run]", "[force]\nthrust = { force = [0, 0, 1], at = [0.1, 0, 0] }\n[run]"))
+    motion = summary_of(path, "-o", tmp_path / "out.nc")["motion"]
+    assert (motion["kind"], motion["regimes"]) == ("torqued", {})
+    data = opened(tmp_path / "out.nc")
+    assert data.energy.dims == ("body", "time")
+    assert "momentum_space" not in data
+    assert data.position.dims == ("body", "time", "axis")
+    alone = write(path.read_text().partition("[ensemble]")[0], "one.toml")
+    assert summary_of(alone)["motion"]["kind"] == "torqued"
+
+
 def test_only_ensembles_have_blocks(write):
     scene = ph.Scene.read(write(SCENE))
     with pytest.raises(ValueError, match="without a table"):

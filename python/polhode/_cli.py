@@ -268,7 +268,7 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
 
     require_libraries()
     optional("matplotlib", "plot", "a figure")
-    figures = ("motion", "polhode" if kind_of(scene.torque) in _WITH_POLHODE else "axis")
+    figures = ("motion", "polhode" if kind_of(scene) in _WITH_POLHODE else "axis")
     if scene.ensemble is not None:
         figures = ("ensemble", "directions")
     targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in figures)]
@@ -298,7 +298,7 @@ def _second_figure(scene: Scene, trajectory: Trajectory) -> Figure:
     from polhode._plot import main_axis
     from polhode._spheres import axis_figure, orbit_figure, polhode_figure
 
-    kind = kind_of(scene.torque)
+    kind = kind_of(scene)
     if kind in _WITH_POLHODE:
         return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
     if kind == "satellite":

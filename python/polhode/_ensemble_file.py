@@ -43,7 +43,7 @@ _ARGUMENTS: dict[str, tuple[tuple[str, str], ...]] = {
 def bytes_of_file(scene: Scene) -> int:
     """Return about how large the file of a scene's ensemble is."""
     assert scene.ensemble is not None
-    numbers = 4 + 3 + (kind_of(scene.torque) != "free") + 6 * (scene.force is not None)
+    numbers = 4 + 3 + (kind_of(scene) != "free") + 6 * (scene.force is not None)
     return scene.ensemble.number * 8 * (numbers * len(scene.times) + 30)
 
 
@@ -145,7 +145,7 @@ class EnsembleFile:
         omegas = trajectory.omega_body.components
         self._grow(rows, "omega_body", ("time", "axis"), omegas, "rad/s", "angular velocity in body axes")
         energy = "rotational kinetic and potential energy"
-        if kind_of(self._scene.torque) == "free":
+        if kind_of(self._scene) == "free":
             momenta = trajectory.momentum_space.components[:, 0]
             text = "angular momentum in space axes, constant"
             self._grow(rows, "momentum_space", ("axis",), momenta, "kg m^2/s", text)

@@ -148,7 +148,7 @@ def directions_figure(gathered: Gathered) -> Figure:
 
 
 def _middle(gathered: Gathered) -> tuple[Array, str]:
-    """Return the direction in the middle of the maps, from which the axis is tilted if it stays, and its name."""
+    """Return the direction in the middle of the maps and its name: that from which the axis is tilted."""
     momentum = gathered.nominal.momentum_space.components[0]
     size = float(np.linalg.norm(momentum))
     if gathered.tilt_name == "L" and size > 0:
@@ -159,7 +159,7 @@ def _middle(gathered: Gathered) -> tuple[Array, str]:
 
 
 def _frame(middle: Array) -> Array:
-    """Return the rotation (3, 3) that puts a direction to the middle of a map and e3 above it; e2 above e3."""
+    """Return the rotation (3, 3) that puts a direction to the middle and e3 above it, e2 above e3."""
     up = np.array([0.0, 1.0, 0.0]) if abs(middle[2]) > _ALONG else np.array([0.0, 0.0, 1.0])
     up = up - (up @ middle) * middle
     up = up / np.linalg.norm(up)

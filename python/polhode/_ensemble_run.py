@@ -17,6 +17,7 @@ from polhode._ensemble_file import EnsembleFile, bytes_of_file
 from polhode._files import unfinished, write_atomically
 from polhode._gathered import Gathered
 from polhode._scene import Scene
+from polhode._trajectory import Trajectory
 
 
 class InterruptedRunError(KeyboardInterrupt):
@@ -35,7 +36,7 @@ def run(scene: Scene, targets: list[Path], threads: int | None) -> Gathered:
     """
     require_room(scene, targets)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    gathered = Gathered(scene, scene.alone().run())
+    gathered = Gathered(scene, _nominal(scene))
     with contextlib.ExitStack() as stack:
         part = stack.enter_context(unfinished(targets[0])) if targets else None
         stopped = False
@@ -53,6 +54,14 @@ def run(scene: Scene, targets: list[Path], threads: int | None) -> Gathered:
             with _uninterrupted():
                 _write(targets, part, gathered, stopped)
     return gathered
+
+
+def _nominal(scene: Scene) -> Trajectory:
+    """Return the motion of the scene's own body, from which all others are measured."""
+    try:
+        return scene.alone().run()
+    except ValueError as error:
+        raise ValueError(f"the body from which the others differ cannot be followed: {error}") from error
 
 
 def _run_bodies(gathered: Gathered, file: EnsembleFile | None, threads: int | None) -> None:

@@ -29,7 +29,7 @@ def summary(gathered: Gathered) -> dict[str, Any]:
     """
     scene, nominal = gathered.scene, gathered.nominal
     assert scene.ensemble is not None
-    kind = kind_of(scene.torque)
+    kind = kind_of(scene)
     return {
         "title": scene.name,
         "scene": str(scene.path),

@@ -103,7 +103,7 @@ class Gathered:
         for end, k in (("start", 0), ("end", -1)):
             self.bodies[f"energy_{end}"][rows] = trajectory.energy[:, k]
             self.bodies[f"angular_momentum_{end}"][rows] = np.linalg.norm(momenta[:, k], axis=-1)
-        if kind_of(self.scene.torque) == "free":
+        if kind_of(self.scene) == "free":
             self._describe(rows, trajectory)
         self._certify(rows, trajectory)
         self.complete = rows.stop
@@ -141,7 +141,7 @@ def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
     """Return a direction fixed in the body (3,) by which its motion is known, and what it is."""
     if scene.held and (c := weight(scene.torque)).any():
         return c / np.linalg.norm(c), "the line from the fixed point to the centre of mass"
-    if kind_of(scene.torque) == "satellite":
+    if kind_of(scene) == "satellite":
         moments = nominal.inertia.principal_moments
         k = int(np.argmin(moments))
         frame: Array = nominal.inertia.principal_frame.to_matrix()
@@ -156,7 +156,7 @@ def _reference(scene: Scene, nominal: Trajectory) -> tuple[Array | None, str]:
     """Return from which directions (n, 3) the axis is tilted, None for each body's own L; and their name."""
     if scene.held:
         return np.array([[0.0, 0.0, 1.0]]), "the vertical"
-    if kind_of(scene.torque) == "satellite":
+    if kind_of(scene) == "satellite":
         up = _native.orbit_directions(*orbit_of(scene.torque), np.ascontiguousarray(nominal.time))
         return up, "up"
     return None, "L"

@@ -1,6 +1,8 @@
 """Runs of ensembles by the command: what is written and told, and what becomes of it when it is stopped."""
 
 import json
+import os
+import re
 import signal
 import subprocess
 import time
@@ -241,6 +243,33 @@ def test_the_summary_tells_quantiles(write):
     }  # fmt: skip
     assert result["run"]["methods"] == {"exact": 700}
     assert result["failures"] == {"count": 0, "first": []}
+
+
+def test_a_terminal_shows_how_many_and_how_fast(write):
+    pytest.importorskip("rich")
+    pty = pytest.importorskip("pty")
+    master, slave = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
+    path = write(TORQUED)
+    with subprocess.Popen(
+        [POLHODE, "run", path], stdout=subprocess.DEVNULL, stderr=slave, env=environment
+    ) as process:
+        os.close(slave)
+        shown = b""
+        while part := read_terminal(master):
+            shown += part
+    os.close(master)
+    assert process.returncode == 0
+    assert b"700 of 700 bodies" in shown
+    assert re.search(rb"[\d.e+]+ bodies/s, [\d.e+]+ body-steps/s", shown)
+
+
+def read_terminal(master):
+    """What comes next; nothing when the other end is closed, which Linux tells as an error."""
+    try:
+        return os.read(master, 4096)
+    except OSError:
+        return b""
 
 
 def test_the_page(write):

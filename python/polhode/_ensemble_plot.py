@@ -112,7 +112,8 @@ def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
 def _counted(gathered: Gathered) -> str:
     finished = gathered.complete - len(gathered.failures)
     without = f" ({len(gathered.failures)} failed on the way)" if gathered.failures else ""
-    return f"{finished:,} bodies{without}".replace(",", "\u2009")
+    counted = f"{finished:,}".replace(",", "\u2009")
+    return f"{counted} {'body' if finished == 1 else 'bodies'}{without}"
 
 
 def directions_figure(gathered: Gathered) -> Figure:
@@ -192,15 +193,26 @@ def _map(axes: Axes, directions: Array) -> Any:
 
 def _mark(axes: Axes, gathered: Gathered, frame: Array, k: int) -> None:
     """Mark where the axis of the undisturbed body points, and the axes of space."""
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=2, foreground="white")]
     nominal = gathered.nominal
     path = nominal.rotor(vector(gathered.axis)).components[k]
     axes.plot(*_angles(frame @ path), "o", mfc="none", mec=_ORANGE, mew=1.4, ms=9, zorder=5)
     for name, direction in zip(("e1", "e2", "e3"), frame.T, strict=True):
         place = _angles(direction)
-        axes.plot(*place, ".", color=_BLACK, ms=4, zorder=4)
+        axes.plot(*place, "o", color=_BLACK, ms=3.5, mec="white", mew=0.6, zorder=4)
         above = place[1] > _HIGH
         offset = (7, -10) if above else (7, 4)
-        axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=8, zorder=4)
+        axes.annotate(
+            name,
+            place,
+            xytext=offset,
+            textcoords="offset points",
+            fontsize=8,
+            zorder=6,
+            path_effects=halo,
+        )
 
 
 def _unit_vectors(longitude: Array, latitude: Array) -> Array:

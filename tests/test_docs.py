@@ -30,7 +30,7 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
-@pytest.mark.parametrize("name", ["algebra", "formulas", "motion"])
+@pytest.mark.parametrize("name", ["algebra", "formulas", "motion", "jax"])
 def test_the_pages_run_and_print_what_they_say(name):
     for needed in ("jax", "sympy"):
         pytest.importorskip(needed)

@@ -27,6 +27,7 @@ from polhode._values import vector as vector
 if TYPE_CHECKING:
     from polhode import event as event
     from polhode import force as force
+    from polhode import jax as jax
     from polhode import torque as torque
     from polhode._agreement import Agreement as Agreement
     from polhode._bodies import Body as Body
@@ -96,7 +97,7 @@ _LATER = {
     "Scene": "_scene",
     "State": "_state",
 }
-_MODULES = ("event", "force", "torque")
+_MODULES = ("event", "force", "jax", "torque")
 
 
 def __getattr__(name: str) -> Any:

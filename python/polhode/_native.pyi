@@ -34,6 +34,8 @@ __all__ = [
     "buffer",
     "canonical",
     "diagnostic",
+    "free_flow",
+    "free_flow_derivatives",
     "from_pauli",
     "function",
     "g3",
@@ -292,6 +294,9 @@ class FreeMotion:
     def starts(self) -> tuple[Array, Array]: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
+
+def free_flow(moments: Array, rotors: Array, omegas: Array, times: Array) -> Array: ...
+def free_flow_derivatives(moments: Array, rotors: Array, omegas: Array, times: Array) -> Array: ...
 
 @final
 class Force(Made):

@@ -290,4 +290,39 @@ mod tests {
             }
         }
     }
+
+    /// On every path within 2 ulps of the library's, from no angle to a quarter turn, and none for NaN.
+    #[test]
+    fn angles_are_those_of_the_library() {
+        #[derive(Clone, Copy)]
+        struct Angles([f64; 16], [f64; 16]);
+
+        impl Work for Angles {
+            type Output = [f64; 16];
+
+            #[inline(always)]
+            fn run<const FUSED: bool>(self) -> [f64; 16] {
+                Lanes::<16, FUSED>(self.0).angle(Lanes(self.1)).0
+            }
+        }
+
+        let mut sizes: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
+        sizes.extend([1e-300, 1e-160, 1e-20, 1e-9, 1e-4, 1e3, 1e20, f64::NAN]);
+        for scalar in [1.0, -1.0, 0.3, -1e-3, 1e-12] {
+            for sizes in sizes.chunks(16) {
+                let mut lanes = [1.0; 16];
+                lanes[..sizes.len()].copy_from_slice(sizes);
+                for path in Path::available() {
+                    for (angle, size) in path.run(Angles(lanes, [scalar; 16])).iter().zip(lanes) {
+                        let exact = size.atan2(f64::abs(scalar));
+                        let near = (angle - exact).abs() <= 2.0 * f64::EPSILON * exact;
+                        assert!(
+                            near || angle.is_nan() && size.is_nan(),
+                            "{path:?}: {size}, {scalar}: {angle}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

@@ -55,7 +55,7 @@ fn components<const N: usize>(value: &Bound<'_, PyAny>, grades: Grades) -> Optio
 
 /// Results of some work, in pieces between which Python may interrupt: each takes as long as to set so many
 /// motions up.
-fn pieces<T: Send>(
+pub(crate) fn pieces<T: Send>(
     py: Python<'_>,
     count: usize,
     motions: usize,
@@ -294,7 +294,7 @@ const NUMBERS: [Number; 12] = [
 ];
 
 /// A matrix row by row.
-fn flat<const N: usize, const ALL: usize>(rows: &[[f64; 3]; N]) -> [f64; ALL] {
+pub(crate) fn flat<const N: usize, const ALL: usize>(rows: &[[f64; 3]; N]) -> [f64; ALL] {
     std::array::from_fn(|k| rows[k / 3][k % 3])
 }
 

@@ -11,6 +11,7 @@ mod closed_forms;
 mod columns;
 mod draws;
 mod ensemble;
+mod flow;
 mod formula;
 mod free;
 mod laws;
@@ -42,6 +43,8 @@ mod _native {
     use crate::bodies::{Body, Inertia};
     #[pymodule_export]
     use crate::ensemble::simulate_many;
+    #[pymodule_export]
+    use crate::flow::{free_flow, free_flow_derivatives};
     #[pymodule_export]
     use crate::free::FreeMotion;
     #[pymodule_export]

@@ -3,6 +3,7 @@
 use crate::conserved::Conserved;
 use crate::phase::{Gyrostat, Phase};
 use crate::torque::Torque;
+use polhode_ga::Rotor;
 
 /// How far a run went astray in what it should have conserved.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +23,11 @@ pub struct Certificate {
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// Largest `abs(|R| − 1)` at the output times.
     pub norm_drift: f64,
+}
+
+/// `abs(|R| − 1)`.
+pub(crate) fn off_unit(rotor: Rotor) -> f64 {
+    (rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs()
 }
 
 /// Follows the conserved quantities along a run.

@@ -46,15 +46,30 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
             damping: Lanes::ZERO,
         };
         for (l, (body, damping)) in bodies.into_iter().enumerate() {
-            for k in 0..3 {
-                let [i, j, n] = [0, 1, 2].map(|next| body.moments[(k + next) % 3]);
-                all.inverse[k].0[l] = 1.0 / i;
-                all.coupling[k].0[l] = (j - n) / i;
-                all.wheel[k].0[l] = body.wheel.0[k];
-            }
-            all.damping.0[l] = damping;
+            all.set(l, &body, damping);
         }
         all
+    }
+
+    /// Puts a body with the g of its dampings into a lane.
+    pub fn set(&mut self, l: usize, body: &Gyrostat, damping: f64) {
+        for k in 0..3 {
+            let [i, j, n] = [0, 1, 2].map(|next| body.moments[(k + next) % 3]);
+            self.inverse[k].0[l] = 1.0 / i;
+            self.coupling[k].0[l] = (j - n) / i;
+            self.wheel[k].0[l] = body.wheel.0[k];
+        }
+        self.damping.0[l] = damping;
+    }
+
+    /// `Ω = I⁻¹(m − h)`.
+    #[inline(always)]
+    pub fn omega(&self, momentum: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
+        let mut omega = *momentum;
+        for k in 0..3 {
+            omega[k] = (momentum[k] - self.wheel[k]) * self.inverse[k];
+        }
+        omega
     }
 }
 
@@ -67,8 +82,9 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>
     time: f64,
     h: f64,
 ) {
-    let [half, whole, sixth, third] = [0.5 * h, h, h / 6.0, h / 3.0].map(Lanes::all);
-    let [begin, middle, end] = [time, time + 0.5 * h, time + h].map(Lanes::all);
+    let (half, whole) = (Lanes::all(0.5 * h), Lanes::all(h));
+    let (sixth, third) = (Lanes::all(h / 6.0), Lanes::all(h / 3.0));
+    let (begin, middle, end) = (Lanes::all(time), Lanes::all(time + 0.5 * h), Lanes::all(time + h));
     let k = slope(bodies, exert, y, begin);
     let mut sum = moved(y, &k, sixth);
     let k = slope(bodies, exert, &moved(y, &k, half), middle);
@@ -95,6 +111,8 @@ fn moved<const N: usize, const W: usize, const F: bool>(
     sum
 }
 
+// Lanes are best copied one by one: a copy of memory takes them out of their registers.
+#[allow(clippy::manual_memcpy)]
 #[inline(always)]
 fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     bodies: &Bodies<W, F>,
@@ -106,10 +124,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     let (r, w) = ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]]);
     let [a, b, c] = [w[0] * minus_half, w[1] * minus_half, w[2] * minus_half];
     let mut slope = *y;
-    let turned = turn(&r, [a, b, c]);
-    for k in 0..4 {
-        slope[k] = turned[k];
-    }
+    slope[..4].copy_from_slice(&turn(&r, [a, b, c]));
     let products = [w[1] * w[2], w[2] * w[0], w[0] * w[1]];
     for k in 0..3 {
         slope[4 + k] = bodies.coupling[k] * products[k];
@@ -130,10 +145,8 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
     if N == 13 {
         let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
         let acceleration = exert.acceleration(&Place { rotor: r, omega: w, time }, &center);
-        for k in 0..3 {
-            slope[7 + k] = y[10 + k];
-            slope[10 + k] = acceleration[k];
-        }
+        slope[7..10].copy_from_slice(&y[10..]);
+        slope[10..].copy_from_slice(&acceleration);
     }
     slope
 }

@@ -46,12 +46,25 @@ impl Pace {
 }
 
 /// What is to be reached, and how.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     /// Of the method.
     pub order: i32,
     pub goal: f64,
     /// What will do where passes differ by rounding alone.
     pub acceptable: f64,
+}
+
+impl Aim {
+    /// The relative error to be reached by a method of this order, where one is asked for.
+    pub fn new(order: i32, rtol: Option<f64>) -> Aim {
+        Aim { order, goal: rtol.unwrap_or(DEFAULT_RTOL), acceptable: rtol.unwrap_or(WORST_UNASKED) }
+    }
+
+    /// The first pace of steps that keep to a tolerance: the errors of all of them add up.
+    pub fn tolerance(&self) -> Pace {
+        Pace::Tolerance((0.1 * self.goal).max(1e3 * LEAST_TOLERANCE))
+    }
 }
 
 /// A pass that is good enough.
@@ -63,9 +76,9 @@ pub(crate) struct Converged {
     pub error: f64,
 }
 
-/// Runs until two passes agree. Gives the last pass, with the steps of all, and a cautious estimate of its error.
+/// Passes until two agree: says how and from where to run the next, and takes what it found.
 ///
-/// At events, too, what they differ by is told at one time: `follow` leads a point a little way to another time.
+/// At events, too, what passes differ by is told at one time: `follow` leads a point a little way to another time.
 ///
 /// What the motion magnifies, it magnifies in all passes alike, and their agreement would not show it: every other pass
 /// starts a few roundings away.
@@ -76,61 +89,93 @@ pub(crate) struct Converged {
 ///
 /// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
 /// ratio of their numbers; where that is nearly 1 the passes tell nothing, and the sum of the tolerances has to be small.
-pub(crate) fn converge(
-    run: &mut dyn FnMut(Pace, Carried) -> Result<Pass, SimulateError>,
-    start: Carried,
-    first: Pace,
+pub(crate) struct Convergence {
     aim: Aim,
-    body: &Gyrostat,
-    follow: &dyn Fn(&Carried, f64) -> Carried,
-) -> Result<Converged, SimulateError> {
-    let Aim { goal, acceptable, .. } = aim;
-    let order = f64::from(aim.order);
-    let shortest_turn = f64::EPSILON.powf(1.0 / (order + 1.0));
-    let (mut pace, mut by) = (first, SECOND);
-    let mut coarse = run(pace, moved(start, 0))?;
-    let (mut steps, mut evaluations) = (coarse.steps, coarse.evaluations);
-    // The last difference, and how many times shorter its steps were.
-    let mut last: Option<(f64, f64)> = None;
-    // The least error so far, and whether the pass before lowered it.
-    let (mut previous, mut before) = (f64::INFINITY, true);
-    // The error of the last pass.
-    let mut reached = f64::INFINITY;
-    for number in 2.. {
-        if let Pace::Step(step) = &mut pace
-            && coarse.longest > 0.0
-        {
-            // Where output times are closer than the step, they set it.
-            *step = step.min(coarse.longest);
+    start: Carried,
+    /// Of the next pass, as its start and its number.
+    pace: Pace,
+    begin: Carried,
+    number: u32,
+    /// The pass before.
+    coarse: Option<Pass>,
+    /// Of all passes.
+    steps: u64,
+    evaluations: u64,
+    /// How many times shorter the steps of the next pass are.
+    by: f64,
+    /// The last difference, and how many times shorter its steps were.
+    last: Option<(f64, f64)>,
+    /// The least error so far, and whether the pass before lowered it.
+    previous: f64,
+    before: bool,
+    /// The error of the last pass.
+    reached: f64,
+}
+
+impl Convergence {
+    pub fn new(start: Carried, first: Pace, aim: Aim) -> Convergence {
+        Convergence {
+            aim,
+            start,
+            pace: first,
+            begin: moved(start, 0),
+            number: 1,
+            coarse: None,
+            steps: 0,
+            evaluations: 0,
+            by: SECOND,
+            last: None,
+            previous: f64::INFINITY,
+            before: true,
+            reached: f64::INFINITY,
         }
-        let finer = pace.refined(by);
-        if finer == pace {
-            if reached <= acceptable {
-                return Ok(Converged { pace, pass: Pass { steps, evaluations, ..coarse }, error: reached });
+    }
+
+    /// The pace, the start and the number of the pass to be run, which count from 1.
+    pub fn next(&self) -> (Pace, Carried, u32) {
+        (self.pace, self.begin, self.number)
+    }
+
+    /// Takes the pass that was run. Gives the last one, once it is good enough.
+    pub fn take(
+        &mut self,
+        mut pass: Pass,
+        body: &Gyrostat,
+        follow: &dyn Fn(&Carried, f64) -> Carried,
+    ) -> Result<Option<Converged>, SimulateError> {
+        self.steps += pass.steps;
+        self.evaluations += pass.evaluations;
+        if let Some(coarse) = self.coarse.take() {
+            let start = self.start;
+            pass.states.iter_mut().filter(|s| s.phase.time == start.phase.time).for_each(|s| *s = start);
+            let difference = difference(body, &coarse, &pass, follow);
+            if let Some(error) = self.judge(difference, &coarse, &pass)? {
+                return Ok(Some(self.converged(pass, error)));
             }
-            return Err(SimulateError::NotConverged { rtol: goal, reached: previous, step: coarse.longest });
         }
-        pace = finer;
-        let begin = if number % 2 == 0 { start } else { moved(start, coarse.steps) };
-        let mut fine = run(pace, begin)?;
-        fine.states.iter_mut().filter(|s| s.phase.time == start.phase.time).for_each(|s| *s = start);
-        steps += fine.steps;
-        evaluations += fine.evaluations;
-        let difference = difference(body, &coarse, &fine, follow);
-        let mut shorter = by;
-        if let Pace::Tolerance(tolerance) = pace {
+        self.refine(pass)
+    }
+
+    fn converged(&self, pass: Pass, error: f64) -> Converged {
+        let (steps, evaluations) = (self.steps, self.evaluations);
+        Converged { pace: self.pace, pass: Pass { steps, evaluations, ..pass }, error }
+    }
+
+    /// The error of a pass, if that is good enough.
+    fn judge(&mut self, difference: f64, coarse: &Pass, fine: &Pass) -> Result<Option<f64>, SimulateError> {
+        let Aim { goal, acceptable, .. } = self.aim;
+        let order = f64::from(self.aim.order);
+        let mut shorter = self.by;
+        if let Pace::Tolerance(tolerance) = self.pace {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
             if shorter < TELLING {
                 let sum = fine.steps as f64 * tolerance;
-                if sum <= 0.1 * goal || tolerance == LEAST_TOLERANCE && difference <= acceptable {
-                    let error = difference.max(sum.min(goal)).max(f64::EPSILON);
-                    return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });
-                }
-                (coarse, by) = (fine, 2.0);
-                continue;
+                self.by = 2.0;
+                let enough = sum <= 0.1 * goal || tolerance == LEAST_TOLERANCE && difference <= acceptable;
+                return Ok(enough.then(|| difference.max(sum.min(goal)).max(f64::EPSILON)));
             }
         }
-        let shown = last.map(|(before, by): (f64, f64)| (before / difference).ln() / by.ln());
+        let shown = self.last.map(|(before, by): (f64, f64)| (before / difference).ln() / by.ln());
         let (exponent, converging) = match shown {
             Some(shown) => (TRUSTED * shown.clamp(0.0, order), shown > 0.6 * order),
             None => (0.5 * order, false),
@@ -142,25 +187,49 @@ pub(crate) fn converge(
         let error = error.max(f64::EPSILON * (fine.steps as f64).sqrt());
         // One pass may be lucky; two that gain nothing are ruled by rounding.
         // Passes with long steps may gain nothing yet.
-        let unresolved = number <= FEW_PASSES || fine.largest[0] * fine.longest > shortest_turn;
-        let gained = error <= 0.5 * previous || previous >= 1e-2 && unresolved;
-        let stuck = !gained && !before || number > MOST_PASSES;
+        let shortest_turn = f64::EPSILON.powf(1.0 / (order + 1.0));
+        let unresolved = self.number <= FEW_PASSES || fine.largest[0] * fine.longest > shortest_turn;
+        let gained = error <= 0.5 * self.previous || self.previous >= 1e-2 && unresolved;
+        let stuck = !gained && !self.before || self.number > MOST_PASSES;
         if error <= goal || stuck && error <= acceptable {
-            return Ok(Converged { pace, pass: Pass { steps, evaluations, ..fine }, error });
+            return Ok(Some(error));
         }
         if stuck {
             return Err(SimulateError::NotConverged { rtol: goal, reached: error, step: fine.longest });
         }
-        (last, previous, before, reached) = (Some((difference, shorter)), error.min(previous), gained, error);
-        by = if difference < 0.1 {
-            let likely = difference * by.powf(-0.9 * order);
+        (self.last, self.previous) = (Some((difference, shorter)), error.min(self.previous));
+        (self.before, self.reached) = (gained, error);
+        self.by = if difference < 0.1 {
+            let likely = difference * self.by.powf(-0.9 * order);
             (1.1 * (likely / goal).powf(1.0 / (TRUSTED * order))).clamp(1.3, 6.0)
         } else {
             2.0
         };
-        coarse = fine;
+        Ok(None)
     }
-    unreachable!("the loop returns")
+
+    /// Goes on to shorter steps. Where there are none, the last pass has to do.
+    fn refine(&mut self, coarse: Pass) -> Result<Option<Converged>, SimulateError> {
+        if let Pace::Step(step) = &mut self.pace
+            && coarse.longest > 0.0
+        {
+            // Where output times are closer than the step, they set it.
+            *step = step.min(coarse.longest);
+        }
+        let finer = self.pace.refined(self.by);
+        if finer == self.pace {
+            if self.reached <= self.aim.acceptable {
+                return Ok(Some(self.converged(coarse, self.reached)));
+            }
+            let (rtol, reached) = (self.aim.goal, self.previous);
+            return Err(SimulateError::NotConverged { rtol, reached, step: coarse.longest });
+        }
+        self.pace = finer;
+        self.number += 1;
+        self.begin = if self.number.is_multiple_of(2) { self.start } else { moved(self.start, coarse.steps) };
+        self.coarse = Some(coarse);
+        Ok(None)
+    }
 }
 
 /// The start moved by what so many steps round; what is zero stays zero.

@@ -1,15 +1,19 @@
 //! Many bodies at once: each as alone, many side by side in lanes.
 //!
 //! A body has its own inertia, start and laws, or shares them with the others. What becomes of one never depends on the
-//! others, on how many there are, or on how many threads share them. A motion in closed form is known at any time;
-//! others are stepped in the lanes where the method has a form for them, the rest one by one. A body that fails is
-//! told, and the others go on.
+//! others, on how many there are, or on how many threads share them. Without a step and a method, a
+//! motion in closed form is known at any time, and others are stepped by `dop853`, each by its own steps to its own
+//! tolerance: in the lanes, where the drifts of what is conserved are looked at at the output times. What the lanes have
+//! no form for is followed one by one. A body that fails is told, and the others go on.
 
+mod adaptive;
 mod advance;
 mod block;
+mod exact;
 mod fixed;
 mod laws;
 mod output;
+mod seat;
 mod steppers;
 
 use crate::force::{Center, Force};
@@ -141,12 +145,14 @@ impl Ensemble {
         })
     }
 
-    /// Whether lanes can step these bodies: only constant forces move them, and they are not smooth at the same times.
-    fn in_lanes(&self) -> bool {
-        // A table of its own gives each body its own steps. Laws are of one kind for all bodies, so that one of them
-        // tells; to ask them all would take, body by body, the square of their number.
-        let own_breaks = |law: &Rows<Torque>| !law.is_one() && !law.of(0).breaks().is_empty();
+    /// Whether lanes can step these bodies, by equal steps or by steps of their own: only constant forces move them.
+    fn in_lanes(&self, equal: bool) -> bool {
+        // Laws are of one kind for all bodies, so that one of them tells; to ask them all would take, body by body, the
+        // square of their number. A table of its own gives each body its own steps.
+        let apart = |law: &Rows<Torque>| equal && !law.is_one() && !law.of(0).breaks().is_empty();
+        // A function is called for one body at a time.
+        let called = |law: &Rows<Torque>| !equal && matches!(law.of(0), Torque::Function(_));
         let moved = self.forces.iter().any(|force| !matches!(force, Force::Constant(_)));
-        !moved && !self.laws.iter().any(own_breaks)
+        !moved && !self.laws.iter().any(|law| apart(law) || called(law))
     }
 }

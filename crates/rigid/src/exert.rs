@@ -33,7 +33,7 @@ pub(crate) trait Exert<const W: usize, const F: bool> {
     fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
 }
 
-/// What acts on a single body; the first failure to say how.
+/// What acts on a single body: the first failure to say how, after which nothing is asked.
 pub(crate) struct Alone<'a> {
     body: &'a Gyrostat,
     torques: &'a [Torque],
@@ -47,7 +47,7 @@ impl<'a> Alone<'a> {
         Alone { body, torques, translation, failure: None }
     }
 
-    /// The first failure, if there was one. What was computed after it is NaN.
+    /// The first failure, if there was one.
     pub fn finish(self) -> Result<(), SimulateError> {
         self.failure.map_or(Ok(()), Err)
     }
@@ -71,12 +71,17 @@ impl Exert<1, false> for Alone<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
+        if self.torques.is_empty() || self.failure.is_some() {
+            return [One::ZERO; 3];
+        }
         let torque = exerted(self.torques, self.body, &self.phase(at));
         self.noted(torque.map(|torque| torque.0))
     }
 
     fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
-        let Some(translation) = self.translation else { return [One::ZERO; 3] };
+        let Some(translation) = self.translation.filter(|_| self.failure.is_none()) else {
+            return [One::ZERO; 3];
+        };
         let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
         let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
         let acceleration = translation.acceleration(self.body, &phase, &center);

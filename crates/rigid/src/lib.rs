@@ -48,6 +48,7 @@ pub mod simulate;
 mod simulate_error;
 pub mod solids;
 pub mod splitting;
+mod stride;
 mod sum;
 pub mod symmetric_top;
 pub mod torque;

@@ -15,19 +15,24 @@
 //! slowly, which lets the steps be long.
 //!
 //! The centre of mass is stepped along where forces move it: `x' = v`, `v' = F/m`.
+//!
+//! Bodies are stepped side by side in lanes, each by its own step; a single body is lanes of one.
 
+mod exponential;
+mod points;
 mod tableau;
 
+use crate::classical::{Bodies, renormalize};
+use crate::exert::{Alone, Exert, Place};
 use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
-use crate::torque::{Torque, TorqueError, exerted};
-use crate::turn::cosine_and_sinc;
-use polhode_ga::lanes::Lanes;
-use polhode_ga::{Bivector, Rotor, Vector};
+use crate::torque::Torque;
+use exponential::exponential;
+pub(crate) use points::Points;
+use polhode_ga::Bivector;
+use polhode_ga::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
 pub use tableau::{DOP853, Tableau};
-
-type Axial = [f64; 3];
 
 /// Beyond this angle in rad of one step the exponential's differential comes near its pole at 2π.
 const LARGEST_TURN: f64 = 3.0;
@@ -51,15 +56,222 @@ impl Carried {
 }
 
 /// σ and the change of L, of six numbers; of twelve with those of place and velocity.
-type Change<const N: usize> = [f64; N];
+type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 
-/// A body, what turns it, and how it is stepped.
+/// One step of lengths `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
+/// angular velocity relative to `fastest` (rad/s), whichever is larger; with N = 12 also the velocity relative to the
+/// velocity, and the place relative to the distance or the way of the step. NaN where the step is too long to tell.
+#[inline(always)]
+pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+    tableau: &Tableau,
+    bodies: &Bodies<W, F>,
+    exert: &mut E,
+    from: &Points<W, F>,
+    h: Lanes<W, F>,
+    fastest: Lanes<W, F>,
+) -> (Points<W, F>, Lanes<W, F>) {
+    let nothing = Lanes::all(f64::NAN);
+    let mut slopes = [[Lanes::ZERO; N]; 12];
+    let mut widest = Lanes::ZERO;
+    for stage in 0..tableau.rows.len() {
+        let change = combined(tableau.rows[stage], &slopes, h);
+        let turned = part(&change, 0);
+        let square = dot(&turned, &turned);
+        widest = square.max(widest);
+        if !any_within(&square) {
+            return (*from, nothing);
+        }
+        let dt = Lanes::all(tableau.nodes[stage]) * h;
+        slopes[stage] = slope(bodies, exert, from, &change, square, dt);
+    }
+    let change = combined(tableau.weights, &slopes, h);
+    let mut to = moved(from, &change, h);
+    let turned = part(&change, 0);
+    let square = dot(&turned, &turned);
+    widest = square.max(widest);
+    to.rotor = composed(&exponential(&turned, square).0, &from.rotor);
+    renormalize(&mut to.rotor);
+    let back = matrix(&from.rotor);
+    let fifth = size(bodies, from, &back, &combined(tableau.fifth, &slopes, h), h, fastest);
+    let third = size(bodies, from, &back, &combined(tableau.third, &slopes, h), h, fastest);
+    // As Hairer's code weighs the two: of order 8 where both are small.
+    let square = fifth * fifth;
+    let weighed = (third * third).times_plus(Lanes::all(0.01), square).sqrt();
+    let mut error = square / weighed;
+    for l in 0..W {
+        if fifth.0[l] == 0.0 {
+            error.0[l] = 0.0;
+        }
+        if widest.0[l] > LARGEST_TURN * LARGEST_TURN {
+            error.0[l] = f64::NAN;
+        }
+    }
+    (to, error)
+}
+
+/// Whether any turn, given by its square, is short enough.
+#[inline(always)]
+fn any_within<const W: usize, const F: bool>(square: &Lanes<W, F>) -> bool {
+    let mut any = false;
+    for l in 0..W {
+        any |= square.0[l] <= LARGEST_TURN * LARGEST_TURN;
+    }
+    any
+}
+
+/// σ' and L' at `from` changed by σ and ΔL.
+#[inline(always)]
+fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+    bodies: &Bodies<W, F>,
+    exert: &mut E,
+    from: &Points<W, F>,
+    change: &Change<N, W, F>,
+    square: Lanes<W, F>,
+    dt: Lanes<W, F>,
+) -> Change<N, W, F> {
+    let turned = part(change, 0);
+    let (turn, cotangent) = exponential(&turned, square);
+    let rotor = composed(&turn, &from.rotor);
+    let at = moved(from, change, dt);
+    let axes = matrix(&rotor);
+    let momentum = mapped_back(&axes, &at.momentum);
+    let omega = bodies.omega(&momentum);
+    let place = Place { rotor, omega, time: at.time };
+    let omega = mapped(&axes, &omega);
+    let first = cross(&turned, &omega);
+    let second = cross(&turned, &first);
+    let mut slope = [Lanes::ZERO; N];
+    for k in 0..3 {
+        let straight = first[k].times_plus(Lanes::all(-0.5), omega[k]);
+        slope[k] = cotangent.times_plus(second[k], straight);
+    }
+    if E::ACTS {
+        let mut torque = exert.torque(&place);
+        for k in 0..3 {
+            let carried = momentum[k] - bodies.wheel[k];
+            torque[k] = bodies.damping.times_from(carried, torque[k]);
+        }
+        slope[3..6].copy_from_slice(&mapped(&axes, &torque));
+    }
+    if N == 12 {
+        // The place beside that of the uniform motion from the start of the step.
+        slope[6..9].copy_from_slice(&part(change, 9));
+        slope[9..12].copy_from_slice(&exert.acceleration(&place, &at.center));
+    }
+    slope
+}
+
+/// How large a change is: in attitude, in angular velocity relative to `fastest`, in velocity relative to the velocity,
+/// in place relative to the distance or the way of the step.
+#[inline(always)]
+fn size<const N: usize, const W: usize, const F: bool>(
+    bodies: &Bodies<W, F>,
+    at: &Points<W, F>,
+    axes: &[[Lanes<W, F>; 3]; 3],
+    change: &Change<N, W, F>,
+    h: Lanes<W, F>,
+    fastest: Lanes<W, F>,
+) -> Lanes<W, F> {
+    let mut omega = mapped_back(axes, &part(change, 3));
+    for k in 0..3 {
+        omega[k] = omega[k] * bodies.inverse[k];
+    }
+    let relative = relative(norm(&omega), fastest);
+    let rotation = larger(Lanes::all(0.5) * norm(&part(change, 0)), relative);
+    if N < 12 {
+        return rotation;
+    }
+    let [x, y, z, u, v, w] = at.center;
+    let (speed, distance) = (norm(&[u, v, w]), norm(&[x, y, z]));
+    let way = distance.max(speed * h.abs());
+    let place = self::relative(norm(&part(change, 6)), way);
+    let velocity = self::relative(norm(&part(change, 9)), speed.max(way / h.abs()));
+    larger(rotation, larger(place, velocity))
+}
+
+/// `part/whole`, 0 where there is no whole.
+#[inline(always)]
+fn relative<const W: usize, const F: bool>(part: Lanes<W, F>, whole: Lanes<W, F>) -> Lanes<W, F> {
+    let mut ratio = part / whole;
+    for l in 0..W {
+        ratio.0[l] = if whole.0[l] > 0.0 { ratio.0[l] } else { 0.0 };
+    }
+    ratio
+}
+
+/// The larger of two; NaN where one is.
+#[inline(always)]
+fn larger<const W: usize, const F: bool>(a: Lanes<W, F>, b: Lanes<W, F>) -> Lanes<W, F> {
+    let mut larger = b;
+    for l in 0..W {
+        // A NaN of b is not less; one of a is no number.
+        larger.0[l] = if a.0[l] <= b.0[l] || b.0[l].is_nan() { b.0[l] } else { a.0[l] };
+    }
+    larger
+}
+
+/// Three of the numbers.
+#[inline(always)]
+fn part<const N: usize, const W: usize, const F: bool>(
+    change: &Change<N, W, F>,
+    from: usize,
+) -> [Lanes<W, F>; 3] {
+    [change[from], change[from + 1], change[from + 2]]
+}
+
+/// All but the rotor a time dt after `from`.
+#[inline(always)]
+fn moved<const N: usize, const W: usize, const F: bool>(
+    from: &Points<W, F>,
+    change: &Change<N, W, F>,
+    dt: Lanes<W, F>,
+) -> Points<W, F> {
+    let mut to = *from;
+    to.time = from.time + dt;
+    for k in 0..3 {
+        to.momentum[k] = from.momentum[k] + change[3 + k];
+    }
+    if N == 12 {
+        for k in 0..3 {
+            to.center[k] = from.center[k] + from.center[3 + k].times_plus(dt, change[6 + k]);
+            to.center[3 + k] = from.center[3 + k] + change[9 + k];
+        }
+    }
+    to
+}
+
+/// `h Σ a_j k_j`.
+#[inline(always)]
+fn combined<const N: usize, const W: usize, const F: bool>(
+    row: &[(usize, f64)],
+    slopes: &[Change<N, W, F>; 12],
+    h: Lanes<W, F>,
+) -> Change<N, W, F> {
+    let mut sum = [Lanes::ZERO; N];
+    for &(stage, a) in row {
+        let (slope, a) = (&slopes[stage], Lanes::all(a));
+        for k in 0..N {
+            sum[k] = slope[k].times_plus(a, sum[k]);
+        }
+    }
+    for k in 0..N {
+        sum[k] = h * sum[k];
+    }
+    sum
+}
+
+#[inline(always)]
+fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
+    dot(a, a).sqrt()
+}
+
+/// A body, what turns it, and how it is stepped alone.
 #[derive(Clone, Debug)]
 pub struct RungeKutta {
     body: Gyrostat,
     torques: Vec<Torque>,
-    damping: f64,
     translation: Option<Translation>,
+    alone: Bodies<1, false>,
     tableau: &'static Tableau,
 }
 
@@ -72,7 +284,7 @@ impl RungeKutta {
         tableau: &'static Tableau,
     ) -> RungeKutta {
         let damping = torques.iter().map(Torque::damping_rate).sum();
-        RungeKutta { body, torques, damping, translation, tableau }
+        RungeKutta { body, torques, translation, alone: Bodies::new([(body, damping)]), tableau }
     }
 
     /// The method.
@@ -83,154 +295,16 @@ impl RungeKutta {
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
     /// angular velocity relative to `fastest` (rad/s), whichever is larger; NaN where the step is too long to tell.
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
-        match self.translation {
-            None => self.step_of::<6>(from, h, fastest),
-            Some(_) => self.step_of::<12>(from, h, fastest),
-        }
+        let fastest = Lanes([fastest.max(self.body.least_rate())]);
+        let mut at = Points::NONE;
+        at.set(0, from);
+        let mut acting = Alone::new(&self.body, &self.torques, self.translation.as_ref());
+        let (tableau, alone, h): (_, _, One) = (self.tableau, &self.alone, Lanes([h]));
+        let (to, error) = match self.translation {
+            None => step::<6, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
+            Some(_) => step::<12, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
+        };
+        acting.finish()?;
+        Ok((to.get(0), error.0[0]))
     }
-
-    fn step_of<const N: usize>(
-        &self,
-        from: &Carried,
-        h: f64,
-        fastest: f64,
-    ) -> Result<(Carried, f64), SimulateError> {
-        let tableau = self.tableau;
-        let mut slopes = [[0.0; N]; 12];
-        for (stage, (row, node)) in tableau.rows.iter().zip(tableau.nodes).enumerate() {
-            let change = combined(row, &slopes, h);
-            if norm(&part(&change, 0)) > LARGEST_TURN {
-                return Ok((*from, f64::NAN));
-            }
-            slopes[stage] = self.slope(from, &change, node * h)?;
-        }
-        let change = combined(tableau.weights, &slopes, h);
-        let rotor = (exponential(&part(&change, 0)).0 * from.phase.rotor).renormalized();
-        let momentum_space = from.momentum_space + Bivector(part(&change, 3));
-        let momentum = rotor.reverse().apply_bivector(momentum_space);
-        let phase = Phase { rotor, momentum, time: from.phase.time + h };
-        let size = |row| self.size(from, &combined(row, &slopes, h), h, fastest);
-        let (fifth, third) = (size(tableau.fifth), size(tableau.third));
-        // As Hairer's code weighs the two: of order 8 where both are small.
-        let error =
-            if fifth == 0.0 { 0.0 } else { fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt() };
-        Ok((Carried { phase, momentum_space, center: moved(&from.center, &change, h) }, error))
-    }
-
-    /// σ' and L' at `from` changed by σ and ΔL.
-    #[inline]
-    fn slope<const N: usize>(
-        &self,
-        from: &Carried,
-        change: &Change<N>,
-        dt: f64,
-    ) -> Result<Change<N>, SimulateError> {
-        let turned = part(change, 0);
-        let (turn, cotangent) = exponential(&turned);
-        let rotor = turn * from.phase.rotor;
-        let momentum = from.momentum_space + Bivector(part(change, 3));
-        let momentum = rotor.reverse().apply_bivector(momentum);
-        let state = Phase { rotor, momentum, time: from.phase.time + dt };
-        let omega = self.body.omega(state.momentum);
-        let mut torque = exerted(&self.torques, &self.body, &state)?;
-        if self.damping != 0.0 {
-            torque += self.body.carried(omega) * -self.damping;
-        }
-        let omega = rotor.apply_bivector(omega).0;
-        let first = cross(&turned, &omega);
-        let second = cross(&turned, &first);
-        let mut slope = [0.0; N];
-        for k in 0..3 {
-            slope[k] = omega[k] - 0.5 * first[k] + cotangent * second[k];
-        }
-        if !self.torques.is_empty() {
-            slope[3..6].copy_from_slice(&rotor.apply_bivector(torque).0);
-        }
-        if let Some(translation) = &self.translation {
-            let center = moved(&from.center, change, dt);
-            let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
-            let acceleration = translation.acceleration(&self.body, &state, &center).map_err(failed)?;
-            // The place beside that of the uniform motion from the start of the step.
-            slope[6..9].copy_from_slice(&part(change, 9));
-            slope[9..12].copy_from_slice(&acceleration.0);
-        }
-        Ok(slope)
-    }
-
-    /// How large a change is: in attitude, in angular velocity relative to `fastest`, in velocity relative to the
-    /// velocity, in place relative to the distance or the way of the step.
-    fn size<const N: usize>(&self, at: &Carried, change: &Change<N>, h: f64, fastest: f64) -> f64 {
-        let momentum = at.phase.rotor.reverse().apply_bivector(Bivector(part(change, 3))).0;
-        let omega = [0, 1, 2].map(|k| momentum[k] / self.body.moments[k]);
-        let fastest = fastest.max(self.body.least_rate());
-        let relative = if fastest > 0.0 { norm(&omega) / fastest } else { 0.0 };
-        let turn = 0.5 * norm(&part(change, 0));
-        // f64::max would lose a NaN.
-        let larger = |a: f64, b: f64| if a >= b { a } else { b };
-        let rotation = larger(turn, relative);
-        if self.translation.is_none() {
-            return rotation;
-        }
-        let (speed, distance) = (at.center.velocity.norm(), at.center.position.norm());
-        let way = distance.max(speed * h.abs());
-        let of = |change: &Axial, whole: f64| if whole > 0.0 { norm(change) / whole } else { 0.0 };
-        let place = of(&part(change, 6), way);
-        larger(rotation, larger(place, of(&part(change, 9), speed.max(way / h.abs()))))
-    }
-}
-
-/// Three of the numbers.
-#[inline]
-fn part<const N: usize>(change: &Change<N>, from: usize) -> Axial {
-    [change[from], change[from + 1], change[from + 2]]
-}
-
-/// The centre of mass a time dt after `from`.
-fn moved<const N: usize>(from: &Center, change: &Change<N>, dt: f64) -> Center {
-    if N < 12 {
-        return *from;
-    }
-    let position = from.position + (from.velocity * dt + Vector(part(change, 6)));
-    Center { position, velocity: from.velocity + Vector(part(change, 9)) }
-}
-
-/// `h Σ a_j k_j`.
-#[inline]
-fn combined<const N: usize>(row: &[(usize, f64)], slopes: &[Change<N>; 12], h: f64) -> Change<N> {
-    let mut sum = [0.0; N];
-    for &(stage, a) in row {
-        let slope = &slopes[stage];
-        for k in 0..N {
-            sum[k] += a * slope[k];
-        }
-    }
-    sum.map(|x| h * x)
-}
-
-/// `exp(−½σ)` and `c(θ)`.
-#[inline]
-fn exponential(turn: &Axial) -> (Rotor, f64) {
-    let square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
-    // Of x = ½θ.
-    let z = 0.25 * square;
-    let (Lanes([cos]), Lanes([sinc])) = cosine_and_sinc(Lanes::<1, false>([z]));
-    let cotangent = if z < 0.0625 {
-        // (1 − x cot x)/4x²; the next term is below rounding beside the 1 that it is added to.
-        1.0 / 12.0
-            + z * (1.0 / 180.0
-                + z * (1.0 / 1890.0
-                    + z * (1.0 / 18_900.0 + z * (1.0 / 187_110.0 + z * (691.0 / 1_277_025_750.0)))))
-    } else {
-        (1.0 - cos / sinc) / square
-    };
-    let [x, y, z] = turn.map(|b| -0.5 * sinc * b);
-    (Rotor::from_unit_components([cos, x, y, z]), cotangent)
-}
-
-fn cross(a: &Axial, b: &Axial) -> Axial {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn norm(a: &Axial) -> f64 {
-    (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
 }

@@ -1,10 +1,10 @@
 //! Motion at given times: exact where there is a closed form, else by steps to a tolerance, with a certificate of
 //! what was conserved.
 
-use crate::certificate::{Certificate, Watch};
+use crate::certificate::{Certificate, Watch, off_unit};
 use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::{Conserved, energy};
-use crate::converge::{Aim, DEFAULT_RTOL, LEAST_TOLERANCE, WORST_UNASKED, converge};
+use crate::converge::{Aim, Convergence};
 use crate::ensemble::Own;
 use crate::event::{Event, Happened};
 use crate::force::{Center, Force, Translation};
@@ -102,6 +102,26 @@ pub(crate) fn check_moments(moments: [f64; 3]) -> Result<(), SimulateError> {
     Err(SimulateError::SingularInertia { moments })
 }
 
+/// A body, its angular velocity and what turns it must be usable.
+pub(crate) fn check_body(body: &Gyrostat, omega: Bivector, torques: &[Torque]) -> Result<(), SimulateError> {
+    check_moments(body.moments)?;
+    if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
+        return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+    }
+    let momentum = body.momentum(omega);
+    let value = body.kinetic(momentum) + momentum.norm_squared();
+    if !value.is_finite() {
+        return Err(SimulateError::BadValue { what: "the energy of the rotation", value });
+    }
+    for torque in torques {
+        let value = torque.size(body) + torque.damping_rate();
+        if !value.is_finite() {
+            return Err(SimulateError::BadValue { what: "the size of a torque", value });
+        }
+    }
+    Ok(())
+}
+
 impl Problem {
     /// A body with its rotor (body axes to space) and its angular velocity and torques in body axes. The
     /// inertia is about the centre of mass, or about the fixed point if there is one.
@@ -176,23 +196,21 @@ impl Problem {
                 (pace, self.pass(&engine, times, (pace, 1), &events, progress)?, None)
             }
             (_, None) => {
-                let goal = options.rtol.unwrap_or(DEFAULT_RTOL);
-                let acceptable = options.rtol.unwrap_or(WORST_UNASKED);
-                // The errors of all steps add up.
-                let adapted = Pace::Tolerance((0.1 * goal).max(1e3 * LEAST_TOLERANCE));
-                let first = if method.adapts() { adapted } else { long(method.first_turn()) };
-                let mut number = 0;
-                let mut run = |pace: Pace, start: Carried| {
-                    number += 1;
-                    self.pass_from(start, &engine, times, (pace, number), &events, progress)
-                };
+                let aim = Aim::new(method.order(), options.rtol);
+                let first = if method.adapts() { aim.tolerance() } else { long(method.first_turn()) };
                 let follow = |from: &Carried, time: f64| {
                     let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
                     fall.iter().for_each(|fall| to.center = fall.at(time));
                     to
                 };
-                let aim = Aim { order: method.order(), goal, acceptable };
-                let found = converge(&mut run, self.start(), first, aim, &self.body, &follow)?;
+                let mut passes = Convergence::new(self.start(), first, aim);
+                let found = loop {
+                    let (pace, start, number) = passes.next();
+                    let pass = self.pass_from(start, &engine, times, (pace, number), &events, progress)?;
+                    if let Some(found) = passes.take(pass, &self.body, &follow)? {
+                        break found;
+                    }
+                };
                 (found.pace, found.pass, Some(found.error))
             }
         };
@@ -200,8 +218,6 @@ impl Problem {
             return Err(SimulateError::Diverged { time: state.phase.time });
         }
         let exact = name == "exact";
-        let off_unit =
-            |s: &Carried| s.phase.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0;
         let certificate = Certificate {
             method: name,
             step: if exact { 0.0 } else { pass.longest },
@@ -209,7 +225,7 @@ impl Problem {
             evaluations: pass.evaluations,
             error_estimate: error,
             drifts: pass.drifts,
-            norm_drift: pass.states.iter().map(|s| off_unit(s).abs()).fold(0.0, f64::max),
+            norm_drift: pass.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
         };
         Ok(Motion {
             problem: self.clone(),
@@ -301,26 +317,12 @@ impl Problem {
     }
 
     pub(crate) fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
-        check_moments(self.body.moments)?;
         for (index, &time) in times.iter().enumerate() {
             if !time.is_finite() || index > 0 && time < times[index - 1] {
                 return Err(SimulateError::BadTime { index, time });
             }
         }
-        if let Some(&value) = self.omega.0.iter().find(|x| !x.is_finite()) {
-            return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
-        }
-        let start = self.start().phase;
-        let value = self.body.kinetic(start.momentum) + start.momentum.norm_squared();
-        if !value.is_finite() {
-            return Err(SimulateError::BadValue { what: "the energy of the rotation", value });
-        }
-        for torque in &self.torques {
-            let value = torque.size(&self.body) + torque.damping_rate();
-            if !value.is_finite() {
-                return Err(SimulateError::BadValue { what: "the size of a torque", value });
-            }
-        }
+        check_body(&self.body, self.omega, &self.torques)?;
         for (what, value) in [("step", options.step.unwrap_or(1.0)), ("rtol", options.rtol.unwrap_or(1.0))] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(SimulateError::BadValue { what, value });

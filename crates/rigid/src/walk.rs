@@ -10,6 +10,7 @@ use crate::phase::Gyrostat;
 use crate::point::Point;
 use crate::runge_kutta::Carried;
 use crate::simulate_error::{MAX_STEPS, SimulateError};
+use crate::stride::{Stride, check_count, next_stop};
 use crate::torque::TorqueError;
 
 /// The fraction of the work done at some time.
@@ -61,7 +62,8 @@ pub(crate) struct Pass {
 }
 
 impl Pass {
-    fn meet(&mut self, omega: f64, center: &Center) {
+    /// Takes note of the sizes at a point of the motion.
+    pub fn meet(&mut self, omega: f64, center: &Center) {
         let sizes = [omega, center.position.norm(), center.velocity.norm()];
         self.largest = [0, 1, 2].map(|k| self.largest[k].max(sizes[k]));
     }
@@ -89,8 +91,7 @@ pub(crate) struct Walker<'a> {
 /// Where a walk in one direction of time stands.
 struct Walk {
     at: Carried,
-    /// The next step, if nothing is in its way.
-    next: f64,
+    stride: Stride,
     /// The largest angular velocity so far, in rad/s.
     fastest: f64,
     /// What passes zero at events, here.
@@ -140,7 +141,7 @@ impl Walker<'_> {
             return Ok(Vec::new());
         }
         let values = self.values(&start)?;
-        let mut walk = Walk { at: start, next: self.first, fastest, values, ended: false };
+        let mut walk = Walk { at: start, stride: Stride::new(self.first), fastest, values, ended: false };
         let mut states = Vec::new();
         for &time in times {
             self.walk(&mut walk, time, pass, done)?;
@@ -158,19 +159,12 @@ impl Walker<'_> {
     /// Walks to a time, stopping wherever a law is not smooth.
     fn walk(&mut self, walk: &mut Walk, time: f64, pass: &mut Pass, done: Done) -> Result<(), SimulateError> {
         loop {
-            let from = walk.at.phase.time;
-            let (breaks, forward) = (self.breaks, time > from);
-            let between = if forward {
-                breaks.get(breaks.partition_point(|&b| b <= from)).filter(|&&b| b < time)
-            } else {
-                breaks[..breaks.partition_point(|&b| b < from)].last().filter(|&&b| b > time)
-            };
-            let to = between.copied().unwrap_or(time);
+            let to = next_stop(self.breaks, walk.at.phase.time, time);
             match self.pace {
                 Pace::Step(step) => self.equal_steps(walk, to, step, pass, done)?,
                 Pace::Tolerance(tolerance) => self.adapted_steps(walk, to, tolerance, pass, done)?,
             }
-            if between.is_none() || walk.ended {
+            if to == time || walk.ended {
                 return Ok(());
             }
         }
@@ -203,7 +197,6 @@ impl Walker<'_> {
         Ok(())
     }
 
-    /// Each next step is the longest whose error should be 0.9⁸ of the tolerance.
     fn adapted_steps(
         &mut self,
         walk: &mut Walk,
@@ -212,35 +205,14 @@ impl Walker<'_> {
         pass: &mut Pass,
         done: Done,
     ) -> Result<(), SimulateError> {
-        let direction = (time - walk.at.phase.time).signum();
-        let mut refused = false;
         while walk.at.phase.time != time && !walk.ended {
-            let rest = (time - walk.at.phase.time).abs();
-            // A last step that is much shorter than the one before helps nobody.
-            let cut = if walk.next >= rest { rest } else { walk.next.min(0.5 * rest.max(walk.next)) };
-            let to = if cut >= rest { time } else { walk.at.phase.time + direction * cut };
-            let h = to - walk.at.phase.time;
-            // Output times may be as close as numbers are.
-            if h == 0.0 || refused && cut < 1e-14 * walk.at.phase.time.abs() {
-                return Err(SimulateError::StepTooSmall { time: walk.at.phase.time, step: cut });
-            }
+            let from = walk.at.phase.time;
+            let to = walk.stride.end(from, time)?;
             let (next, error) = self.step(&walk.at, to, walk.fastest, pass)?;
-            let error = error / tolerance;
-            // NaN too.
-            if error.is_nan() || error > 1.0 {
-                walk.next =
-                    h.abs() * if error.is_finite() { (0.9 * error.powf(-0.125)).max(0.2) } else { 0.2 };
-                refused = true;
-                continue;
-            }
-            let growth = (0.9 * error.powf(-0.125)).clamp(0.3, if refused { 1.0 } else { 6.0 });
-            // A step cut short by an output time says little of how long it might be.
-            walk.next = if cut < walk.next { walk.next.max(h.abs() * growth) } else { h.abs() * growth };
-            refused = false;
-            pass.longest = pass.longest.max(h.abs());
-            self.arrive(walk, next, pass, done)?;
-            if pass.steps as f64 > MAX_STEPS {
-                return Err(SimulateError::TooManySteps { steps: pass.steps as f64, step: cut });
+            if walk.stride.judge(to - from, error / tolerance) {
+                pass.longest = pass.longest.max((to - from).abs());
+                self.arrive(walk, next, pass, done)?;
+                check_count(pass)?;
             }
         }
         Ok(())

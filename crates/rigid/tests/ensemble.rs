@@ -140,7 +140,7 @@ fn no_body_depends_on_threads_or_on_others() {
         }
         for body in [0, 33, 69] {
             let one = Ensemble {
-                inertias: Rows::new(vec![all.inertias.of(body).clone()]),
+                inertias: Rows::new(vec![*all.inertias.of(body)]),
                 starts: vec![all.starts[body]],
                 laws: all.laws.iter().map(|law| Rows::new(vec![law.of(body).clone()])).collect(),
                 ..all.clone()

@@ -194,6 +194,63 @@ fn blocks_equal_single_values() {
     assert!((5..100).contains(&failures), "{failures} programs have no value");
 }
 
+/// Random programs on lanes, filled twice, some inputs the same for all: the bits of single values, and NaN for the rows
+/// that have none.
+#[test]
+fn lanes_equal_single_values() {
+    const ROWS: usize = 16;
+    let mut random = Random(11);
+    let mut failures = 0;
+    for _ in 0..150 {
+        let program = random_program(&mut random);
+        let runner = Runner::new(&program).unwrap();
+        let fixed = random.below(128);
+        let is_known = |i: usize| fixed >> i & 1 == 1;
+        let draw = |random: &mut Random| -> Vec<Vec<f64>> {
+            program.inputs.iter().map(|input| random.rows(input.kind, ROWS)).collect()
+        };
+        let first = draw(&mut random);
+        let row = |data: &[Vec<f64>], i: usize, row: usize| {
+            let (kind, size) = (program.inputs[i].kind, program.inputs[i].kind.size());
+            let data = if is_known(i) { &first[i][..size] } else { &data[i][row * size..(row + 1) * size] };
+            given(kind, data)
+        };
+        let known: Vec<Option<Given>> =
+            (0..program.inputs.len()).map(|i| is_known(i).then(|| row(&first, i, 0))).collect();
+        let always = runner.fixed(&known.iter().map(Option::is_some).collect::<Vec<_>>());
+        let mut beside = runner.beside::<ROWS>(&known);
+        for data in [&first, &draw(&mut random)] {
+            if let Some(beside) = &mut beside {
+                for i in (0..program.inputs.len()).filter(|&i| !is_known(i)) {
+                    let lanes = beside.input(i);
+                    let size = lanes.len();
+                    for (n, x) in data[i].iter().enumerate() {
+                        lanes[n % size].0[n / size] = *x;
+                    }
+                }
+                beside.run();
+            }
+            for l in 0..ROWS {
+                let inputs: Vec<Given> = (0..program.inputs.len()).map(|i| row(data, i, l)).collect();
+                let values = runner.value(&inputs);
+                failures += usize::from(values.is_err());
+                let Some(beside) = &beside else {
+                    assert!(values.is_err(), "{program:?}");
+                    continue;
+                };
+                for (number, &id) in program.results[0].iter().enumerate() {
+                    let got: Vec<f64> = beside.result(number).iter().map(|lane| lane.0[l]).collect();
+                    match &values {
+                        Ok(values) => assert_same(&got, values[id].components(), &format!("{program:?}")),
+                        Err(_) => assert!(always[id] || got.iter().all(|x| x.is_nan()), "{program:?}"),
+                    }
+                }
+            }
+        }
+    }
+    assert!((50..3000).contains(&failures), "{failures} rows have no value");
+}
+
 /// Each step alone has the bits of the call by hand, on single values and on batches.
 #[test]
 fn steps_equal_calls_by_hand() {

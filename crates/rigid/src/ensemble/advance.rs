@@ -41,10 +41,6 @@ pub(super) trait Steps {
     fn walk(&mut self, times: &[f64]);
 }
 
-/// Times in whole registers: memory that is aligned makes all of the function's so.
-#[repr(align(64))]
-struct Times([f64; TIMED + 1]);
-
 impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
     type Output = ();
 
@@ -53,12 +49,12 @@ impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
         // The caller is on the same path; nothing need be compiled for others.
         if FUSED == F {
             for first in self.steps.clone().step_by(TIMED) {
-                let mut times = Times([0.0; TIMED + 1]);
+                let mut times = [0.0; TIMED + 1];
                 for k in 0..=TIMED {
-                    times.0[k] = self.stretch.begin(first + k as u64);
+                    times[k] = self.stretch.begin(first + k as u64);
                 }
                 let count = TIMED.min((self.steps.end - first) as usize);
-                self.method.walk(&times.0[..count + 1]);
+                self.method.walk(&times[..count + 1]);
             }
         }
     }

@@ -1,31 +1,36 @@
 //! The work on an ensemble, shared by threads: each takes bodies that nobody has taken yet.
 
+use super::adaptive::AdaptedSteps;
 use super::fixed::FixedSteps;
 use super::output::{Outputs, Own, Summary};
+use super::seat::METHOD;
 use super::{Ensemble, Failure};
 use crate::certificate::Certificate;
-use crate::closed_form::Fall;
+use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::Conserved;
 use crate::force::{Center, Force};
 use crate::method::Method;
 use crate::phase::{Gyrostat, Phase};
-use crate::simulate::{Options, Progress};
+use crate::simulate::{Options, Progress, check_body};
 use crate::simulate_error::SimulateError;
 use crate::splitting::Sequence;
 use crate::splitting::turns::Kind;
 use crate::torque::{Torque, wheel};
 use polhode_ga::lanes::fastest;
 use polhode_ga::threads::Threads;
-use polhode_ga::{Rotor, Vector};
+use polhode_ga::{Bivector, Rotor, Vector};
 use std::borrow::Cow;
 use std::iter::Enumerate;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 /// Bodies side by side: two registers of the widest machines, so that each waits for the other's results.
 pub(super) const SIDE_BY_SIDE: usize = 16;
+
+/// How often a thread that has no more work tells how far the others are.
+const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
 
 /// Parts of a body's way, for the count of what is done.
 const PARTS: f64 = 1024.0;
@@ -38,8 +43,20 @@ pub(super) struct Member<'a> {
     pub frame: Rotor,
     pub gyrostat: Gyrostat,
     pub torques: Vec<Torque>,
+    /// At the start, rad/s.
+    pub omega: Bivector,
     pub start: Phase,
     pub own: Own<'a>,
+}
+
+/// How a body is followed without a step.
+enum Way {
+    /// In the lanes.
+    Lanes,
+    /// It is free: known at all times.
+    Free,
+    /// As a single one.
+    Alone,
 }
 
 /// What is told of a body.
@@ -81,7 +98,9 @@ pub(super) struct Crew<'a> {
     stopped: AtomicBool,
     /// In parts of bodies.
     done: AtomicU64,
-    running: AtomicUsize,
+    /// How many threads are at work; told where one ends.
+    running: Mutex<usize>,
+    ended: Condvar,
     /// The laws in principal axes, where all bodies share them and an inertia.
     shared: Option<Vec<Torque>>,
 }
@@ -109,7 +128,8 @@ impl<'a> Crew<'a> {
             told: Mutex::new(Vec::with_capacity(ensemble.starts.len())),
             stopped: AtomicBool::new(false),
             done: AtomicU64::new(0),
-            running: AtomicUsize::new(0),
+            running: Mutex::new(0),
+            ended: Condvar::new(),
             shared: alike.then(turned),
         }
     }
@@ -121,19 +141,17 @@ impl<'a> Crew<'a> {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Summary, SimulateError> {
         let count = threads.count().min(self.ensemble.starts.len()).max(1);
-        self.running.store(count, Ordering::Relaxed);
         thread::scope(|scope| {
             for _ in 1..count {
+                *lock(&self.running) += 1;
                 // Where no more threads are to be had, those that are there do all the work.
                 if thread::Builder::new().spawn_scoped(scope, || self.take_turns(&mut |_| true)).is_err() {
-                    self.running.fetch_sub(1, Ordering::Relaxed);
+                    *lock(&self.running) -= 1;
                 }
             }
+            *lock(&self.running) += 1;
             self.take_turns(progress);
-            while self.running.load(Ordering::Relaxed) > 0 {
-                self.report(progress);
-                thread::sleep(Duration::from_millis(1));
-            }
+            self.wait(progress);
         });
         if self.stopped.load(Ordering::Relaxed) {
             return Err(SimulateError::Interrupted);
@@ -143,10 +161,32 @@ impl<'a> Crew<'a> {
 
     /// Takes bodies and follows them, until there are no more.
     fn take_turns(&self, progress: &mut dyn FnMut(Progress) -> bool) {
+        match self.options.step {
+            Some(step) => self.equal_steps(step, progress),
+            None => fastest(AdaptedSteps { crew: self, progress }),
+        }
+        *lock(&self.running) -= 1;
+        self.ended.notify_all();
+    }
+
+    /// Waits for the other threads, and tells how far they are.
+    fn wait(&self, progress: &mut dyn FnMut(Progress) -> bool) {
+        let mut running = lock(&self.running);
+        while *running > 0 {
+            running = match self.ended.wait_timeout(running, BETWEEN_REPORTS) {
+                Ok((running, _)) => running,
+                Err(poisoned) => poisoned.into_inner().0,
+            };
+            self.report(progress);
+        }
+    }
+
+    /// Follows bodies by equal steps.
+    fn equal_steps(&self, step: f64, progress: &mut dyn FnMut(Progress) -> bool) {
         // Bodies wait for others that are stepped alike.
         let mut waiting: Vec<(Plan, Vec<Member>)> = Vec::new();
-        while let Some((body, own)) = self.next() {
-            let Some(plan) = self.plan(body) else {
+        while let Some((body, own)) = self.take() {
+            let Some(plan) = self.plan(body, step) else {
                 self.alone(body, own, progress);
                 continue;
             };
@@ -163,21 +203,41 @@ impl<'a> Crew<'a> {
         for (plan, members) in waiting {
             fastest(FixedSteps { crew: self, plan, members, progress });
         }
-        self.running.fetch_sub(1, Ordering::Relaxed);
     }
 
     /// A body that nobody has taken yet, with the room for its points.
-    fn next(&self) -> Option<(usize, Own<'a>)> {
+    fn take(&self) -> Option<(usize, Own<'a>)> {
         if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() }
     }
 
+    /// The next body for steps of its own in the lanes. Those before it that are not for them are followed at once.
+    pub fn next(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
+        let method = self.options.method.unwrap_or(METHOD);
+        let adapts = method == METHOD && self.ensemble.in_lanes(false);
+        while let Some((body, own)) = self.take() {
+            if !adapts {
+                self.alone(body, own, progress);
+                continue;
+            }
+            let member = self.member(body, own);
+            match self.way(&member) {
+                Way::Lanes => return Some(member),
+                Way::Free => {
+                    self.free(member);
+                    self.report(progress);
+                }
+                Way::Alone => self.alone(body, member.own, progress),
+            }
+        }
+        None
+    }
+
     /// How a body is stepped by equal steps in lanes, if it is.
-    fn plan(&self, body: usize) -> Option<Plan> {
-        let step = self.options.step?;
-        let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
-        if !self.ensemble.in_lanes() {
+    fn plan(&self, body: usize, step: f64) -> Option<Plan> {
+        if !self.ensemble.in_lanes(true) {
             return None;
         }
+        let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
         let kind = match method {
             Method::Classical => None,
             Method::Splitting(sequence) => {
@@ -193,6 +253,24 @@ impl<'a> Crew<'a> {
             _ => return None,
         };
         Some(Plan { step, method, kind })
+    }
+
+    /// How a body is followed without a step.
+    fn way(&self, member: &Member) -> Way {
+        let Member { gyrostat, torques, start, omega, .. } = member;
+        let chosen = self.options.method.is_some() && !self.options.exact;
+        if check_body(gyrostat, *omega, torques).is_err() {
+            // What is wrong is told as for a single body.
+            Way::Alone
+        } else if chosen {
+            Way::Lanes
+        } else if torques.is_empty() {
+            Way::Free
+        } else {
+            let fall = Fall { start: Center::default(), acceleration: Vector::default() };
+            let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
+            if closed.is_some() || self.options.exact { Way::Alone } else { Way::Lanes }
+        }
     }
 
     /// The laws of a body in principal axes.
@@ -211,7 +289,7 @@ impl<'a> Crew<'a> {
         let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(start.omega);
         let start = Phase { rotor: start.rotor * frame, momentum: gyrostat.momentum(omega), time: 0.0 };
-        Member { body, frame, gyrostat, torques, start, own }
+        Member { body, frame, gyrostat, torques, omega, start, own }
     }
 
     /// Follows a body alone.
@@ -222,19 +300,23 @@ impl<'a> Crew<'a> {
             self.count(&mut so_far, at.fraction, 1);
             self.report(progress)
         };
-        let told = match problem.simulate(self.times, self.options.clone(), &mut go_on) {
+        let found = problem.simulate(self.times, self.options.clone(), &mut go_on);
+        self.count(&mut so_far, 1.0, 1);
+        match found {
             Ok(motion) => {
                 motion.write(&mut own);
-                Told { body, certificate: motion.certificate, failure: None }
+                self.tell([Told { body, certificate: motion.certificate, failure: None }]);
             }
-            Err(error) => {
-                (0..self.times.len()).for_each(|index| own.unknown(index));
-                let time = error.time().unwrap_or(0.0);
-                Told { body, certificate: Certificate::default(), failure: Some((time, error)) }
-            }
-        };
-        self.count(&mut so_far, 1.0, 1);
-        self.tell([told]);
+            Err(error) => self.fail(body, &mut own, "", error),
+        }
+    }
+
+    /// Tells that a body could not be followed by a method; nothing is known of it.
+    pub fn fail(&self, body: usize, own: &mut Own<'a>, method: &'static str, error: SimulateError) {
+        (0..self.times.len()).for_each(|index| own.unknown(index));
+        let time = error.time().unwrap_or(0.0);
+        let certificate = Certificate { method, ..Certificate::default() };
+        self.tell([Told { body, certificate, failure: Some((time, error)) }]);
     }
 
     /// Where the centre of mass of a body that only constant forces move is at a time.

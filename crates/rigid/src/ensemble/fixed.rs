@@ -4,7 +4,7 @@ use super::advance::Stretch;
 use super::block::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
 use super::laws::{Acting, Laws};
 use super::steppers::{Components, Kicks, Stepper, of};
-use crate::certificate::{Certificate, Watch};
+use crate::certificate::{Certificate, Watch, off_unit};
 use crate::classical::Bodies;
 use crate::force::Center;
 use crate::kicks::fixed_momentum;
@@ -104,8 +104,7 @@ impl FixedSteps<'_, '_> {
                         continue;
                     }
                     let phase = stepper.phase(&member.gyrostat, &state, l, time);
-                    let size = phase.rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt();
-                    norm_drifts[l] = norm_drifts[l].max((size - 1.0).abs());
+                    norm_drifts[l] = norm_drifts[l].max(off_unit(phase.rotor));
                     watches[l].look(&phase);
                     let center = crew.center(member.body, time);
                     let of = (member.frame, &member.gyrostat, &torques[l][..]);

@@ -385,75 +385,100 @@ fn lane_by_lane<const W: usize, const F: bool>(
     torques
 }
 
-impl<const W: usize, const F: bool> Laws<'_, W, F> {
-    #[inline(always)]
-    fn total(&mut self, at: &Place<W, F>) -> Three<W, F> {
-        let mut sum = [Lanes::ZERO; 3];
-        for law in &mut self.laws {
-            let torque = match law {
-                // γ∧c: its axial vector is γ x c.
-                Law::Heavy(c) => cross(&vertical(&at.rotor), c),
-                Law::GravityGradient(orbits) => orbits.torque(&self.moments, at),
-                Law::ConstantBody(torque) => *torque,
-                Law::ConstantSpace(torque) => seen(&at.rotor, torque),
-                Law::QuadraticDamping(k) => quadratic(*k, &at.omega),
-                Law::ViscousDamping(d) => {
-                    let [x, y, z] = mapped(d, &at.omega);
-                    [-x, -y, -z]
-                }
-                Law::Magnetic { dipole, field } => cross(dipole, &seen(&at.rotor, field)),
-                Law::Spring { stiffness, rest } => {
-                    let [x, y, z] = mapped(stiffness, &turn_from(rest, &at.rotor));
-                    [-x, -y, -z]
-                }
-                Law::Larmor(b) => {
-                    let mut momentum = self.wheel;
-                    for k in 0..3 {
-                        momentum[k] = self.moments[k].times_plus(at.omega[k], self.wheel[k]);
-                    }
-                    cross(&momentum, &seen(&at.rotor, b))
-                }
-                Law::Tabulated(latest) => {
-                    let mut torque = [Lanes::ZERO; 3];
-                    for l in 0..W {
-                        let numbers = latest.at(at.time.0[l]);
-                        for k in 0..3 {
-                            torque[k].0[l] = numbers[k];
-                        }
-                    }
-                    if latest.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
-                }
-                Law::Formula(formulas) => formulas.torque(at),
-                Law::Other(each) => lane_by_lane(&self.gyrostats, each, at),
-            };
-            add(&mut sum, &torque);
-        }
-        sum
-    }
-}
-
-/// The torques of all laws. Apart from the steps, in whose stages the code would stand many times.
-struct Total<'a, 't, const W: usize, const F: bool> {
-    laws: &'a mut Laws<'t, W, F>,
+/// The torque of a law of the kind K, by the order below. Each kind is compiled by itself, and apart from the steps, in whose
+/// stages its code would stand many times.
+struct Term<'a, 't, const K: usize, const W: usize, const F: bool> {
+    law: &'a mut Law<'t, W, F>,
+    moments: &'a Three<W, F>,
+    wheel: &'a Three<W, F>,
     at: &'a Place<W, F>,
 }
 
-impl<const W: usize, const F: bool> Work for Total<'_, '_, W, F> {
+impl<const K: usize, const W: usize, const F: bool> Work for Term<'_, '_, K, W, F> {
     type Output = Three<W, F>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Three<W, F> {
         // The caller is on the same path; nothing need be compiled for others.
-        if FUSED == F { self.laws.total(self.at) } else { [Lanes::ZERO; 3] }
+        if FUSED == F { self.torque() } else { [Lanes::ZERO; 3] }
     }
+}
+
+impl<const K: usize, const W: usize, const F: bool> Term<'_, '_, K, W, F> {
+    #[inline(always)]
+    fn torque(self) -> Three<W, F> {
+        let Term { law, moments, wheel, at } = self;
+        match law {
+            // γ∧c: its axial vector is γ x c.
+            Law::Heavy(c) if K == 0 => cross(&vertical(&at.rotor), c),
+            Law::GravityGradient(orbits) if K == 1 => orbits.torque(moments, at),
+            Law::ConstantSpace(torque) if K == 2 => seen(&at.rotor, torque),
+            Law::QuadraticDamping(k) if K == 3 => quadratic(*k, &at.omega),
+            Law::ViscousDamping(d) if K == 4 => {
+                let [x, y, z] = mapped(d, &at.omega);
+                [-x, -y, -z]
+            }
+            Law::Magnetic { dipole, field } if K == 5 => cross(dipole, &seen(&at.rotor, field)),
+            Law::Spring { stiffness, rest } if K == 6 => {
+                let [x, y, z] = mapped(stiffness, &turn_from(rest, &at.rotor));
+                [-x, -y, -z]
+            }
+            Law::Larmor(b) if K == 7 => {
+                let mut momentum = *wheel;
+                for k in 0..3 {
+                    momentum[k] = moments[k].times_plus(at.omega[k], wheel[k]);
+                }
+                cross(&momentum, &seen(&at.rotor, b))
+            }
+            Law::Tabulated(latest) if K == 8 => {
+                let mut torque = [Lanes::ZERO; 3];
+                for l in 0..W {
+                    let numbers = latest.at(at.time.0[l]);
+                    for k in 0..3 {
+                        torque[k].0[l] = numbers[k];
+                    }
+                }
+                if latest.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
+            }
+            Law::Formula(formulas) if K == 9 => formulas.torque(at),
+            _ => [Lanes::ZERO; 3],
+        }
+    }
+}
+
+fn term<const K: usize, const W: usize, const F: bool>(
+    law: &mut Law<W, F>,
+    moments: &Three<W, F>,
+    wheel: &Three<W, F>,
+    at: &Place<W, F>,
+) -> Three<W, F> {
+    fastest(Term::<K, W, F> { law, moments, wheel, at })
 }
 
 impl<const W: usize, const F: bool> Exert<W, F> for Laws<'_, W, F> {
     const ACTS: bool = true;
 
-    #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
-        fastest(Total { laws: self, at })
+        let Laws { gyrostats, moments, wheel, laws } = self;
+        let mut sum = [Lanes::ZERO; 3];
+        for law in laws {
+            let torque = match law {
+                Law::ConstantBody(torque) => *torque,
+                Law::Other(each) => lane_by_lane(gyrostats, each, at),
+                Law::Heavy(_) => term::<0, W, F>(law, moments, wheel, at),
+                Law::GravityGradient(_) => term::<1, W, F>(law, moments, wheel, at),
+                Law::ConstantSpace(_) => term::<2, W, F>(law, moments, wheel, at),
+                Law::QuadraticDamping(_) => term::<3, W, F>(law, moments, wheel, at),
+                Law::ViscousDamping(_) => term::<4, W, F>(law, moments, wheel, at),
+                Law::Magnetic { .. } => term::<5, W, F>(law, moments, wheel, at),
+                Law::Spring { .. } => term::<6, W, F>(law, moments, wheel, at),
+                Law::Larmor(_) => term::<7, W, F>(law, moments, wheel, at),
+                Law::Tabulated(_) => term::<8, W, F>(law, moments, wheel, at),
+                Law::Formula(_) => term::<9, W, F>(law, moments, wheel, at),
+            };
+            add(&mut sum, &torque);
+        }
+        sum
     }
 
     #[inline(always)]

@@ -87,6 +87,11 @@ impl Own<'_> {
         self.omegas[3 * index..][..3].copy_from_slice(&omega.0);
         self.momenta[3 * index..][..3].copy_from_slice(&momentum.0);
         self.energies[index] = energy(body, torques, phase);
+        self.place(index, center);
+    }
+
+    /// Writes where the centre of mass is.
+    pub fn place(&mut self, index: usize, center: &Center) {
         if let Some([places, velocities]) = &mut self.centers {
             places[3 * index..][..3].copy_from_slice(&center.position.0);
             velocities[3 * index..][..3].copy_from_slice(&center.velocity.0);

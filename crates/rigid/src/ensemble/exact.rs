@@ -1,0 +1,41 @@
+//! Free bodies, whose motion is known at all times.
+
+use super::block::{Crew, Member, Told};
+use crate::certificate::{Certificate, Watch, off_unit};
+use crate::free::FreeMotion;
+use crate::phase::Phase;
+use crate::simulate::check_horizons;
+use polhode_ga::threads::Threads;
+use polhode_ga::{Bivector, Rotor};
+
+impl<'a> Crew<'a> {
+    /// Writes the motion of a free body, the times side by side in lanes; its momentum and energy are those of the start.
+    pub fn free(&self, mut member: Member<'a>) {
+        let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
+        let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
+        let method = "exact";
+        if let Err(error) = check_horizons(self.times, [motion.horizon(); 2]) {
+            return self.fail(body, own, method, error);
+        }
+        motion.at_many(Threads::ONE, self.times, own.rotors, own.omegas);
+        let momentum = start.rotor.apply_bivector(start.momentum);
+        own.momenta.as_chunks_mut::<3>().0.fill(momentum.0);
+        own.energies.fill(gyrostat.kinetic(start.momentum));
+        let mut watch = Watch::new(gyrostat, &[], start);
+        let mut norm_drift = 0.0_f64;
+        let states = own.rotors.as_chunks::<4>().0.iter().zip(own.omegas.as_chunks::<3>().0);
+        for (&time, (rotor, omega)) in self.times.iter().zip(states) {
+            let rotor = Rotor::from_unit_components(*rotor);
+            let omega = frame.reverse().apply_bivector(Bivector(*omega));
+            norm_drift = norm_drift.max(off_unit(rotor));
+            watch.look(&Phase { rotor: rotor * frame, momentum: gyrostat.momentum(omega), time });
+        }
+        for (index, &time) in self.times.iter().enumerate() {
+            own.place(index, &self.center(body, time));
+        }
+        let certificate =
+            Certificate { method, drifts: watch.finish(), norm_drift, ..Certificate::default() };
+        self.count(&mut 0, 1.0, 1);
+        self.tell([Told { body, certificate, failure: None }]);
+    }
+}

@@ -1,0 +1,168 @@
+//! A body on its way through its passes, by the rules of a single one.
+
+use super::block::{Crew, Member, Told};
+use crate::certificate::{Certificate, Watch, off_unit};
+use crate::converge::{Aim, Converged, Convergence};
+use crate::force::Center;
+use crate::method::{Method, fastest_rate};
+use crate::runge_kutta::{Carried, DOP853, Points, RungeKutta};
+use crate::simulate_error::SimulateError;
+use crate::stride::{Stride, check_count, next_stop};
+use crate::torque::Torque;
+use crate::walk::{Pace, Pass};
+use std::mem;
+
+/// The method that the bodies are stepped by.
+pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
+
+/// A body in a lane, on its way through its passes.
+pub(super) struct Seat<'a> {
+    pub member: Member<'a>,
+    /// Times at which its laws are not smooth, rising.
+    breaks: Vec<f64>,
+    /// A guess of the first step of a pass, in s.
+    first: f64,
+    passes: Convergence,
+    /// The one under way, with its points in the order of the walk.
+    pub pass: Pass,
+    /// Where it began.
+    begin: Carried,
+    pub stride: Stride,
+    /// The largest estimate of the error of a step that may stand.
+    pub tolerance: f64,
+    /// Where to stop next.
+    pub stop: f64,
+    /// Parts of the way that were counted.
+    so_far: u64,
+}
+
+impl<'a> Seat<'a> {
+    pub fn new(member: Member<'a>, torques: &[Torque], crew: &Crew<'a>) -> Seat<'a> {
+        let start = Carried::new(member.start, Center::default());
+        let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
+        breaks.sort_by(f64::total_cmp);
+        let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
+        let aim = Aim::new(METHOD.order(), crew.options.rtol);
+        Seat {
+            member,
+            breaks,
+            first,
+            passes: Convergence::new(start, aim.tolerance(), aim),
+            pass: Pass::default(),
+            begin: start,
+            stride: Stride::new(first),
+            tolerance: aim.goal,
+            stop: 0.0,
+            so_far: 0,
+        }
+    }
+
+    /// Begins the next pass: where it starts.
+    pub fn begin_pass(&mut self) -> Carried {
+        let (pace, begin, _) = self.passes.next();
+        if let Pace::Tolerance(tolerance) = pace {
+            self.tolerance = tolerance;
+        }
+        (self.begin, self.stride) = (begin, Stride::new(self.first));
+        begin
+    }
+
+    /// The size of the angular velocity, rad/s.
+    pub fn rate(&self, at: &Carried) -> f64 {
+        self.member.gyrostat.omega(at.phase.momentum).norm()
+    }
+
+    /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and
+    /// in the next pass too. The last pass, once it is good enough.
+    pub fn proceed(
+        &mut self,
+        at: &mut Carried,
+        fastest: &mut f64,
+        times: &[f64],
+    ) -> Result<Option<Converged>, SimulateError> {
+        let early = times.partition_point(|&t| t < 0.0);
+        loop {
+            let taken = self.pass.states.len();
+            self.pass.meet(*fastest, &at.center);
+            if taken == times.len() {
+                let mut pass = mem::take(&mut self.pass);
+                pass.states[..early].reverse();
+                if let Some(found) = self.passes.take(pass, &self.member.gyrostat, &|from, _| *from)? {
+                    return Ok(Some(found));
+                }
+                *at = self.begin_pass();
+                *fastest = self.rate(at);
+                continue;
+            }
+            let time = times[if taken < early { early - 1 - taken } else { taken }];
+            if at.phase.time != time {
+                self.stop = next_stop(&self.breaks, at.phase.time, time);
+                return Ok(None);
+            }
+            self.pass.states.push(*at);
+            if taken + 1 == early {
+                (*at, self.stride) = (self.begin, Stride::new(self.first));
+                *fastest = self.rate(at);
+            }
+        }
+    }
+
+    /// Counts a step that may stand.
+    pub fn arrive<const W: usize, const F: bool>(
+        &mut self,
+        h: f64,
+        next: &Points<W, F>,
+        l: usize,
+    ) -> Result<(), SimulateError> {
+        self.pass.steps += 1;
+        self.pass.longest = self.pass.longest.max(h.abs());
+        if !next.is_finite(l) {
+            return Err(SimulateError::Diverged { time: next.time.0[l] });
+        }
+        check_count(&self.pass)
+    }
+
+    /// Why a step has no error: it is too long, or a law has no torque on the way, which the step of a single body
+    /// tells.
+    #[cold]
+    pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
+        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
+        alone.step(at, h, self.rate(at)).map(|_| ())
+    }
+
+    /// Counts the way gone in a pass.
+    pub fn count(&mut self, time: f64, crew: &Crew<'a>) {
+        let begin = crew.times.first().map_or(0.0, |t| t.min(0.0));
+        let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
+        let walked = if self.stop < 0.0 { -time } else { time - begin };
+        crew.count(&mut self.so_far, walked / total, 1);
+    }
+
+    /// Writes and tells what was found.
+    pub fn done(mut self, found: Converged, torques: &[Torque], crew: &Crew<'a>) {
+        let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
+        let mut watch = Watch::new(gyrostat, torques, start);
+        let mut norm_drift = 0.0_f64;
+        for (index, Carried { phase, .. }) in found.pass.states.iter().enumerate() {
+            watch.look(phase);
+            norm_drift = norm_drift.max(off_unit(phase.rotor));
+            own.write(index, (frame, &gyrostat, torques), phase, &crew.center(body, phase.time));
+        }
+        let certificate = Certificate {
+            method: METHOD.name(),
+            step: found.pass.longest,
+            steps: found.pass.steps,
+            evaluations: found.pass.evaluations,
+            error_estimate: Some(found.error),
+            drifts: watch.finish(),
+            norm_drift,
+        };
+        crew.count(&mut self.so_far, 1.0, 1);
+        crew.tell([Told { body, certificate, failure: None }]);
+    }
+
+    pub fn failed(mut self, error: SimulateError, crew: &Crew<'a>) {
+        crew.count(&mut self.so_far, 1.0, 1);
+        crew.fail(self.member.body, &mut self.member.own, METHOD.name(), error);
+    }
+}

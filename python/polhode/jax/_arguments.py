@@ -1,0 +1,73 @@
+"""From what people pass to arrays of components: bodies, rotors, angular velocities."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from polhode._bodies import Inertia
+from polhode._multivector import Multivector
+from polhode.jax._components import Four, compose, joined, reverse, split, turned
+from polhode.jax._library import jnp
+
+Array = Any
+
+
+class Start(NamedTuple):
+    """Bodies and their starts in principal axes, each of its own batch; the rotor of any norm."""
+
+    moments: Array
+    rotor: Array
+    omega: Array
+    frame: Four | None
+
+    def batch(self) -> tuple[int, ...]:
+        """Return the shape that all batches broadcast to."""
+        shapes = [x.shape[:-1] for x in (self.moments, self.rotor, self.omega)]
+        try:
+            return jnp.broadcast_shapes(*shapes)  # type: ignore[no-any-return]
+        except ValueError:
+            raise ValueError(
+                f"the batch shapes {shapes[0]} of the moments, {shapes[1]} of the rotor and {shapes[2]} of "
+                "the angular velocity do not broadcast together"
+            ) from None
+
+    def in_body_axes(self, rotor: Array, omega: Array) -> tuple[Array, Array]:
+        """Return states of principal axes in those of the body."""
+        if self.frame is None:
+            return rotor, omega
+        r, w = split(rotor), split(omega)
+        turned_back: Four = compose(r, reverse(self.frame))
+        return joined(turned_back), joined(turned(self.frame, w))
+
+
+def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
+    """Return bodies and starts from what the functions of this package take."""
+    moments, frame = _body(inertia)
+    r = _floats(rotor, 4, "the rotor")
+    w = _floats(omega_body, 3, "the angular velocity")
+    dtype = jnp.result_type(moments, r, w)
+    moments, r, w = (x.astype(dtype) for x in (moments, r, w))
+    if frame is not None:
+        frame = tuple(jnp.asarray(x, dtype) for x in frame)
+        assert frame is not None
+        r = joined(compose(split(r), frame))
+        w = joined(turned(reverse(frame), split(w)))
+    return Start(moments, r, w, frame)
+
+
+def _body(inertia: Any) -> tuple[Array, Four | None]:
+    """Return principal moments, and the rotor to the body's axes from principal ones, None for 1."""
+    if isinstance(inertia, Inertia):
+        frame = tuple(inertia.principal_frame.components.tolist())
+        moments = jnp.asarray(inertia.principal_moments)
+        return moments, None if frame == (1.0, 0.0, 0.0, 0.0) else frame
+    return _floats(inertia, 3, "inertia: principal moments, or an Inertia,"), None
+
+
+def _floats(value: Any, size: int, what: str) -> Array:
+    if isinstance(value, Multivector):
+        value = value._data
+    array = jnp.asarray(value)
+    if array.shape[-1:] != (size,):
+        raise ValueError(f"{what} needs {size} components in the last axis, got shape {array.shape}")
+    return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))

@@ -1,0 +1,14 @@
+"""JAX itself, imported with this package: an optional library."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from polhode._coefficients import tell_jax
+from polhode._extras import optional
+
+jax: Any = optional("jax", "jax", "polhode.jax")
+jnp: Any = optional("jax.numpy", "jax", "polhode.jax")
+lax: Any = jax.lax
+
+tell_jax()

@@ -1,0 +1,165 @@
+"""Motion by equal steps, as one program for JAX."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from polhode._bodies import Body
+from polhode.jax import torque as laws
+from polhode.jax._arguments import Start, start
+from polhode.jax._components import Four, Three, joined, normalized, split
+from polhode.jax._laws import Function, Torque
+from polhode.jax._library import jax, jnp, lax
+from polhode.jax._phase import Gyrostat, Phase
+from polhode.jax._rk4 import RungeKutta
+from polhode.jax._splitting import COMPOSITIONS, Splitting, stages
+from polhode.jax._steps import ways
+
+Array = Any
+
+METHODS = (*COMPOSITIONS, "rk4")
+
+
+def simulate(
+    inertia: Any,
+    rotor: Any,
+    omega_body: Any,
+    times: Any,
+    torque: Any = None,
+    method: str = "kahan_li8",
+    *,
+    step: float | None = None,
+    steps: int | None = None,
+) -> tuple[Array, Array]:
+    """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times, from time 0.
+
+    One program of JAX, for ``jit``, ``vmap``, ``jacfwd`` and ``grad``, by everything that is an array:
+    moments, start, parameters of the torque, and with `steps` the times. It takes the steps of
+    `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between output
+    times only the state is kept, so that ``grad`` needs memory for one state a step, and computes each step
+    twice.
+
+    Parameters
+    ----------
+    inertia
+        Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`,
+        about its centre of mass, with `heavy` about the origin of its axes.
+    rotor
+        From body axes to space at time 0: a `Rotor`, or its components (..., 4), which are divided by their
+        norm.
+    omega_body
+        Angular velocity in body axes at time 0, a bivector or (..., 3), in rad/s. Batches broadcast.
+    times
+        Output times (n,) in s, not decreasing, of either sign.
+    torque
+        A law of `polhode.jax.torque`, a sum of them, a law of `polhode.torque`, or a function as for
+        `polhode.jax.torque.function`; None for free motion.
+    method
+        A splitting, for torques that depend on attitude and time: ``"strang"`` (order 2), ``"yoshida4"``,
+        ``"yoshida6"``, ``"kahan_li6"``, ``"kahan_li8"``; or the classical ``"rk4"``, for any.
+    step, steps
+        The longest step in s, shortened a little so that steps end on the output times; or the number of
+        steps from one output time to the next, with which the times may be traced.
+
+    Raises
+    ------
+    ValueError
+        For shapes, times and methods that are not usable. Values are not looked at, for they may be traced:
+        what has no motion, such as a moment of 0, gives NaN.
+    """
+    given, force = prepared(inertia, rotor, omega_body, torque, method)
+    both = ways(times, step, steps, force)
+    # A function may close over what is traced, which no cache of programs may hold.
+    run = (
+        simulate_principal
+        if any(isinstance(law, Function) and law.partial is None for law in force.laws)
+        else compiled
+    )
+    parts = []
+    for way, backwards in both:
+        found = run(given, force, way.targets, way.counts, method=method, most=way.most, even=way.even)
+        places = list(way.places[::-1] if backwards else way.places)
+        parts.append([x[..., places, :] for x in found])
+    return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
+
+
+def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str) -> tuple[Start, Torque]:
+    """Return bodies, starts and torque in principal axes; an error if the method is none for the torque."""
+    force = laws.of(torque)
+    _check(method, force)
+    if isinstance(inertia, Body):
+        inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
+    given = start(inertia, rotor, omega_body)
+    return given, force if given.frame is None else force.in_axes(given.frame)
+
+
+def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
+    """Return what makes the steps, with the numbers of `table_of` the method."""
+    return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
+
+
+def table_of(method: str) -> list[float]:
+    """Return the numbers of the stages of a method."""
+    return [] if method == "rk4" else [x for stage in stages(method) for x in stage]
+
+
+def simulate_principal(
+    given: Start, torque: Torque, targets: Array, counts: Array, *, method: str, most: int, even: bool
+) -> tuple[Array, Array]:
+    """Return the states at time 0 and at the targets, in principal axes."""
+    dtype = given.rotor.dtype
+    torque = jax.tree.map(lambda x: jnp.asarray(x, dtype), torque)
+    table = jnp.array(table_of(method), dtype)
+    moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, table)
+    point = moves.start(*_batched(given, torque, moves.body))
+    fixed = moves.fixed(point)
+    # What a step computes on its way is computed again for a gradient, rather than kept for all steps.
+    step = jax.checkpoint(partial(moves.step, fixed), prevent_cse=False)
+
+    def interval(point: Any, target: Any) -> Any:
+        to, count = target
+        begin, span = point.time, to - point.time
+
+        def go(point: Any, i: Array) -> Any:
+            after = jnp.where(i + 1 == count, to, begin + span * ((i + 1) / count).astype(dtype))
+            # The difference of the rounded times, so that the steps add up to the time.
+            return step(point, after - point.time)._replace(time=after)
+
+        def one(point: Any, i: Array) -> Any:
+            if even:
+                return go(point, i), None
+            return lax.cond(i < count, go, lambda point, _: point, point, i), None
+
+        point = lax.scan(one, point, jnp.arange(most))[0]
+        return point, (point.rotor, moves.omega(point))
+
+    first = point.rotor, moves.omega(point)
+    rows = lax.scan(interval, point, (jnp.asarray(targets, dtype), jnp.asarray(counts)))[1]
+    all_rows = jax.tree.map(lambda x, y: jnp.concatenate([x[None], y]), first, rows)
+    rotors, omegas = (jnp.moveaxis(joined(x), 0, -2) for x in all_rows)
+    return rotors, omegas
+
+
+compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even"))
+
+
+def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:
+    """Return rotor and angular velocity of the batch of the bodies and of the parameters of their torque."""
+    rotor, omega = normalized(split(given.rotor)), split(given.omega)
+
+    def first(rotor: Four, omega: Three) -> Three:
+        return torque.exerted(body, Phase(rotor, body.momentum(omega), jnp.zeros((), given.rotor.dtype)))
+
+    shapes = [x.shape for x in jax.eval_shape(first, rotor, omega)]
+    batch = jnp.broadcast_shapes(given.batch(), *shapes)
+    return tuple(jnp.broadcast_to(x, batch) for x in rotor), tuple(jnp.broadcast_to(x, batch) for x in omega)
+
+
+def _check(method: str, torque: Torque) -> None:
+    if method not in METHODS:
+        raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
+    if method != "rk4" and torque.depends_on_rate:
+        raise ValueError(
+            f"{method} kicks at fixed attitude, but a torque depends on the rate of turning; use rk4"
+        )

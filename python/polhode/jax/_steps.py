@@ -1,0 +1,94 @@
+"""Which steps lead to given times: equal ones between them, as `crates/rigid/src/walk.rs` takes them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from polhode._arrays import as_float, as_floats
+from polhode.jax._laws import Torque
+from polhode.jax._library import jax, jnp
+from polhode.jax._table import Table
+
+Array = Any
+
+
+class Way(NamedTuple):
+    """Times to walk to, one after the other from 0, and the number of equal steps to each.
+
+    `most` is the largest of these numbers, and `even` whether all are. `places` are those of the output times
+    among the times of the way, from 1; that of time 0 is 0.
+    """
+
+    targets: Array
+    counts: Array
+    most: int
+    even: bool
+    places: tuple[int, ...]
+
+
+def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> list[tuple[Way, bool]]:
+    """Return the ways from 0 to all times, back in time (True) and forth; to traced times one, forth."""
+    if (step is None) == (steps is None):
+        raise ValueError("give either step, the longest step in s, or steps, their number between two times")
+    if steps is not None and (not isinstance(steps, int) or steps < 1):
+        raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
+    tables = [law for law in torque.laws if isinstance(law, Table)]
+    if isinstance(times, jax.core.Tracer):
+        if steps is None:
+            raise ValueError("with traced times the number of steps is not known; give steps instead of step")
+        when = jnp.atleast_1d(times)
+        counts = np.full(when.shape, steps)
+        return [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
+    when = np.atleast_1d(as_floats(times, "times"))
+    _check(when, tables)
+    length = _positive(step)
+    breaks = np.unique([t for law in tables for t in law.times])
+    back, forth = when[when < 0][::-1], when[when >= 0]
+    found = [(_way(forth, breaks, length, steps), False)]
+    return [(_way(back, breaks, length, steps), True), *found[: forth.size]] if back.size else found
+
+
+def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
+    """Stop wherever a law is not smooth."""
+    targets: list[float] = []
+    places = []
+    at = 0.0
+    for time in when.tolist():
+        if time != at:
+            between = breaks[(min(at, time) < breaks) & (breaks < max(at, time))].tolist()
+            targets += [*(between if time > at else between[::-1]), time]
+            at = time
+        places.append(len(targets))
+    counts = np.full(len(targets), steps or 1)
+    if step is not None:
+        spans = np.abs(np.diff(targets, prepend=0.0))
+        counts = np.maximum(np.ceil(spans / step), 1.0).astype(np.int64)
+    even = bool((counts == counts[:1]).all())
+    return Way(np.array(targets), counts, int(counts.max(initial=0)), even, tuple(places))
+
+
+def _check(when: Any, tables: list[Table]) -> None:
+    if when.ndim != 1:
+        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
+    for index, time in enumerate(when.tolist()):
+        if not np.isfinite(time) or (index and time < when[index - 1]):
+            raise ValueError(f"times[{index}] = {time}; times must be finite and must not decrease")
+    first, last = min(0.0, when.min(initial=0.0)), max(0.0, when.max(initial=0.0))
+    for law in tables:
+        rounding = 4 * np.finfo(float).eps * max(abs(law.times[0]), abs(law.times[-1]))
+        if first < law.times[0] - rounding or last > law.times[-1] + rounding:
+            raise ValueError(
+                f"the table of torques spans {law.times[0]} s to {law.times[-1]} s, the motion {first} s to "
+                f"{last} s; give rows for all the time that is simulated"
+            )
+
+
+def _positive(step: float | None) -> float | None:
+    if step is None:
+        return None
+    length = as_float(step, "step")
+    if not (length > 0 and np.isfinite(length)):
+        raise ValueError(f"step is {length}; it must be positive and finite")
+    return length

@@ -1,0 +1,80 @@
+"""Torques given at times: `crates/rigid/src/torque/table.rs`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from polhode.jax._components import Four, Three, joined, reverse, split, turned
+from polhode.jax._laws import Law, pytree, static
+from polhode.jax._library import jnp, lax
+from polhode.jax._phase import Gyrostat, Phase
+
+Array = Any
+
+
+@pytree
+class Table(Law):
+    """Rows of torques, and of the slopes of their spline; NaN outside the times."""
+
+    torques: Array
+    slopes: Array | None
+    times: tuple[float, ...] = static()
+    frame: str = static()
+
+    def in_axes(self, frame: Four) -> Law:
+        if self.frame == "space":
+            return self
+        back = reverse(frame)
+        torques = joined(turned(back, split(self.torques)))
+        slopes = None if self.slopes is None else joined(turned(back, split(self.slopes)))
+        return replace(self, torques=torques, slopes=slopes)
+
+    def value(self, body: Gyrostat, phase: Phase) -> Three:
+        torque = split(self._at(phase.time))
+        return torque if self.frame == "body" else turned(reverse(phase.rotor), torque)
+
+    def _at(self, time: Array) -> Array:
+        times = jnp.asarray(self.times, time.dtype)
+        first, last = self.times[0], self.times[-1]
+        # A step that ends at the last time may come to it a rounding late.
+        rounding = 4.0 * jnp.finfo(time.dtype).eps * max(abs(first), abs(last))
+        inside = (time >= first - rounding) & (time <= last + rounding)
+        time = jnp.clip(time, first, last)
+        i = jnp.clip(jnp.searchsorted(times, time, side="right"), 1, len(self.times) - 1) - 1
+        h = times[i + 1] - times[i]
+        x = ((time - times[i]) / h)[..., None]
+        a, b = self.torques[i], self.torques[i + 1]
+        steep = b - a
+        # From the nearer end, so that the rows are met exactly.
+        line = jnp.where(x < 0.5, a + steep * x, b - steep * (1.0 - x))
+        if self.slopes is not None:
+            # Hermite's cubic is the line and what the slopes at both ends differ from its own.
+            h = h[..., None]
+            p, q = self.slopes[i] * h - steep, self.slopes[i + 1] * h - steep
+            line = line + (p * (1.0 - x) - q * x) * (x * (1.0 - x))
+        return jnp.where(inside[..., None], line, jnp.nan)
+
+
+def spline_slopes(times: Any, torques: Array) -> Array:
+    """Return the slopes (n, 3) of the spline with "not a knot" ends; of three rows, of their parabola.
+
+    The equations are those of `table.rs`; the matrix does not depend on the torques.
+    """
+    n, h = len(times), np.diff(times)
+    mean = (torques[1:] - torques[:-1]) / h[:, None]
+    if n == 3:
+        bend = (mean[1] - mean[0]) / (h[0] + h[1])
+        return jnp.stack([mean[0] - bend * h[0], mean[0] + bend * h[0], mean[1] + bend * h[1]])
+    inner = 3.0 * (mean[:-1] * h[1:, None] + mean[1:] * h[:-1, None])
+    (a, b), (c, d) = h[:2], h[:-3:-1]
+    first = (mean[0] * ((3 * a + 2 * b) * b) + mean[1] * a**2) / (a + b)
+    last = (mean[-1] * ((3 * c + 2 * d) * d) + mean[-2] * c**2) / (c + d)
+    right = jnp.concatenate([first[None], inner, last[None]])
+    lower = np.concatenate([[0.0], h[1:], [c + d]])
+    diagonal = np.concatenate([[b], 2 * (h[:-1] + h[1:]), [d]])
+    upper = np.concatenate([[a + b], h[:-1], [0.0]])
+    bands = (jnp.asarray(band, right.dtype) for band in (lower, diagonal, upper))
+    return lax.linalg.tridiagonal_solve(*bands, right)

@@ -1,0 +1,75 @@
+"""The kernel with the loop over time within: the steps of `simulate`, in blocks of bodies."""
+
+import numpy as np
+import pytest
+
+import polhode as ph
+
+jax = pytest.importorskip("jax")
+jnp = jax.numpy
+laws = ph.jax.torque
+
+# More than a block, and no whole number of them.
+BODIES, STEPS = 150, 12
+RNG = np.random.default_rng(0)
+MOMENTS, ROTORS = RNG.uniform(2, 3, size=(BODIES, 3)), RNG.normal(size=(BODIES, 4))
+OMEGAS = RNG.normal(size=(BODIES, 3))
+HEAVY = [0.3, -0.2, 1.0]
+
+
+@pytest.fixture(autouse=True)
+def _doubles():
+    with jax.enable_x64(True):
+        yield
+
+
+@pytest.mark.parametrize(
+    ("method", "dtype", "torque"),
+    [
+        ("rk4", "float64", HEAVY),
+        ("strang", "float32", HEAVY),
+        ("kahan_li8", "float64", None),
+    ],
+)
+def test_the_kernel_takes_the_steps_of_simulate(method, dtype, torque):
+    law = None if torque is None else laws.heavy(np.array(torque, dtype)) + laws.damping(0.1)
+    bodies = (x.astype(dtype) for x in (MOMENTS, ROTORS, OMEGAS))
+    call = [*bodies, 1.5, law, method]
+    found = ph.jax.advance(*call, steps=STEPS, kernel=True)
+    times = np.array([1.5])
+    expected = [x[:, 0] for x in ph.jax.simulate(*call[:3], times, law, method, steps=STEPS)]
+    # The same operations in the same order; only what compilers fuse differs, by a rounding now and then.
+    for a, b in zip(found, expected, strict=True):
+        assert a.dtype == dtype
+        assert a.shape == b.shape
+        assert np.abs(a - b).max() < 4 * STEPS * np.finfo(dtype).eps
+
+
+def test_it_has_the_derivatives_of_the_steps():
+    def end(c):
+        call = MOMENTS[0], ROTORS[0], OMEGAS[0], 0.3, laws.heavy(c), "rk4"
+        return ph.jax.advance(*call, steps=2, kernel=True)[0]
+
+    c, direction, h = jnp.array(HEAVY), jnp.array([1.0, -2.0, 0.5]), 1e-5
+    slope = jax.jvp(end, (c,), (direction,))[1]
+    assert np.abs(slope - (end(c + h * direction) - end(c - h * direction)) / (2 * h)).max() < 1e-9
+
+
+@pytest.mark.parametrize("method", ["rk4", "kahan_li8"])
+def test_it_is_a_kernel_for_a_gpu(method, monkeypatch):
+    """It becomes Triton's code without a GPU at hand; which of them run it is not known here."""
+    monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
+
+    def moved(omegas):
+        return ph.jax.advance(MOMENTS, ROTORS, omegas, 1.5, laws.heavy(HEAVY), method, steps=STEPS)
+
+    lowered = jax.jit(moved).trace(OMEGAS).lower(lowering_platforms=("cuda",))
+    assert lowered.as_text().count("custom_call @__gpu$xla.gpu.triton") == 1
+
+
+def test_what_the_kernel_has_not():
+    law = laws.tabulated([0, 2], np.zeros((2, 3)))
+    with pytest.raises(ValueError, match="no tables, formulas and functions"):
+        ph.jax.advance(MOMENTS, ROTORS, OMEGAS, 1.5, law, steps=2, kernel=True)
+    with pytest.raises(ValueError, match=r"steps is 1.5; it must be a whole number"):
+        ph.jax.advance(MOMENTS, ROTORS, OMEGAS, 1.5, steps=1.5)

@@ -1,0 +1,290 @@
+"""Motion by steps under JAX: the steps of the compiled core, for laws, methods and batches."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import polhode as ph
+
+jax = pytest.importorskip("jax")
+jnp = jax.numpy
+
+EPS = np.finfo(float).eps
+INERTIA = ph.Inertia.from_matrix([[2, 0.1, 0], [0.1, 3, 0.2], [0, 0.2, 4]])
+MOMENTS = [2.0, 3.0, 4.0]
+R0, OMEGA = ph.Rotor.from_components([4, 1, -2, 1]), np.array([0.5, 0.25, 3.0])
+ROWS = np.random.default_rng(0).normal(size=(5, 3))
+ATTITUDE = {
+    "heavy": ph.torque.heavy([0.5, 0.25, 1.0]),
+    "gravity gradient": ph.torque.gravity_gradient(1.25),
+    "gravity gradient, ellipse": ph.torque.gravity_gradient(1.25, 0.4, 0.5),
+    "constant_body": ph.torque.constant_body([0.1, 0.2, 0.3]),
+    "constant_space": ph.torque.constant_space([0.1, 0.2, 0.3]),
+    "magnetic": ph.torque.magnetic([1, 0.2, 0.3], [0.3, 0.1, 0.4]),
+    "torsion_spring": ph.torque.torsion_spring(0.5, ph.Rotor.from_components([1, 2, 0, 0])),
+    "damping": ph.torque.damping(0.25),
+    "gyrostat": ph.torque.gyrostat([0.1, 0.2, 0.3]),
+    "tabulated": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS),
+    "spline": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS, "space", "cubic"),
+    "parabola": ph.torque.tabulated([-1, 1.5, 5], ROWS[:3], "body", "cubic"),
+    "formula": ph.torque.formula(
+        "-c ∧ (~R e3 R) + k t I(B)", c=0.3 * ph.e1 + 2 * ph.e3, k=0.1, B=ph.I * ph.e2
+    ),
+}
+RATE = {
+    "larmor": ph.torque.larmor([0.1, -0.2, 0.3]),
+    "viscous_damping": ph.torque.viscous_damping([0.1, 0.2, 0.3]),
+    "quadratic_damping": ph.torque.quadratic_damping(0.1),
+    "pd_control": ph.torque.pd_control([1, 2, 3], [0.1, 0.2, 0.3], ph.Rotor.from_components([2, 0, 1, 1])),
+    "formula of rates": ph.torque.formula("⟨L_B Ω_B⟩_2 + norm(Ω) L - k Ω_S", frame="space", k=2),
+}
+TIMES = np.array([-0.7, 0.0, 0.0, 0.3, 1.7, 4.0])
+STEP = 0.05
+# Steps to the last time: the bounds allow a unit in the last place for each, some for those of many stages.
+COUNT = 80
+
+
+@pytest.fixture(autouse=True)
+def _doubles():
+    with jax.enable_x64(True):
+        yield
+
+
+def apart(found, expected):
+    """The largest difference in units of the last place, of the angular velocity relative to its size."""
+    rotor, omega = found
+    spin = np.abs(omega - expected.omega_body.components).max() / np.abs(expected.omega_body.components).max()
+    return max(np.abs(rotor - expected.rotor.components).max(), spin) / EPS
+
+
+@pytest.mark.parametrize("name", [*ATTITUDE, *RATE])
+def test_torques_are_those_of_the_laws(name):
+    law = {**ATTITUDE, **RATE}[name]
+    # Nothing but wheels leaves the whole turn to Euler's equations: one tiny step tells the torque.
+    h = 2.0**-20
+    state = ph.State(R0, OMEGA)
+    torque = law.at(INERTIA, state)
+    turned = ph.bivector(OMEGA).commutator(INERTIA(ph.bivector(OMEGA)))
+    expected = INERTIA.inverse(torque + turned).components
+    with jax.disable_jit():
+        ahead, back = (
+            np.asarray(ph.jax.simulate(INERTIA, R0, OMEGA, [t], law, "rk4", steps=1)[1][0]) for t in (h, -h)
+        )
+    assert np.abs((ahead - back) / (2 * h) - expected).max() < 1e-8
+
+
+def test_motion_under_many_laws_is_that_of_the_compiled_steps():
+    names = (
+        "heavy",
+        "gravity gradient, ellipse",
+        "torsion_spring",
+        "damping",
+        "gyrostat",
+        "tabulated",
+        "formula",
+    )
+    law = sum(ATTITUDE[name] for name in names)
+    expected = ph.simulate(INERTIA, ph.State(R0, OMEGA), [0.3, 1.7, 4.0], law, method="strang", step=STEP)
+    found = ph.jax.simulate(INERTIA, R0, OMEGA, [0.3, 1.7, 4.0], law, "strang", step=STEP)
+    assert apart(found, expected) < COUNT
+
+
+def test_times_on_both_sides_of_the_start():
+    law = ATTITUDE["heavy"]
+    expected = ph.simulate(INERTIA, ph.State(R0, OMEGA), TIMES, law, method="strang", step=STEP)
+    found = ph.jax.simulate(INERTIA, R0, OMEGA, TIMES, law, "strang", step=STEP)
+    assert apart(found, expected) < COUNT
+
+
+def test_compositions_under_torque_and_damping_are_those_of_the_compiled_steps():
+    law = ATTITUDE["heavy"] + ATTITUDE["damping"] + ATTITUDE["gyrostat"]
+    expected = ph.simulate(INERTIA, ph.State(R0, OMEGA), [4.0], law, method="kahan_li8", step=STEP)
+    found = ph.jax.simulate(INERTIA, R0, OMEGA, [4.0], law, "kahan_li8", step=STEP)
+    assert apart(found, expected) < 4 * COUNT
+
+
+@pytest.mark.parametrize("method", ["strang", "yoshida6", "kahan_li6"])
+def test_free_motion_is_that_of_the_compiled_steps(method):
+    state = ph.State(R0, OMEGA)
+    inertia = ph.Inertia.from_principal_moments(*MOMENTS)
+    expected = ph.simulate(inertia, state, [1.0, 3.0], method=method, step=STEP)
+    found = ph.jax.simulate(MOMENTS, R0, OMEGA, [1.0, 3.0], method=method, step=STEP)
+    assert apart(found, expected) < COUNT
+
+
+def test_all_orders_of_moments_and_equal_ones():
+    orders = [
+        [2, 3, 4],
+        [3, 2, 4],
+        [4, 3, 2],
+        [2, 4, 3],
+        [3, 4, 2],
+        [4, 2, 3],
+        [2, 2, 3],
+        [3, 2, 2],
+        [2, 2, 2],
+    ]
+    law = ATTITUDE["heavy"] + ATTITUDE["gyrostat"]
+    found = ph.jax.simulate(orders, R0, OMEGA, [2.0], law, "yoshida4", step=STEP)
+    for k, moments in enumerate(orders):
+        inertia = ph.Inertia.from_principal_moments(*moments)
+        expected = ph.simulate(inertia, ph.State(R0, OMEGA), [2.0], law, method="yoshida4", step=STEP)
+        assert apart([x[k] for x in found], expected) < 3 * COUNT
+
+
+def test_runge_kutta_is_the_classical_one():
+    law, count, h = np.array([0.5, 0.25, 1.0]), 40, 0.05
+    state = np.array([*(R0.components * [1, -1, -1, -1]), *OMEGA])
+
+    def slope(state):
+        """A quaternion's rate and Euler's equations."""
+        (w, x, y, z), omega = state[:4], state[4:]
+        up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), w * w + z * z - x * x - y * y])
+        turn = [-state[1:4] @ omega, *(w * omega + np.cross([x, y, z], omega))]
+        momentum = np.multiply(MOMENTS, omega)
+        return np.array(
+            [*np.multiply(turn, 0.5), *((np.cross(momentum, omega) + np.cross(up, law)) / MOMENTS)]
+        )
+
+    for _ in range(count):
+        k1 = slope(state)
+        k2 = slope(state + 0.5 * h * k1)
+        k3 = slope(state + 0.5 * h * k2)
+        k4 = slope(state + h * k3)
+        state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        state[:4] /= np.linalg.norm(state[:4])
+    rotor, omega = ph.jax.simulate(
+        MOMENTS, R0, OMEGA, [count * h], ph.jax.torque.heavy(law), "rk4", steps=count
+    )
+    assert np.abs(rotor[0] * np.array([1, -1, -1, -1]) - state[:4]).max() < count * EPS
+    assert np.abs(omega[0] - state[4:]).max() < 3 * count * EPS
+
+
+def test_batches_vmap_and_traced_times():
+    rng = np.random.default_rng(1)
+    cs, omegas = rng.normal(size=(4, 3)), rng.normal(size=(4, 3))
+
+    @jax.jit
+    @jax.vmap
+    def mapped(c, omega):
+        law = ph.jax.torque.heavy(c)
+        return ph.jax.simulate(MOMENTS, R0, omega, np.array([0.5, 1.0]), law, "strang", step=STEP)
+
+    batch = ph.jax.simulate(MOMENTS, R0, omegas, [0.5, 1.0], ph.jax.torque.heavy(cs), "strang", step=STEP)
+    single = jax.jit(
+        lambda c, omega, times: ph.jax.simulate(
+            MOMENTS, R0, omega, times, ph.jax.torque.heavy(c), "strang", steps=10
+        )
+    )
+    for a, b in zip(mapped(cs, omegas), batch, strict=True):
+        assert np.abs(a - b).max() < 8 * EPS
+    for k in range(4):
+        for a, b in zip(single(cs[k], omegas[k], np.array([0.5, 1.0])), batch, strict=True):
+            assert np.abs(a - b[k]).max() < 20 * EPS
+
+
+def test_laws_of_a_batch_make_a_batch():
+    rotor, omega = ph.jax.simulate(
+        MOMENTS, R0, OMEGA, [1.0], ph.jax.torque.damping(np.array([0.1, 0.2, 0.3])), steps=2
+    )
+    assert rotor.shape == (3, 1, 4)
+    assert omega.shape == (3, 1, 3)
+
+
+def test_functions_of_the_motion():
+    c = jnp.array([0.5, 0.25, 1.0])
+
+    def law(t, rotor, omega):
+        up = ph.Rotor._from_rows(rotor)
+        return jnp.cross((~up)(ph.vector(jnp.array([0.0, 0, 1]))).components, c) - 0.25 * t * omega
+
+    text = ph.jax.torque.formula("-c ∧ (~R e3 R) - k t Ω", c=ph.vector(c), k=0.25)
+    for given in (law, jax.tree_util.Partial(law)):
+        found = ph.jax.simulate(INERTIA, R0, OMEGA, [1.0], given, "rk4", steps=20)
+        for a, b in zip(
+            found, ph.jax.simulate(INERTIA, R0, OMEGA, [1.0], text, "rk4", steps=20), strict=True
+        ):
+            assert np.abs(a - b).max() < 60 * EPS
+
+
+def test_a_body_under_gravity_turns_about_its_origin():
+    body = ph.Body.cylinder(0.1, 0.4, mass=2.0).moved(position=[0, 0, 0.3])
+    law = ph.torque.heavy([0, 0, 6.0])
+    expected = ph.simulate(body, ph.State(R0, OMEGA), [0.2], law, method="strang", step=0.01)
+    found = ph.jax.simulate(body, R0, OMEGA, [0.2], law, "strang", step=0.01)
+    assert apart(found, expected) < 20
+
+
+def test_single_precision():
+    with jax.enable_x64(False):
+        found = ph.jax.simulate(MOMENTS, R0, OMEGA, [1.0], ATTITUDE["heavy"], "strang", step=STEP)
+        assert found[0].dtype == found[1].dtype == np.float32
+    inertia = ph.Inertia.from_principal_moments(*MOMENTS)
+    expected = ph.simulate(inertia, ph.State(R0, OMEGA), [1.0], ATTITUDE["heavy"], method="strang", step=STEP)
+    assert apart(found, expected) < 20 * np.finfo(np.float32).eps / EPS
+
+
+# --- what is refused
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"method": "dop853"}, "unknown method 'dop853', expected one of strang, .*, rk4"),
+        ({"torque": RATE["larmor"]}, "kahan_li8 kicks at fixed attitude, .*; use rk4"),
+        (
+            {"torque": ATTITUDE["tabulated"], "times": [7.0]},
+            "spans -1.0 s to 5.0 s, the motion 0.0 s to 7.0 s",
+        ),
+        ({"steps": 3}, "give either step, .*, or steps"),
+        ({"step": None}, "give either step, .*, or steps"),
+        ({"step": 0.0}, "step is 0.0; it must be positive and finite"),
+        ({"step": None, "steps": 0}, "steps is 0; it must be a whole number, 1 at least"),
+        ({"times": [1.0, 0.5]}, r"times\[1\] = 0.5; times must be finite and must not decrease"),
+        ({"times": [[1.0]]}, "times must be one-dimensional"),
+        (
+            {"omega_body": [1.0, 2.0]},
+            r"the angular velocity needs 3 components in the last axis, got shape \(2,\)",
+        ),
+        (
+            {"rotor": np.ones((2, 4)), "omega_body": np.ones((3, 3))},
+            r"the batch shapes \(\) of .* do not broadcast",
+        ),
+    ],
+)
+def test_bad_input_is_told(change, message):
+    given = {"inertia": MOMENTS, "rotor": R0, "omega_body": OMEGA, "times": [1.0], "step": 0.1, **change}
+    with pytest.raises(ValueError, match=message):
+        ph.jax.simulate(**given)
+
+
+def test_traced_times_need_a_number_of_steps():
+    with pytest.raises(ValueError, match=r"with traced times .* give steps"):
+        jax.jit(lambda t: ph.jax.simulate(MOMENTS, R0, OMEGA, t, step=0.1))(np.array([1.0]))
+
+
+@pytest.mark.parametrize(
+    ("torque", "message"),
+    [
+        (ph.torque.function(lambda t, R, Ω: Ω), "JAX cannot trace a law of polhode.torque.function"),
+        (3.0, "torque must be a law of polhode.jax.torque, such as heavy"),
+    ],
+)
+def test_what_is_no_torque(torque, message):
+    with pytest.raises(TypeError, match=message):
+        ph.jax.simulate(MOMENTS, R0, OMEGA, [1.0], torque, step=0.1)
+
+
+def test_formulas_are_checked_when_they_are_made():
+    with pytest.raises(ph.FormulaError, match="a torque is a bivector"):
+        ph.jax.torque.formula("~R e3 R")
+    with pytest.raises(ValueError, match="frame is 'moon'"):
+        ph.jax.torque.formula("Ω", frame="moon")
+
+
+def test_the_extra_is_named():
+    code = "import sys; sys.modules['jax'] = None; import polhode as ph; ph.jax"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "polhode.jax needs jax: pip install 'polhode[jax]'" in done.stderr

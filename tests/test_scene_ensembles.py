@@ -117,9 +117,3 @@ def test_what_is_wrong_has_its_place(tmp_path):
     assert "unknown table `moment`, expected `moments`" in done.stderr
     # All at once: the laws are not there either.
     assert "this has no `damping` in [torque]" in done.stderr
-
-
-def test_an_ensemble_is_not_run_yet(path):
-    done = polhode("run", path)
-    assert done.returncode == 1
-    assert "remove the table [ensemble]" in done.stderr

@@ -36,8 +36,8 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         code = int(options.command(options))
         print(end="", flush=True)
-    except KeyboardInterrupt:
-        code = _complain("interrupted; no file was changed", INTERRUPTED)
+    except KeyboardInterrupt as stop:
+        code = _complain(str(stop) or "interrupted; no file was changed", INTERRUPTED)
     except SceneError as error:
         code = _complain(str(error), BAD_INPUT)
     except BrokenPipeError:
@@ -80,9 +80,16 @@ def _parser() -> argparse.ArgumentParser:
         "--output",
         metavar="FILE.nc",
         type=_netcdf_name,
-        help="write the motion to this netCDF file, and figures beside it (FILE-motion.png …)",
+        help="write the motion, or all those of an ensemble, to this netCDF file, and figures beside it "
+        "(FILE-motion.png …)",
     )
     run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
+    run.add_argument(
+        "--threads",
+        metavar="N",
+        type=_thread_count,
+        help="share an ensemble's bodies among N threads, all cores if left out; the results are the same",
+    )
     run.set_defaults(command=_run)
 
     check = commands.add_parser("check", help="check a scene and what it names, without running it")
@@ -151,21 +158,21 @@ def _repl(_: argparse.Namespace) -> int:
     return _repl.run()
 
 
+def _thread_count(text: str) -> int:
+    """Return how many threads; anything but a whole number from 1 on is wrong usage."""
+    if not (text.isascii() and text.isdigit() and int(text) >= 1):
+        raise argparse.ArgumentTypeError(f"expected a whole number of threads, 1 or more, found {text!r}")
+    return int(text)
+
+
 def _run(options: argparse.Namespace) -> int:
-    from polhode._page import as_text
     from polhode._scene import Scene
-    from polhode._summary import summary
 
     output = None if options.output is None else Path(options.output)
     scene = Scene.read(options.scene)
     targets = _checked_targets(output, scene)
-    with _progress(scene.path.name) as report:
-        trajectory = scene.run(report)
-    result = summary(scene, trajectory)
-    if not options.json:
-        print(as_text(result))
-    if targets:
-        _write(targets, scene, trajectory)
+    run = _run_one if scene.ensemble is None else _run_many
+    result = run(scene, targets, options)
     result["files"] = [str(path) for path in targets]
     if options.json:
         print(json.dumps(result, indent=2, allow_nan=False))
@@ -174,7 +181,36 @@ def _run(options: argparse.Namespace) -> int:
         print("\n".join(f"  {path}" for path in targets))
     else:
         print("Nothing was written; add -o FILE.nc for the data and the figures.")
+    if result["run"]["drift_within_bound"] is None:
+        return _complain("polhode: error: no body could be followed to the end", FAILED)
     return OK if result["run"]["drift_within_bound"] else DRIFTED
+
+
+def _run_one(scene: Scene, targets: list[Path], options: argparse.Namespace) -> dict[str, Any]:
+    """Run one body, print its page and write its files; return its summary."""
+    from polhode._page import as_text
+    from polhode._summary import summary
+
+    with _progress(scene.path.name) as report:
+        trajectory = scene.run(report, options.threads)
+    result = summary(scene, trajectory)
+    if not options.json:
+        print(as_text(result))
+    if targets:
+        _write(targets, scene, trajectory)
+    return result
+
+
+def _run_many(scene: Scene, targets: list[Path], options: argparse.Namespace) -> dict[str, Any]:
+    """The same for the bodies of an ensemble."""
+    from polhode import _ensemble_run
+    from polhode._ensemble_page import as_text
+    from polhode._ensemble_summary import summary
+
+    result = summary(_ensemble_run.run(scene, targets, options.threads))
+    if not options.json:
+        print(as_text(result))
+    return result
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -208,11 +244,9 @@ def _many(scene: Scene) -> str:
     """Return the same in words."""
     if scene.ensemble is None:
         return ""
-    size, unit = float(scene.result_bytes), "bytes"
-    for larger in ("kB", "MB", "GB", "TB", "PB"):
-        if size >= 1000:
-            size, unit = size / 1000, larger
-    return f", {scene.ensemble.number} bodies, {size:.3g} {unit} of results"
+    from polhode._memory import size
+
+    return f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
 
 
 def _netcdf_name(name: str) -> str:
@@ -224,7 +258,7 @@ def _netcdf_name(name: str) -> str:
 
 
 def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
-    """Return the paths of the data and the two figures; what cannot be written is refused before the work."""
+    """Return the paths of the data and two figures; what cannot be written is refused before the work."""
     if output is None:
         return []
     from polhode._extras import optional
@@ -234,8 +268,10 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
 
     require_libraries()
     optional("matplotlib", "plot", "a figure")
-    second = "polhode" if kind_of(scene.torque) in _WITH_POLHODE else "axis"
-    targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in ("motion", second))]
+    figures = ("motion", "polhode" if kind_of(scene) in _WITH_POLHODE else "axis")
+    if scene.ensemble is not None:
+        figures = ("ensemble", "directions")
+    targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in figures)]
     for path in targets:
         check_target(path)
     return targets
@@ -262,7 +298,7 @@ def _second_figure(scene: Scene, trajectory: Trajectory) -> Figure:
     from polhode._plot import main_axis
     from polhode._spheres import axis_figure, orbit_figure, polhode_figure
 
-    kind = kind_of(scene.torque)
+    kind = kind_of(scene)
     if kind in _WITH_POLHODE:
         return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
     if kind == "satellite":

@@ -6,14 +6,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+import numpy as np
+
 from polhode import _native
 from polhode._arrays import Array
+from polhode._batch import Batch
 from polhode._bodies import Inertia
 from polhode._rotor import Rotor
 from polhode._state import State
 from polhode._values import bivector, vector
+from polhode.torque import Torque
 
-Drawn = tuple[State, tuple[Inertia, ...], tuple[_native.Law | tuple[str, tuple[Array, ...]], ...]]
+DrawnLaw = _native.Law | tuple[str, tuple[Array, ...]]
+Drawn = tuple[State, tuple[Inertia, ...], tuple[DrawnLaw, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +72,20 @@ class EnsembleSpec:
         rotors, omegas, positions, velocities, inertias, laws = self._draws.draw(first, count)
         state = State(Rotor._from_rows(rotors), bivector(omegas), vector(positions), vector(velocities))
         return state, tuple(map(Inertia, inertias)), tuple(laws)
+
+
+def torque_of(laws: tuple[DrawnLaw, ...]) -> Torque | None:
+    """Return the torque that drawn laws make, a batch where bodies differ in it; None without a law."""
+    return Torque(tuple(map(_law, laws))) if laws else None
+
+
+def _law(drawn: DrawnLaw) -> _native.Law:
+    if isinstance(drawn, _native.Law):
+        return drawn
+    name, arguments = drawn
+    # A number of each body is a row of one.
+    rows = (x if x.ndim > 1 else x[:, np.newaxis] for x in arguments)
+    return _native.Law(name, *map(Batch, rows))
 
 
 def _words(form: str, widths: list[float], unit: str) -> str:

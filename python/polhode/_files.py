@@ -9,12 +9,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 
-def write_atomically(contents: Mapping[Path, bytes]) -> None:
+def write_atomically(contents: Mapping[Path, bytes | Path]) -> None:
     """Write files so that at any moment each path holds the old content or all of the new.
 
-    The bytes of all go to temporary files beside them and reach the disk; only then do these take the
-    names, in one step each. On any failure before that no file has changed and the temporary ones are
-    removed; the error, an OSError, names the path.
+    A content is bytes, or a file that `unfinished` made for this path. The bytes of all go to temporary
+    files beside them and reach the disk; only then do these take the names, in one step each. On any failure
+    before that no file has changed and the temporary ones are removed; the error, an OSError, names the path.
     """
     with contextlib.ExitStack() as stack:
         ready = {
@@ -23,6 +23,20 @@ def write_atomically(contents: Mapping[Path, bytes]) -> None:
         for target, temporary in ready.items():
             with _naming(target):
                 os.replace(temporary, target)
+
+
+@contextlib.contextmanager
+def unfinished(target: Path) -> Iterator[Path]:
+    """Yield an empty file beside the target, for a content that grows; removed at the end if still there."""
+    check_target(target)
+    with _naming(target):
+        handle, path = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+        os.close(handle)
+    try:
+        yield Path(path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(path)
 
 
 def check_target(target: Path) -> None:
@@ -37,21 +51,17 @@ def check_target(target: Path) -> None:
 
 
 @contextlib.contextmanager
-def _temporary(target: Path, content: bytes) -> Iterator[str]:
-    """Write the content to a temporary file beside the target; removed at the end if it is still there."""
-    check_target(target)
-    with _naming(target):
-        handle, path = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
-    try:
-        with _naming(target), os.fdopen(handle, "wb") as file:
-            file.write(content)
+def _temporary(target: Path, content: bytes | Path) -> Iterator[str]:
+    """Yield a file beside the target with all of the content; removed at the end if it is still there."""
+    with contextlib.ExitStack() as stack:
+        path = content if isinstance(content, Path) else stack.enter_context(unfinished(target))
+        with _naming(target), path.open("r+b") as file:
+            if isinstance(content, bytes):
+                file.write(content)
             file.flush()
             os.fsync(file.fileno())
             os.chmod(path, _mode(target))
-        yield path
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(path)
+        yield str(path)
 
 
 @contextlib.contextmanager

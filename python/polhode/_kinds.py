@@ -20,13 +20,21 @@ from polhode.torque import Torque
 _FOLLOWED = 2.0
 
 
-def kind_of(torque: Torque | None) -> str:
-    """Return the kind of motion under a torque, by the laws that it is made of."""
-    names = {law.name for law in torque.laws} if torque else set()
+def kind_of(scene: Scene) -> str:
+    """Return the kind of motion, by the laws that turn the body."""
+    names = _turning(scene)
     if "gravity_gradient" in names:
         return "satellite"
     kinds = {"heavy": "heavy", "gyrostat": "gyrostat", "damping": "damped"}
     return kinds.get(names.pop(), "torqued") if len(names) == 1 else "torqued" if names else "free"
+
+
+def _turning(scene: Scene) -> set[str]:
+    """Return the names of what turns the body: torque laws, and a thrust with a place where it acts."""
+    laws = scene.torque.laws if scene.torque else ()
+    pushes = scene.force.laws if scene.force else ()
+    thrusts = {law.name for law in pushes if law.name == "thrust" and len(law.arguments) == 2}
+    return {law.name for law in laws} | thrusts
 
 
 def weight(torque: Torque | None) -> Array:
@@ -62,8 +70,7 @@ _INTEGRABLE = {
 def describe(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     """Return what is known of a motion in SI units; its ``kind`` says which keys there are."""
     laws = scene.torque.laws if scene.torque else ()
-    names = {law.name for law in laws}
-    match kind_of(scene.torque):
+    match kind_of(scene):
         case "free":
             motion = _free(scene, trajectory)
         case "heavy":
@@ -79,7 +86,7 @@ def describe(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     targets = [law.arguments[-1] for law in laws if law.name in ("pd_control", "torsion_spring")]
     if targets:
         motion["from_target"] = _distances(np.array(targets[0]), trajectory)
-    if names - {"heavy", "gyrostat"}:
+    if _turning(scene) - {"heavy", "gyrostat"}:
         motion["changes"] = {
             "rate": _ends(np.linalg.norm(trajectory.omega_body.components, axis=1)),
             "angular_momentum": _ends(np.linalg.norm(trajectory.momentum_space.components, axis=1)),

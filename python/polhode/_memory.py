@@ -25,17 +25,17 @@ def require(bytes_wanted: int, what: str, remedy: str = "ask for fewer at a time
         return
     free = available()
     if free is not None and bytes_wanted > free:
-        raise MemoryError(f"{what} take {_size(bytes_wanted)}; {_size(free)} are free: {remedy}")
+        raise MemoryError(f"{what} take {size(bytes_wanted)}; {size(free)} are free: {remedy}")
 
 
-def _size(count: int) -> str:
+def size(count: int) -> str:
     """Bytes as people say them: three digits and a decimal unit."""
-    size = float(count)
+    number = float(count)
     for unit in ("bytes", "kB", "MB", "GB", "TB", "PB"):
-        if size < 999.5:
-            return f"{size:.3g} {unit}"
-        size /= 1000
-    return f"{size:.3g} EB"
+        if number < 999.5:
+            return f"{number:.3g} {unit}"
+        number /= 1000
+    return f"{number:.3g} EB"
 
 
 def _of_machine() -> Iterator[int]:

@@ -45,37 +45,51 @@ _ARGUMENTS = {
 
 def as_text(summary: dict[str, Any]) -> str:
     """Return the summary as a page for a terminal."""
-    body, motion, run = summary["body"], summary["motion"], summary["run"]
-    lines = ["".join(c if c.isprintable() else "\ufffd" for c in summary["title"]), ""]
+    motion, run = summary["motion"], summary["run"]
+    lines = [printable(summary["title"]), ""]
 
     def row(name: str, value: str) -> None:
         lines.append(f"  {name:<{_COLUMNS - 1}} {value}")
 
     lines.append("Body")
-    free = motion["kind"] in ("free", "damped")
-    ignored = "free motion ignores it" if free else "the motion does not depend on it"
-    row("mass", f"not given, and {ignored}" if body["mass"] is None else f"{_number(body['mass'])} kg")
-    row("centre of mass", f"{_listed(body['center_of_mass'])} m")
-    about = " about the fixed point" if body["held"] else ""
-    row("principal moments", f"{_listed(body['principal_moments'])} kg m²{about}")
-    row("their ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"]))
+    body_rows(summary["body"], motion["kind"] in ("free", "damped"), row)
     if summary["torques"] or summary["forces"]:
         lines.append("Acting")
-        for law in summary["torques"]:
-            row(*_law(law))
-        for force in summary["forces"]:
-            row("force", force)
+        acting(summary, row)
     lines.append("Motion")
     _KINDS[motion["kind"]](motion, row)
     _changes(motion, row)
     lines.append("Conserved")
     for name, entry in summary["conserved"].items():
         label, unit = QUANTITIES[name]
-        row(label, f"{_number(entry['value'], 10)} {unit}, drift {entry['drift']:.1e}")
+        row(label, f"{number(entry['value'], 10)} {unit}, drift {entry['drift']:.1e}")
     row("|R| − 1", f"{run['rotor_norm_drift']:.1e}")
     lines.append("Run")
     _run(run, motion["kind"], row)
     return "\n".join(lines)
+
+
+def printable(title: str) -> str:
+    """Return a title without what a terminal would obey."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in title)
+
+
+def body_rows(body: dict[str, Any], free: bool, row: Row) -> None:
+    """Print what the body is."""
+    ignored = "free motion ignores it" if free else "the motion does not depend on it"
+    row("mass", f"not given, and {ignored}" if body["mass"] is None else f"{number(body['mass'])} kg")
+    row("centre of mass", f"{_listed(body['center_of_mass'])} m")
+    about = " about the fixed point" if body["held"] else ""
+    row("principal moments", f"{_listed(body['principal_moments'])} kg m²{about}")
+    row("their ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"]))
+
+
+def acting(summary: dict[str, Any], row: Row) -> None:
+    """Print what turns the body, and what moves it."""
+    for law in summary["torques"]:
+        row(*_law(law))
+    for force in summary["forces"]:
+        row("force", force)
 
 
 def _law(law: dict[str, Any]) -> tuple[str, str]:
@@ -89,20 +103,20 @@ def _law(law: dict[str, Any]) -> tuple[str, str]:
     for (label, unit), argument in zip(_ARGUMENTS[name], arguments, strict=True):
         if isinstance(argument, list):
             equal = len(set(argument)) == 1 and name in ("viscous_damping", "pd_control")
-            value = _number(argument[0]) if equal else _listed(argument)
+            value = number(argument[0]) if equal else _listed(argument)
         else:
-            value = _number(argument)
+            value = number(argument)
         told.append(" ".join(part for part in (label, value, unit) if part))
     return name, "; ".join(told)
 
 
 def _run(run: dict[str, Any], kind: str, row: Row) -> None:
-    row("duration", f"{_time(run['duration'])}, {run['samples']} output times")
+    row("duration", f"{time(run['duration'])}, {run['samples']} output times")
     if run["method"] == "exact":
         elliptic = kind in ("free", "damped", "lagrange")
         row("method", "exact solution in elliptic functions" if elliptic else "exact solution")
     else:
-        row("method", f"{run['method']}, {run['steps']} steps of at most {_number(run['step'])} s")
+        row("method", f"{run['method']}, {run['steps']} steps of at most {number(run['step'])} s")
         row("evaluations", f"{run['evaluations']} of the torques")
     if run["error_estimate"] is not None:
         row("error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate")
@@ -122,22 +136,22 @@ def _free(motion: dict[str, Any], row: Row) -> None:
     row("regime", words.get(motion["regime"], motion["regime"]))
     periodic = motion["period"] is not None
     if periodic:
-        row("modulus k", _number(motion["modulus"], 10))
-        row("period of ω", f"{_time(motion['period'])} in the body")
-        row("precession", f"{_time(motion['precession_period'])} for one turn about L, on average")
+        row("modulus k", number(motion["modulus"], 10))
+        row("period of ω", f"{time(motion['period'])} in the body")
+        row("precession", f"{time(motion['precession_period'])} for one turn about L, on average")
         turns = motion["phase_per_period"] / (2 * np.pi)
-        row("phase", f"{_number(turns, 8)} turns about L in a period")
+        row("phase", f"{number(turns, 8)} turns about L in a period")
     if motion.get("wobbles_per_turn") is not None:
-        row("wobbles", f"{_number(motion['wobbles_per_turn'], 8)} for each turn about axis {axis}")
+        row("wobbles", f"{number(motion['wobbles_per_turn'], 8)} for each turn about axis {axis}")
     if periodic:
         row("angle to L", f"{_angles(motion['wobble_min'], motion['wobble_max'])} from axis {axis}")
     if motion["wobble_period"] is not None:
-        row("small wobbles", f"would take {_time(motion['wobble_period'])}")
+        row("small wobbles", f"would take {time(motion['wobble_period'])}")
     if motion["flip_time"] is not None and motion["modulus"] > 0.9:
-        text = f"every {_time(motion['flip_time'])} about the middle axis (half a period)"
+        text = f"every {time(motion['flip_time'])} about the middle axis (half a period)"
         found = motion.get("reversals")
         if found:
-            text += f"; seen: {found['count']}, every {_time(found['mean_interval'])}"
+            text += f"; seen: {found['count']}, every {time(found['mean_interval'])}"
         row("flips", text)
     if "closed_form" in motion:
         difference = motion["closed_form"]["largest_rotor_difference"]
@@ -147,7 +161,7 @@ def _free(motion: dict[str, Any], row: Row) -> None:
 def _damped(motion: dict[str, Any], row: Row) -> None:
     row("damping", "the motion of a free body, more and more slowly")
     if motion["halved_after"] is not None:
-        row("half of ω", f"after {_time(motion['halved_after'])}, and again")
+        row("half of ω", f"after {time(motion['halved_after'])}, and again")
     _free(motion, row)
     if motion["period"] is not None:
         row("", "(periods are those at the start)")
@@ -157,7 +171,7 @@ def _gyrostat(motion: dict[str, Any], row: Row) -> None:
     row("regime", motion["regime"])
     share = np.linalg.norm(motion["wheel"]) / motion["momentum_size"] if motion["momentum_size"] else 0.0
     if share:
-        row("wheel", f"{_number(100 * share, 4)} % of |L|")
+        row("wheel", f"{number(100 * share, 4)} % of |L|")
     if "from_wheel" in motion:
         row("angle to L", f"{_angles(*motion['from_wheel'])} from the wheel's axis")
 
@@ -166,21 +180,21 @@ def _lagrange(motion: dict[str, Any], row: Row) -> None:
     row("regime", f"symmetric top under gravity, {motion['regime']}")
     _tilt(motion, row)
     if motion["nutation_period"] is not None:
-        row("nutation", f"{_time(motion['nutation_period'])} from low to low")
+        row("nutation", f"{time(motion['nutation_period'])} from low to low")
     if motion["precession_rate"] is not None:
         row(
             "precession",
-            f"{_number(motion['precession_rate'])} rad/s on average, "
-            f"{_time(abs(motion['precession_period']))} for a turn",
+            f"{number(motion['precession_rate'])} rad/s on average, "
+            f"{time(abs(motion['precession_period']))} for a turn",
         )
         if (fast := motion["fast_top_precession_rate"]) is not None:
             off = motion["precession_rate"] / fast - 1
-            row("fast-top formula", f"{_number(fast)} rad/s, m g l/(i3 ω3); the average is off by {off:+.2e}")
+            row("fast-top formula", f"{number(fast)} rad/s, m g l/(i3 ω3); the average is off by {off:+.2e}")
     able = "stable" if motion["sleeps"] else "not stable"
     row(
         "upright",
-        f"{able} with its spin of {_number(motion['spin'])} rad/s; "
-        f"from {_number(motion['critical_spin'])} rad/s on it sleeps",
+        f"{able} with its spin of {number(motion['spin'])} rad/s; "
+        f"from {number(motion['critical_spin'])} rad/s on it sleeps",
     )
 
 
@@ -194,24 +208,24 @@ def _heavy(motion: dict[str, Any], row: Row) -> None:
     if rate is None:
         row("precession", "not followed: the output times are too far apart")
     else:
-        row("precession", f"{_number(rate)} rad/s on average")
+        row("precession", f"{number(rate)} rad/s on average")
 
 
 def _tilt(motion: dict[str, Any], row: Row) -> None:
-    row("m g l", f"{_number(motion['mgl'])} N m")
+    row("m g l", f"{number(motion['mgl'])} N m")
     row("tilt from up", _angles(motion["tilt_min"], motion["tilt_max"]))
 
 
 def _satellite(motion: dict[str, Any], row: Row) -> None:
     row("regime", motion["regime"])
     if motion["orbital_period"] is not None:
-        row("orbit", f"{_time(motion['orbital_period'])}, eccentricity {_number(motion['eccentricity'])}")
+        row("orbit", f"{time(motion['orbital_period'])}, eccentricity {number(motion['eccentricity'])}")
     row("long axis", f"{_angles(*motion['from_vertical'])} from the vertical")
     row("short axis", f"{_angles(*motion['from_normal'])} from the orbit's normal")
     if motion["libration_period"] is not None:
-        row("libration", f"{_time(motion['libration_period'])} for a swing in the plane, on average")
+        row("libration", f"{time(motion['libration_period'])} for a swing in the plane, on average")
     if motion["small_libration_period"] is not None:
-        row("small librations", f"would take {_time(motion['small_libration_period'])} in the plane")
+        row("small librations", f"would take {time(motion['small_libration_period'])} in the plane")
 
 
 def _torqued(motion: dict[str, Any], row: Row) -> None:
@@ -234,9 +248,9 @@ def _changes(motion: dict[str, Any], row: Row) -> None:
     for key, name, unit in (("rate", "|ω|", "rad/s"), ("angular_momentum", "|L|", "kg m²/s")):
         if "changes" in motion:
             ends = motion["changes"][key]
-            row(name, f"{_number(ends['start'])} {unit} at the start, {_number(ends['end'])} at the end")
+            row(name, f"{number(ends['start'])} {unit} at the start, {number(ends['end'])} at the end")
     if "from_target" in motion:
-        degrees = [f"{_number(float(np.degrees(motion['from_target'][k])))}°" for k in ("start", "end")]
+        degrees = [f"{number(float(np.degrees(motion['from_target'][k])))}°" for k in ("start", "end")]
         row("from the target", f"{degrees[0]} at the start, {degrees[1]} at the end")
     for key, unit in (("position", "m"), ("velocity", "m/s")):
         if key in motion:
@@ -246,14 +260,15 @@ def _changes(motion: dict[str, Any], row: Row) -> None:
 # --- numbers
 
 
-def _number(x: float, digits: int = 6) -> str:
+def number(x: float, digits: int = 6) -> str:
+    """Return a number with so many digits."""
     return f"{x:.{digits}g}"
 
 
 def _listed(values: list[float]) -> str:
     """Return components; what is rounding beside the largest reads 0."""
     floor = 1e-12 * max(abs(x) for x in values)
-    return ", ".join(_number(x if abs(x) > floor else 0.0) for x in values)
+    return ", ".join(number(x if abs(x) > floor else 0.0) for x in values)
 
 
 def _angles(low: float, high: float) -> str:
@@ -262,8 +277,9 @@ def _angles(low: float, high: float) -> str:
     return first if first == last else f"{first} to {last}"
 
 
-def _time(seconds: float) -> str:
+def time(seconds: float, digits: int = 6) -> str:
+    """Return a time in a unit that reads well."""
     for below, unit, name in _SECONDS:
         if abs(seconds) < below:
-            return f"{_number(seconds / unit)} {name}"
-    return f"{_number(seconds / (365.25 * 86400))} yr"
+            return f"{number(seconds / unit, digits)} {name}"
+    return f"{number(seconds / (365.25 * 86400), digits)} yr"

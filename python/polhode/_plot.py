@@ -26,7 +26,7 @@ _AXES = (_BLUE, _ORANGE, _GREEN)
 _TURNS_SEEN = 100
 
 # (longest duration that reads well, seconds in the unit, its name)
-_TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1e9, 86400.0, "d"))
+_TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1.3e8, 86400.0, "d"))
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -48,8 +48,9 @@ def require_times(trajectory: Trajectory) -> None:
         raise ValueError("the motion has no output times, so there is nothing to draw")
 
 
-def _time_unit(trajectory: Trajectory) -> tuple[float, str]:
-    span = float(np.abs(trajectory.time).max(initial=0.0))
+def time_unit(times: Array) -> tuple[float, str]:
+    """Return the seconds in a unit in which times read well, and its name."""
+    span = float(np.abs(times).max(initial=0.0))
     for longest, seconds, name in _TIME_UNITS:
         if span <= longest:
             return seconds, name
@@ -61,7 +62,7 @@ def motion_figure(trajectory: Trajectory) -> Figure:
     require_times(trajectory)
     figure = new_figure(8, 7.5)
     rates, attitude, drift = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 2))
-    seconds, unit = _time_unit(trajectory)
+    seconds, unit = time_unit(trajectory.time)
     t = trajectory.time / seconds
     for k, (plane, colour) in enumerate(zip(("e2∧e3", "e3∧e1", "e1∧e2"), _AXES, strict=True)):
         rates.plot(t, trajectory.omega_body.components[:, k], color=colour, lw=1.2, label=plane)

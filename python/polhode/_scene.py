@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from polhode import _native
 from polhode import force as forces
 from polhode._arrays import Array, frozen
 from polhode._bodies import Body
-from polhode._drawn import EnsembleSpec
+from polhode._drawn import EnsembleSpec, torque_of
 from polhode._rotor import Rotor
 from polhode._simulate import simulate
 from polhode._state import State
@@ -21,6 +21,10 @@ from polhode.force import Force
 from polhode.torque import Torque
 
 DRIFT_BOUND = 1e-8
+
+# Bytes of results in a block of bodies. So many blocks that a run which is stopped keeps most of what it
+# did, but none so small that its lanes and threads are idle.
+_BLOCK, _BLOCKS, _FEW = 32 << 20, 64, 512
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,26 +119,106 @@ class Scene:
         """Whether the body is held at a fixed point, the origin of its axes."""
         return self.torque is not None and self.torque.holds
 
-    def run(self, progress: Callable[[int, float], object] | None = None) -> Trajectory:
-        """Return the motion at the output times; errors and `progress` as for `polhode.simulate`."""
-        if self.ensemble is not None:
-            raise ValueError(
-                f"an ensemble of {self.ensemble.number} bodies cannot be run yet; "
-                "remove the table [ensemble] to run the one body"
-            )
+    @property
+    def name(self) -> str:
+        """The title, or the name of the file if there is none."""
+        return self.title or self.path.stem
+
+    def alone(self) -> Scene:
+        """Return the scene of the one body from which those of an ensemble differ."""
+        return replace(self, ensemble=None)
+
+    def run(
+        self, progress: Callable[[int, float], object] | None = None, threads: int | None = None
+    ) -> Trajectory:
+        """Return the motion at the output times, or those of all bodies of an ensemble, a batch (number,).
+
+        Errors, `progress` and `threads` as for `polhode.simulate`.
+        """
+        if self.ensemble is None:
+            return self._moved(self.body, self.state, self.torque, progress, threads)
+        return self._drawn(slice(0, self.ensemble.number), progress, threads)
+
+    def run_blocks(
+        self,
+        block: int | None = None,
+        progress: Callable[[int, float], object] | None = None,
+        threads: int | None = None,
+    ) -> Iterator[tuple[slice, Trajectory]]:
+        """Yield the motions of an ensemble's bodies in blocks, drawn as they come: which bodies, and theirs.
+
+        So all together need not fit into memory. The same bits as in ``run()[rows]``, for any block.
+
+        Parameters
+        ----------
+        block
+            How many bodies at a time; None for as many as have some 32 MB of results, or a 64th of all.
+        progress
+            Called now and then with 1 and the fraction of all bodies that is done.
+
+        Raises
+        ------
+        ValueError
+            Without an ensemble; else as for `polhode.simulate`.
+        """
+        if self.ensemble is None:
+            raise ValueError("this scene is one body, without a table [ensemble]; use run")
+        if block is not None and block < 1:
+            raise ValueError(f"block is {block}; it must be 1 or more")
+        number, size = self.ensemble.number, block or self.block
+        for start in range(0, number, size):
+            rows = slice(start, min(start + size, number))
+
+            def of_all(one: int, fraction: float, rows: slice = rows) -> None:
+                if progress is not None:
+                    progress(one, (rows.start + fraction * (rows.stop - rows.start)) / number)
+
+            trajectory = self._drawn(rows, of_all if progress else None, threads)
+            of_all(1, 1.0)
+            yield rows, trajectory
+
+    @property
+    def block(self) -> int:
+        """How many bodies of an ensemble are run at a time, if nobody says it."""
+        number = 1 if self.ensemble is None else self.ensemble.number
+        fits = max(1, _BLOCK * number // self.result_bytes)
+        return min(fits, max(_FEW, -(-number // _BLOCKS)))
+
+    def _drawn(
+        self, rows: slice, progress: Callable[[int, float], object] | None, threads: int | None
+    ) -> Trajectory:
+        """Return the motions of some bodies of the ensemble."""
+        assert self.ensemble is not None
+        state, inertias, laws = self.ensemble.draw(rows.start, rows.stop - rows.start)
+        bodies: list[Any] = list(inertias)
+        if self.force is not None:
+            mass, center = self.body.mass, self.body.center_of_mass
+            bodies = [Body(mass, inertia, center) for inertia in inertias]
+        body = bodies[0] if len(bodies) == 1 else bodies
+        return self._moved(body, state, torque_of(laws), progress, threads)
+
+    def _moved(
+        self,
+        body: Any,
+        state: State,
+        torque: Torque | None,
+        progress: Callable[[int, float], object] | None,
+        threads: int | None,
+    ) -> Trajectory:
         trajectory = simulate(
-            self.body,
-            self.state,
+            body,
+            state,
             self.times,
-            self.torque,
+            torque,
             self.force,
             method=self.method,
             step=self.step,
             rtol=self.rtol,
             atol=self.atol,
+            threads=threads,
             progress=progress,
         )
-        trajectory.attributes.update({"title": self.title or self.path.stem, "scene": self.text})
+        trajectory.attributes.update({"title": self.name, "scene": self.text})
         return trajectory
 
 

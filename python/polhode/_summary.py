@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from polhode._bodies import Inertia
 from polhode._kinds import describe
 from polhode._scene import Scene
 from polhode._trajectory import Trajectory
@@ -14,21 +15,13 @@ from polhode.torque import Torque
 
 def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     """Return the summary in SI units; everything in it is a number, text, None, a list or a dict."""
-    moments = trajectory.inertia.principal_moments
     proof = trajectory.certificate
     drifts = (proof.norm_drift, *proof.drift.values())
     return {
         "title": trajectory.attributes["title"],
         "scene": str(scene.path),
-        "body": {
-            "mass": scene.body.mass if scene.tells_mass else None,
-            "center_of_mass": scene.body.center_of_mass.components.tolist(),
-            "held": scene.held,
-            "principal_moments": moments.tolist(),
-            "moment_ratios": (np.sort(moments) / moments.min()).tolist(),
-            "principal_axes": trajectory.inertia.principal_frame.to_matrix().T.tolist(),
-        },
-        "torques": _torques(scene),
+        "body": body_of(scene, trajectory.inertia),
+        "torques": torques_of(scene),
         "forces": [] if scene.force is None else repr(scene.force).split(" + "),
         "motion": describe(scene, trajectory),
         "conserved": {
@@ -50,7 +43,20 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
     }
 
 
-def _torques(scene: Scene) -> list[dict[str, Any]]:
+def body_of(scene: Scene, inertia: Inertia) -> dict[str, Any]:
+    """Return what the body is, with the inertia that rules its motion."""
+    moments = inertia.principal_moments
+    return {
+        "mass": scene.body.mass if scene.tells_mass else None,
+        "center_of_mass": scene.body.center_of_mass.components.tolist(),
+        "held": scene.held,
+        "principal_moments": moments.tolist(),
+        "moment_ratios": (np.sort(moments) / moments.min()).tolist(),
+        "principal_axes": inertia.principal_frame.to_matrix().T.tolist(),
+    }
+
+
+def torques_of(scene: Scene) -> list[dict[str, Any]]:
     """Return each law by its name in `polhode.torque`, its call, and its formula as the scene has it."""
     laws = scene.torque.laws if scene.torque else ()
     return [

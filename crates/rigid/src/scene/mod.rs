@@ -34,7 +34,7 @@
 //!
 //! [run]
 //! duration = "10 s"
-//! samples = 1001             # or interval = "10 ms"
+//! samples = 1001             # or interval = "10 ms"; first = "1 ms": from there on in equal ratios
 //! drift_bound = 1e-8         # optional
 //!
 //! [method]                   # optional, as are all its fields; name (as method), step and rtol may stand in [run]

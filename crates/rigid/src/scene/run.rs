@@ -17,6 +17,8 @@ pub struct Run {
     pub duration: f64,
     /// How many states are kept, the first and the last included.
     pub samples: usize,
+    /// The second time in seconds, if the others follow in equal ratios.
+    pub first: Option<f64>,
     /// How to integrate.
     pub choice: Choice,
     /// The largest relative drift of a conserved quantity that counts as success.
@@ -24,10 +26,17 @@ pub struct Run {
 }
 
 impl Run {
-    /// The times of the samples, `i · duration / (samples − 1)`.
+    /// The times of the samples, `i · duration / (samples − 1)`; or 0 and from the first on
+    /// `first · (duration / first)^((i − 1) / (samples − 2))`.
     pub fn times(&self) -> Vec<f64> {
         let last = self.samples.saturating_sub(1).max(1);
-        let time = |i: usize| if i == last { self.duration } else { i as f64 * self.duration / last as f64 };
+        let even = |i: usize| i as f64 * self.duration / last as f64;
+        let time = |i: usize| match self.first {
+            _ if i == 0 => 0.0,
+            _ if i == last => self.duration,
+            None => even(i),
+            Some(first) => first * (self.duration / first).powf((i - 1) as f64 / (last - 1) as f64),
+        };
         (0..self.samples).map(time).collect()
     }
 }
@@ -51,19 +60,29 @@ fn method_names() -> Vec<&'static str> {
 
 /// `[run]`, and `[method]` if there is one.
 pub fn read(reader: &mut Reader, table: &Table, method: Option<&Table>) -> Option<Run> {
-    reader.only(table, &["duration", "samples", "interval", "method", "step", "rtol", "drift_bound"]);
+    reader
+        .only(table, &["duration", "samples", "interval", "first", "method", "step", "rtol", "drift_bound"]);
     let duration = reader.field(table, "duration", duration);
     let samples = match reader.at_most_one(table, &["samples", "interval"]) {
         Some("samples") => reader.field(table, "samples", samples),
         Some(_) => reader.field(table, "interval", |reader, value| interval(reader, value, duration)),
         None => Some(DEFAULT_SAMPLES),
     };
+    let first = reader.optional(table, "first", |reader, value| first(reader, value, duration, samples));
+    // In equal intervals, or in equal ratios.
+    reader.at_most_one(table, &["interval", "first"]);
     let choice = choice(reader, table, method);
     let drift_bound = reader.optional(table, "drift_bound", |reader, value| {
         let bound = reader.number(value)?;
         reader.check_positive(value, bound)
     });
-    Some(Run { duration: duration?, samples: samples?, choice: choice?, drift_bound: drift_bound? })
+    Some(Run {
+        duration: duration?,
+        samples: samples?,
+        first: first?,
+        choice: choice?,
+        drift_bound: drift_bound?,
+    })
 }
 
 /// The fields of `[run]` and `[method]` that choose how to integrate; none in both.
@@ -124,6 +143,24 @@ fn samples(reader: &mut Reader, value: &Value) -> Option<usize> {
             None
         }
     }
+}
+
+/// The first time after 0 of those in equal ratios.
+fn first(reader: &mut Reader, value: &Value, duration: Option<f64>, samples: Option<usize>) -> Option<f64> {
+    let first = reader.positive(value, Quantity::Time)?;
+    let (duration, samples) = (duration?, samples?);
+    if first >= duration {
+        reader.report(value.span(), format!("must be before the end of the run after {duration} s"));
+        return None;
+    }
+    if samples < 3 {
+        reader.report(
+            value.span(),
+            format!("takes 3 samples at least: 0, the first and the end; not {samples}"),
+        );
+        return None;
+    }
+    Some(first)
 }
 
 /// The number of samples. Both ends of the run are samples, so the interval must divide the duration.

@@ -80,11 +80,33 @@ fn a_full_scene_is_read() {
     let run = Run {
         duration: 10.0,
         samples: 1001,
+        first: None,
         choice: Choice { method: "yoshida4".to_owned(), step: Some(0.001), rtol: Some(1e-10), atol: None },
         drift_bound: Some(1e-8),
     };
     assert_eq!(scene.run, run);
     assert_eq!((scene.path.as_path(), scene.text.as_str()), (Path::new("x.toml"), GOOD));
+}
+
+#[test]
+fn times_are_in_equal_ratios_from_a_first_one_on() {
+    let run = |more: &str| scene(&LEAST.replace("[run]", &format!("[run]\n{more}"))).run;
+    let (even, uneven) = (run("samples = 6").times(), run("samples = 6\nfirst = 0.25").times());
+    let end = even[5];
+    assert_eq!((uneven.len(), uneven[0], uneven[1], uneven[5]), (6, 0.0, 0.25, end));
+    let ratio = (end / 0.25).powf(0.25);
+    for pair in uneven[1..].windows(2) {
+        assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-14);
+    }
+    for (more, expected) in [
+        ("samples = 2\nfirst = 0.25", "takes 3 samples at least"),
+        ("first = 1e9", "must be before the end of the run"),
+        ("first = 0", "must be"),
+        ("interval = 0.5\nfirst = 0.25", "conflicts with"),
+    ] {
+        let found = errors_with("[run]", &format!("[run]\n{more}")).concat();
+        assert!(found.contains(expected), "{more}: {found}");
+    }
 }
 
 #[test]

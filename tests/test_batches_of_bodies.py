@@ -52,17 +52,27 @@ def test_each_moves_as_alone(how):
     assert motion.shape == motion.ok.shape == (N,)
     assert motion.rotor.shape == motion.energy.shape == (N, len(T))
     assert motion.failures == ()
-    # Side by side the same steps are rounded in another order.
-    atol = 64 * 4 * EPS * np.abs(motion.momentum_space.components).max() * 10
     for k in range(N):
         alone = ph.simulate(BODIES[k], state_of(k), T, ph.torque.heavy(C[k]), **how)
-        assert_same(motion[k], alone, 0 if how.get("method") != "rk4" else atol)
         proof, own = motion[k].certificate, alone.certificate
-        assert (proof.method, proof.steps, proof.evaluations) == (own.method, own.steps, own.evaluations)
-        assert proof.step == own.step
-        assert proof.error_estimate == own.error_estimate
+        if "step" in how:
+            assert (proof.method, proof.steps, proof.evaluations) == (own.method, own.steps, own.evaluations)
+            assert proof.step == own.step
+            # Side by side the same steps are rounded in another order.
+            apart = 64 * 4 * EPS * 10
+        else:
+            # In lanes by dop853, alone by what fits best; each within its own estimate.
+            assert proof.method == how.get("method", "dop853")
+            apart = proof.error_estimate + own.error_estimate
+        assert_same(motion[k], alone, apart * largest(alone))
         assert proof.conserved.keys() == own.conserved.keys()
         assert motion.inertia[k] == alone.inertia
+
+
+def largest(motion):
+    """The largest number in a motion, at least that of a rotor."""
+    sizes = [np.abs(getattr(motion, part).components).max() for part in PARTS[1:]]
+    return max(1.0, np.abs(motion.energy).max(), *sizes)
 
 
 def test_closed_forms_are_found_body_by_body():
@@ -75,7 +85,7 @@ def test_closed_forms_are_found_body_by_body():
     assert "2 methods" in repr(motion)
     free = ph.simulate(spheres, START, T, method="exact")
     assert free.certificate.method == "exact"
-    assert_same(free[1], ph.simulate(ASYMMETRIC, START, T))
+    assert_same(free[1], ph.simulate(ASYMMETRIC, START, T), 16 * EPS)
     with pytest.raises(ValueError, match=r"index \(1,\).*closed form"):
         ph.simulate(spheres, START, T, law, method="exact")
 
@@ -91,10 +101,12 @@ def test_all_shapes_broadcast():
     for index in ((0, 0, 0), (1, 2, 3), (0, 1, 2)):
         i, j, k = index
         state = ph.State(rotors[j, 0], rates[k], places[i, 0, 0])
-        assert_same(motion[index], ph.simulate(BODIES[j], state, T, ph.torque.heavy(C[k])))
+        alone = ph.simulate(BODIES[j], state, T, ph.torque.heavy(C[k]))
+        # Each is within the 1e-10 that is aimed at.
+        assert_same(motion[index], alone, 2e-10 * largest(alone))
     one = ph.simulate([ASYMMETRIC], START, T)
     assert one.shape == (1,)
-    assert_same(one[0], ph.simulate(ASYMMETRIC, START, T))
+    assert_same(one[0], ph.simulate(ASYMMETRIC, START, T), 16 * EPS)
     assert ph.simulate(ASYMMETRIC, START, T).shape == ()
     assert ph.simulate(ASYMMETRIC, START, T, ph.torque.damping([0.1])).shape == (1,)
     nothing = ph.simulate(ASYMMETRIC, ph.State(R0, np.zeros((0, 3))), T)
@@ -143,7 +155,7 @@ def test_laws_take_batches(name):
     assert motion.ok.all()
     for k in range(N):
         alone = ph.simulate(ASYMMETRIC, START, T[:6], LAWS[name](C[k]), rtol=1e-6)
-        assert_same(motion[k], alone, 64 * EPS)
+        assert_same(motion[k], alone, 2e-6 * largest(alone))
     with pytest.raises(ValueError, match=r"single.*\(5,\)"):
         law.at(ASYMMETRIC, START)
 
@@ -182,7 +194,8 @@ def test_tables_and_functions_are_shared():
     for law in (table, function):
         motion = ph.simulate(BODIES, STATES, T, law, rtol=1e-8, threads=2)
         for k in (0, 4):
-            assert_same(motion[k], ph.simulate(BODIES[k], state_of(k), T, law, rtol=1e-8))
+            alone = ph.simulate(BODIES[k], state_of(k), T, law, rtol=1e-8)
+            assert_same(motion[k], alone, 2e-8 * largest(alone))
 
 
 def test_the_centre_of_mass_moves():
@@ -241,12 +254,10 @@ def test_overflow_is_a_failure():
     motion = ph.simulate(ASYMMETRIC, START, [0.0, 1.0], law, method="rk4", step=0.1)
     assert motion.ok.tolist() == [False, True]
     assert np.isfinite(motion.certificate.worst)
-    every = ph.simulate(
-        ASYMMETRIC, START, [0.0, 1.0], law[:1] if False else ph.torque.constant_body([[1e308] * 3])
-    )
+    every = ph.simulate(ASYMMETRIC, START, [0.0, 1.0], ph.torque.constant_body([[1e308] * 3]))
     assert not every.ok.any()
     assert np.isnan(every.certificate.worst)
-    assert every.certificate.method == "auto"
+    assert every.certificate.method == "dop853"
 
 
 def test_what_a_function_raises_is_told():

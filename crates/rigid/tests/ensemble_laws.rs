@@ -223,7 +223,8 @@ fn a_body_does_not_know_who_is_beside_it() {
 #[test]
 fn formulas_are_the_laws_they_say() {
     let rounding = 16.0 * f64::EPSILON * STEPS;
-    let pairs: [(&str, Axes, f64, fn([f64; 3], f64) -> Torque); 4] = [
+    type Make = fn([f64; 3], f64) -> Torque;
+    let pairs: [(&str, Axes, f64, Make); 4] = [
         ("(~R e3 R) ∧ c", Axes::Body, 0.01 * STEP.powi(4), |c, _| Torque::Heavy(Vector(c))),
         ("−k norm(Ω) Ω", Axes::Body, rounding, |_, k| Torque::QuadraticDamping(k)),
         ("I c", Axes::Body, rounding, |c, _| Torque::ConstantBody(Bivector(c))),

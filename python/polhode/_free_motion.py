@@ -206,8 +206,7 @@ class FreeMotion:
         In closed form, so that the cost does not grow with t and the error is rounding. A ValueError as in
         `at`, and where an unstable rotation has carried a change beyond floating point.
 
-        A function for JAX is `jax.custom_jvp` with `at` for its value, by `jax.pure_callback`, and with the
-        sum of the derivatives times the tangents for its tangent.
+        `polhode.jax.free` is the same as a function for JAX.
         """
         times = as_floats(t, "time")
         shape = self.shape + times.shape

@@ -71,7 +71,7 @@ def simulate(
         long runs: ``rkn6`` for symmetric bodies and ``kahan_li8`` for others; for torques that depend on the
         rate of turning, and for forces, ``dop853``, a Runge–Kutta method of order 8 on the group of rotors
         that adapts its steps. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,
-        ``kahan_li6``, ``rk4``. A batch without a `step` is ``exact`` where known and else ``dop853``, each body
+        ``kahan_li6``, ``rk4``. A batch without a `step` is ``exact`` where known, else ``dop853``, each body
         by its own steps.
     rtol, atol
         Without a `step`, runs with ever shorter steps until the estimated error of the last is less than the

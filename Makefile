@@ -52,7 +52,9 @@ lint: setup
 
 bench: .venv/.peers
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/accelerator.py
 	cargo run --quiet --locked --release -p polhode-ga --example batch | tee build/bench-core.txt
+	cargo run --quiet --locked --release -p polhode-rigid --example ensemble | tee build/bench-ensembles.txt
 
 docs:
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --locked --no-deps --workspace --exclude polhode-py

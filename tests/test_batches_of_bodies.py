@@ -427,3 +427,42 @@ def test_control_c_stops_a_run(method):
         _, errors = process.communicate(timeout=30)
     assert "KeyboardInterrupt" in errors
     assert process.returncode != 0
+
+
+def test_a_table_may_start_at_the_start():
+    """And have knots at output times, which may come twice."""
+    law = ph.torque.tabulated([-1, 0, 1, 3], np.ones((4, 3)))
+    times = [-0.5, 0, 0, 1, 1, 2]
+    for method in ("rk4", "kahan_li8"):
+        motion = ph.simulate(BODIES, STATES, times, law, method=method, step=0.05)
+        for k in (0, 3):
+            alone = ph.simulate(BODIES[k], state_of(k), times, law, method=method, step=0.05)
+            assert_same(motion[k], alone, 64 * 4 * EPS * 10 * largest(alone))
+
+
+def test_what_is_wrong_for_all_is_told_at_once():
+    for wrong, match in (
+        ({"method": "exact", "step": 0.1}, "exact"),
+        ({"method": "rk4", "step": 1e-300}, "more than 1e10"),
+        ({"step": -1.0}, "step"),
+        ({"threads": 0}, "threads"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            ph.simulate(BODIES, STATES, T, ph.torque.heavy(C), **wrong)
+        with pytest.raises(ValueError, match=match):
+            ph.simulate_blocks(BODIES, STATES, T, ph.torque.heavy(C), **wrong)
+    with pytest.raises(ValueError, match="threads"):
+        ph.simulate(ASYMMETRIC, START, T, threads=0)
+
+
+def test_a_body_that_is_hopeless_does_not_hold_up_the_others():
+    rates = [[0.1, 0.2, 1.0], [1e100, 1e100, 1.0]]
+    motion = ph.simulate(ASYMMETRIC, ph.State(R0, rates), [1.0], ph.torque.heavy([0.1, 0.2, 0.3]))
+    assert motion.ok.tolist() == [True, False]
+    assert "more than 1e10" in motion.failures[0].message
+
+
+def test_a_failure_before_the_start_leaves_what_comes_after():
+    law = ph.torque.tabulated([-1, 2.5], np.ones((2, 3)))
+    motion = ph.simulate([ASYMMETRIC], START, [-2, -0.5, 0, 1], law, method="rk4", step=0.1)
+    assert np.isnan(motion.energy[0]).tolist() == [True, False, False, False]

@@ -100,7 +100,7 @@ def test_the_refusal_tells_both_numbers(system):
     ("count", "text"), [(0, "0 bytes"), (999_499, "999 kB"), (999_500, "1 MB"), (5 * 10**24, "5e+06 EB")]
 )
 def test_sizes_are_said_in_three_digits(count, text):
-    assert _memory._size(count) == text
+    assert _memory.size(count) == text
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux tells")

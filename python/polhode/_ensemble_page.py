@@ -30,9 +30,11 @@ def as_text(summary: dict[str, Any]) -> str:
         lines.append("Acting")
         acting(summary, row)
     lines.append("Motion")
-    _motion(motion, summary["ensemble"]["number"], row)
+    who = "those that finished" if summary["failures"]["count"] else "the bodies"
+    _motion(motion, summary["ensemble"]["number"], who, row)
     cells = "".join(f"{name:>{_CELLS}}" for name in ("5 %", "25 %", "median", "75 %", "95 %"))
-    lines.append(f"{'Over the bodies':<{_NAMES + 1}} {cells}")
+    over = "Over the finished" if summary["failures"]["count"] else "Over the bodies"
+    lines.append(f"{over:<{_NAMES + 1}} {cells}")
     _quantiles(motion, row)
     lines.append("Conserved")
     for name, entry in summary["conserved"].items():
@@ -55,12 +57,12 @@ def _drawn(ensemble: dict[str, Any], row: Row) -> None:
         row("", "all alike: [ensemble] says nothing that differs")
 
 
-def _motion(motion: dict[str, Any], bodies: int, row: Row) -> None:
+def _motion(motion: dict[str, Any], bodies: int, who: str, row: Row) -> None:
     for regime, count in motion["regimes"].items():
         row("regime", f"{regime}: {count} of {bodies} bodies")
     for entry in motion["horizons"]:
         until = "to the end" if entry["time"] is None else f"for {time(entry['time'], 4)}"
-        told = f"95 % of the bodies, {until}, of the undisturbed one"
+        told = f"95 % of {who}, {until}, of the undisturbed one"
         row(
             f"within {np.degrees(entry['angle']):g}°",
             told if entry["time"] != 0 else "fewer from the start on",

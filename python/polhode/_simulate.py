@@ -101,13 +101,14 @@ def simulate(
     given = _given(body, state, times, torque, force, method, rtol, atol, step)
     _check_progress(progress)
     looked_for = _events(events)
+    count = _threads(threads)
     if given.shape:
         if looked_for:
             raise ValueError(
                 f"events are looked for in the motion of one body, this is a batch of shape {given.shape}; "
                 "simulate each body whose events are wanted alone"
             )
-        return given.run(_threads(threads), progress)
+        return given.run(count, progress)
     inertia = given.inertias[()]
     motion = _native.simulate(
         inertia._core,
@@ -159,7 +160,7 @@ def simulate_blocks(
     progress
         Called now and then with 1 and the fraction of all blocks that is done. Ctrl-C stops the run.
 
-    The others, and the errors, are those of `simulate`; that an argument is wrong is told at once.
+    The others, and the errors, are those of `simulate`; what is wrong for all bodies is told at once.
     """
     given = _given(body, state, times, torque, force, method, rtol, atol, step)
     _check_progress(progress)
@@ -167,6 +168,7 @@ def simulate_blocks(
         raise ValueError("simulate_blocks is for a batch of bodies, this is one; use simulate")
     if block is not None and as_count(block, "block") < 1:
         raise ValueError(f"block is {block}; it must be 1 or more")
+    given.block(slice(0, 0)).run(_threads(threads), None)  # what is wrong for all is told now
     rows = given.shape[0]
     size = block or max(1, _BLOCK * rows // max(given.bytes, 1))
     return _blocks(given, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)

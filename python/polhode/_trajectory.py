@@ -50,8 +50,9 @@ class Trajectory:
     events
         For each event that was asked for, when and where it happened.
     failures
-        The bodies of a batch that could not be followed to the end. Their values are NaN from there on
-        (but for `position` and `velocity` without forces, which are known all the same).
+        The bodies of a batch that could not be followed to the end. Their values are NaN from there on, with
+        equal steps side by side, and else all of them, for no pass was confirmed; but for `position` and
+        `velocity` without forces, which are known all the same.
     attributes
         Text and numbers to be written with the data: title, scene, version.
     """
@@ -191,7 +192,8 @@ class Trajectory:
         self._require_one("at")
         if self._motion is None:
             raise ValueError(
-                "this trajectory was read or unpickled, not made by simulate: it has no states but its own"
+                "this trajectory was picked from a batch, read or unpickled: it has no states but its own; "
+                "simulate the body alone"
             )
         times = as_floats(t, "time")
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))

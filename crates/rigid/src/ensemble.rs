@@ -18,8 +18,8 @@ mod steppers;
 
 use crate::force::{Center, Force};
 use crate::inertia::Inertia;
-use crate::simulate::{Options, Problem, Progress, check_moments};
-use crate::simulate_error::SimulateError;
+use crate::simulate::{NO_CLOSED_FORM, Options, Problem, Progress, check_moments};
+use crate::simulate_error::{MAX_STEPS, SimulateError};
 use crate::torque::Torque;
 use block::Crew;
 pub(crate) use output::Own;
@@ -129,9 +129,15 @@ impl Ensemble {
 
     /// What is wrong for all bodies alike.
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
-        if let Some(start) = self.starts.first() {
-            let still = Problem::new(self.inertias.of(0), start.rotor, Bivector::default(), &[]);
-            still.check(times, options)?;
+        options.check(times)?;
+        let Some(step) = options.step else { return Ok(()) };
+        if options.exact {
+            return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
+        }
+        let span = times.last().map_or(0.0, |t| t.max(0.0)) - times.first().map_or(0.0, |t| t.min(0.0));
+        let steps = span / step + times.len() as f64;
+        if steps > MAX_STEPS {
+            return Err(SimulateError::TooManySteps { steps, step });
         }
         Ok(())
     }

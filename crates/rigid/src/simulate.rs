@@ -48,7 +48,24 @@ pub struct Options {
     pub events: Vec<Event>,
 }
 
-const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
+impl Options {
+    /// What is wrong with them, or with the times, for any body.
+    pub(crate) fn check(&self, times: &[f64]) -> Result<(), SimulateError> {
+        for (index, &time) in times.iter().enumerate() {
+            if !time.is_finite() || index > 0 && time < times[index - 1] {
+                return Err(SimulateError::BadTime { index, time });
+            }
+        }
+        for (what, value) in [("step", self.step.unwrap_or(1.0)), ("rtol", self.rtol.unwrap_or(1.0))] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(SimulateError::BadValue { what, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
                               their axis, damping alone, spheres under larmor, and constant forces; leave the method \
                               out for others";
 
@@ -316,19 +333,9 @@ impl Problem {
         Some(Fall { start, acceleration: sum / translation.mass })
     }
 
-    pub(crate) fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
-        for (index, &time) in times.iter().enumerate() {
-            if !time.is_finite() || index > 0 && time < times[index - 1] {
-                return Err(SimulateError::BadTime { index, time });
-            }
-        }
-        check_body(&self.body, self.omega, &self.torques)?;
-        for (what, value) in [("step", options.step.unwrap_or(1.0)), ("rtol", options.rtol.unwrap_or(1.0))] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(SimulateError::BadValue { what, value });
-            }
-        }
-        Ok(())
+    fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
+        options.check(times)?;
+        check_body(&self.body, self.omega, &self.torques)
     }
 
     fn start(&self) -> Carried {

@@ -14,6 +14,10 @@ from polhode.jax._table import Table
 Array = Any
 
 
+# Each step has its time and length in memory, 16 bytes.
+_MOST_STEPS = 1e8
+
+
 class Way(NamedTuple):
     """Times to walk to, one after the other from 0, and the number of equal steps to each.
 
@@ -64,7 +68,13 @@ def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
     counts = np.full(len(targets), steps or 1)
     if step is not None:
         spans = np.abs(np.diff(targets, prepend=0.0))
-        counts = np.maximum(np.ceil(spans / step), 1.0).astype(np.int64)
+        wanted = np.maximum(np.ceil(spans / step), 1.0)
+        if wanted.sum() > _MOST_STEPS:
+            raise ValueError(
+                f"the run would take {wanted.sum():.1e} steps of {step:.3e} s, more than {_MOST_STEPS:.0e}; "
+                "shorten it or ask for a longer step"
+            )
+        counts = wanted.astype(np.int64)
     even = bool((counts == counts[:1]).all())
     return Way(np.array(targets), counts, int(counts.max(initial=0)), even, tuple(places))
 

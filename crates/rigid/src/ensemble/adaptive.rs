@@ -179,8 +179,13 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
             }
             rounds += 1;
             if rounds % BETWEEN_LOOKS == 0 {
-                for (l, seat) in self.seats.iter_mut().enumerate() {
-                    seat.iter_mut().for_each(|seat| seat.count(self.at.time.0[l], crew));
+                for l in 0..W {
+                    let time = self.at.time.0[l];
+                    let Some(seat) = &mut self.seats[l] else { continue };
+                    seat.count(time, crew);
+                    if let Err(error) = seat.check_pace(time, crew) {
+                        self.fail(l, error, crew);
+                    }
                 }
                 if !crew.report(progress) {
                     return false;

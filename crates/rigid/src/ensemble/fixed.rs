@@ -72,6 +72,8 @@ impl FixedSteps<'_, '_> {
         let sides: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..early).rev(), &mut (early..times.len())];
         for (side, indices) in sides.into_iter().enumerate() {
             let mut state = stepper.start(&members);
+            // A body that failed on one side of the start is followed on the other.
+            let mut lost = [false; SIDE_BY_SIDE];
             let mut time = 0.0;
             for index in indices {
                 for stretch in stretches(time, times[index], step, &breaks) {
@@ -83,10 +85,12 @@ impl FixedSteps<'_, '_> {
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
                             let now = stepper.phase(&member.gyrostat, &state, l, stretch.begin(last));
-                            if failures[l].is_none() && !is_finite(&Carried::new(now, Center::default())) {
+                            if !lost[l] && !is_finite(&Carried::new(now, Center::default())) {
                                 let from = stepper.phase(&member.gyrostat, &before, l, stretch.begin(first));
                                 let part = (&stretch, first..last);
-                                failures[l] = Some(diagnose(method, member, &torques[l], from, part));
+                                lost[l] = true;
+                                let failure = diagnose(method, member, &torques[l], from, part);
+                                failures[l].get_or_insert(failure);
                             }
                         }
                         let gone = stretch.begin(last);
@@ -99,7 +103,7 @@ impl FixedSteps<'_, '_> {
                 }
                 time = times[index];
                 for (l, member) in members.iter_mut().enumerate() {
-                    if failures[l].is_some() {
+                    if lost[l] {
                         member.own.unknown(index);
                         continue;
                     }
@@ -140,6 +144,9 @@ fn breaks(torques: &[Vec<Torque>]) -> Vec<f64> {
 
 /// The ways to a time, parted where a law is not smooth.
 fn stretches(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Stretch> {
+    if from == to {
+        return Vec::new();
+    }
     let (low, high) = (from.min(to), from.max(to));
     let between = &breaks[breaks.partition_point(|&b| b <= low)..breaks.partition_point(|&b| b < high)];
     let mut ends: Vec<f64> = between.to_vec();

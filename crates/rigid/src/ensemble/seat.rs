@@ -6,7 +6,7 @@ use crate::converge::{Aim, Converged, Convergence};
 use crate::force::Center;
 use crate::method::{Method, fastest_rate};
 use crate::runge_kutta::{Carried, DOP853, Points, RungeKutta};
-use crate::simulate_error::SimulateError;
+use crate::simulate_error::{MAX_STEPS, SimulateError};
 use crate::stride::{Stride, check_count, next_stop};
 use crate::torque::Torque;
 use crate::walk::{Pace, Pass};
@@ -14,6 +14,12 @@ use std::mem;
 
 /// The method that the bodies are stepped by.
 pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
+
+/// So many steps of a pass tell its pace.
+const FEW_STEPS: f64 = 20_000.0;
+
+/// How many times more than [`MAX_STEPS`] is given up, for a body may slow down.
+const HOPELESS: f64 = 1e3;
 
 /// A body in a lane, on its way through its passes.
 pub(super) struct Seat<'a> {
@@ -136,6 +142,17 @@ impl<'a> Seat<'a> {
         let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
         let walked = if self.stop < 0.0 { -time } else { time - begin };
         crew.count(&mut self.so_far, walked / total, 1);
+    }
+
+    /// An error where the steps so far lead nowhere: at this pace it would take thousands of times more than may be.
+    pub fn check_pace(&self, time: f64, crew: &Crew<'a>) -> Result<(), SimulateError> {
+        let steps = self.pass.steps as f64;
+        let end = if self.stop < 0.0 { crew.times.first() } else { crew.times.last() };
+        let part = end.map_or(1.0, |end| time / end);
+        if steps > FEW_STEPS && steps / part > HOPELESS * MAX_STEPS {
+            return Err(SimulateError::TooManySteps { steps: steps / part, step: self.pass.longest });
+        }
+        Ok(())
     }
 
     /// Writes and tells what was found.

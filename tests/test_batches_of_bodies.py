@@ -450,7 +450,7 @@ def test_what_is_wrong_for_all_is_told_at_once():
         with pytest.raises(ValueError, match=match):
             ph.simulate(BODIES, STATES, T, ph.torque.heavy(C), **wrong)
         with pytest.raises(ValueError, match=match):
-            ph.simulate_blocks(BODIES, STATES, T, ph.torque.heavy(C), **wrong)
+            next(ph.simulate_blocks(BODIES, STATES, T, ph.torque.heavy(C), **wrong))
     with pytest.raises(ValueError, match="threads"):
         ph.simulate(ASYMMETRIC, START, T, threads=0)
 

@@ -160,7 +160,8 @@ def simulate_blocks(
     progress
         Called now and then with 1 and the fraction of all blocks that is done. Ctrl-C stops the run.
 
-    The others, and the errors, are those of `simulate`; what is wrong for all bodies is told at once.
+    The others, and the errors, are those of `simulate`: at once where arguments do not fit together, and else
+    with the first block.
     """
     given = _given(body, state, times, torque, force, method, rtol, atol, step)
     _check_progress(progress)
@@ -168,7 +169,7 @@ def simulate_blocks(
         raise ValueError("simulate_blocks is for a batch of bodies, this is one; use simulate")
     if block is not None and as_count(block, "block") < 1:
         raise ValueError(f"block is {block}; it must be 1 or more")
-    given.block(slice(0, 0)).run(_threads(threads), None)  # what is wrong for all is told now
+    _threads(threads)
     rows = given.shape[0]
     size = block or max(1, _BLOCK * rows // max(given.bytes, 1))
     return _blocks(given, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)

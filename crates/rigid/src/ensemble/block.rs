@@ -241,11 +241,12 @@ impl<'a> Crew<'a> {
         let kind = match method {
             Method::Classical => None,
             Method::Splitting(sequence) => {
+                let torques = self.torques(body);
                 let moments = self.ensemble.inertias.of(body).principal_moments();
-                let wheel = wheel(&self.torques(body));
-                let kind = Kind::of(&Gyrostat { moments, wheel });
+                let gyrostat = Gyrostat { moments, wheel: wheel(&torques) };
+                let kind = Kind::of(&gyrostat);
                 let exact_drift = matches!(sequence, Sequence::Nystrom(_)) && !kind.is_symmetric();
-                if exact_drift || method.unfit(&Gyrostat { moments, wheel }, &self.torques(body)).is_some() {
+                if exact_drift || method.unfit(&gyrostat, &torques).is_some() {
                     return None;
                 }
                 Some(kind)

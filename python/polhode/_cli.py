@@ -314,22 +314,12 @@ def _second_figure(scene: Scene, trajectory: Trajectory) -> Figure:
 def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
     """Show a bar on standard error, if that is a terminal and the run takes long enough to see it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    if not sys.stderr.isatty():
+    from polhode._extras import progress_bar
+
+    if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:
         yield None
         return
-    try:
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-    except ImportError:
-        yield None
-        return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        "{task.percentage:>3.0f} %",
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with shown as bar:
         task = bar.add_task(name, total=1.0)
 
         def report(number: int, fraction: float) -> None:

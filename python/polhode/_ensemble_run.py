@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import shutil
 import signal
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 
 from polhode import _memory
 from polhode._ensemble_file import EnsembleFile, bytes_of_file
+from polhode._extras import progress_bar
 from polhode._files import unfinished, write_atomically
 from polhode._gathered import Gathered
 from polhode._scene import Scene
@@ -123,24 +123,13 @@ def _uninterrupted() -> Iterator[None]:
 @contextlib.contextmanager
 def _progress(gathered: Gathered) -> Iterator[Callable[[int, float], Any] | None]:
     """Show on standard error, if a terminal, how many bodies are done, how fast, and the time left."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    try:
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-    except ImportError:
+    shown = progress_bar("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}")
+    if shown is None:
         yield None
         return
     assert gathered.scene.ensemble is not None
     number, begin = gathered.scene.ensemble.number, time.monotonic()
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.0f} of {task.total:.0f} bodies, {task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with shown as bar:
         task = bar.add_task(gathered.scene.path.name, total=number, rate="…")
 
         def report(_: int, fraction: float) -> None:

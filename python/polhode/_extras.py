@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import sys
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 
 def optional(module: str, extra: str, what: str) -> ModuleType:
@@ -13,3 +18,16 @@ def optional(module: str, extra: str, what: str) -> ModuleType:
     except ImportError as error:
         library = module.partition(".")[0]
         raise ImportError(f"{what} needs {library}: pip install 'polhode[{extra}]'") from error
+
+
+def progress_bar(done: str) -> Progress | None:
+    """Return a bar on standard error with this text of a task behind it; None without a terminal or rich."""
+    if not sys.stderr.isatty():
+        return None
+    try:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    except ImportError:
+        return None
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn(done), TimeRemainingColumn())
+    return Progress(*columns, console=Console(stderr=True), transient=True)

@@ -9,7 +9,7 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_QUIET := 1
 
-.PHONY: setup demo test lint bench docs clean
+.PHONY: setup demo test lint bench docs viewer clean
 
 setup: .venv/.built
 
@@ -25,6 +25,20 @@ setup: .venv/.built
 .venv/.built: .venv/.tools $(SOURCES)
 	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --quiet --extras scipy,io,plot,progress
 	@touch $@
+
+# The viewer: the core as WebAssembly, and one bundle that Python puts into pages and notebooks.
+VIEWER_SOURCES := $(shell find viewer/src -type f) viewer/package-lock.json viewer/vite.config.ts
+
+viewer: python/polhode/_viewer/viewer.js
+
+viewer/node_modules/.installed: viewer/package-lock.json
+	cd viewer && npm ci --silent
+	@touch $@
+
+python/polhode/_viewer/viewer.js: $(VIEWER_SOURCES) $(SOURCES) viewer/node_modules/.installed
+	rustup target add wasm32-unknown-unknown
+	cargo build --quiet --locked --profile viewer --target wasm32-unknown-unknown -p polhode-wasm
+	cd viewer && npm run --silent build
 
 demo: setup
 	@mkdir -p build/demo

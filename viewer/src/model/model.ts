@@ -1,0 +1,195 @@
+import { batch, computed, signal } from "@preact/signals";
+import { type About, type Core, type Files, type Motion, Problem, ROW, State } from "../core/core.ts";
+import type { CameraName, PageDocument, Shown, ViewState } from "../document.ts";
+import { unpacked } from "../packed.ts";
+
+/** How long a scene may be followed in the page before it gives up, in s. */
+const BUDGET = 4;
+
+/** What is drawn at first. */
+const SHOWN: Shown = {
+  body: true,
+  bodyFrame: true,
+  spaceFrame: true,
+  omega: true,
+  momentum: true,
+  axial: false,
+  poinsot: false,
+  polhode: true,
+  herpolhode: false,
+  trace: true,
+  gravity: true,
+  labels: true,
+};
+
+/**
+ * The state of the page. All that is shown follows from it: the stage and the panels read its signals, and change it
+ * through its methods alone.
+ */
+export class Model {
+  readonly page = signal<"motion" | "algebra">("motion");
+  /** The scene in TOML; null where a recorded motion is shown. */
+  readonly scene = signal<string | null>(null);
+  readonly motion = signal<Motion | null>(null);
+  /** What is wrong with the scene, in words with places; the last motion stays. */
+  readonly problem = signal<string | null>(null);
+  readonly time = signal(0);
+  readonly playing = signal(false);
+  /** Seconds of motion in a second of the clock. */
+  readonly speed = signal(1);
+  readonly camera = signal<CameraName>("oblique");
+  readonly theme = signal<ViewState["theme"]>("auto");
+  readonly shown = signal<Shown>(SHOWN);
+  /** The lines of the page of algebra. */
+  readonly lines = signal("");
+
+  readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
+  /** The row of the state at the time shown. */
+  readonly row = computed<Float64Array | null>(() => this.motion.value?.states([this.time.value]) ?? null);
+
+  private name = "scene.toml";
+  private files: Files = new Map();
+
+  constructor(readonly core: Core) {}
+
+  /** Shows a document. */
+  async show(document: PageDocument): Promise<void> {
+    if (document.format !== 1) {
+      throw new Problem(`this page reads documents of format 1, not ${String(document.format)}`);
+    }
+    const files = new Map<string, Uint8Array>();
+    for (const [name, content] of Object.entries(document.files ?? {})) {
+      files.set(name, await unpacked(content));
+    }
+    const rows = document.recorded && floats(await unpacked(document.recorded.rows));
+    batch(() => {
+      if (document.lines !== undefined) this.lines.value = document.lines;
+      this.page.value = document.page ?? "motion";
+      if (document.recorded && rows) {
+        this.record(document.recorded.about, rows, document.scene ?? null);
+      } else if (document.scene !== undefined) {
+        this.open(document.scene, { name: document.name ?? "scene.toml", files });
+      }
+      this.files = files;
+      this.name = document.name ?? this.name;
+      if (document.view) this.look(document.view);
+    });
+  }
+
+  /** Shows another scene, from its start. What is wrong with it is in `problem`, and then all else stays. */
+  open(scene: string, options?: { name: string; files: Files }): void {
+    if (this.follow(scene, options?.name ?? this.name, options?.files ?? this.files)) {
+      if (options) {
+        this.name = options.name;
+        this.files = options.files;
+      }
+      batch(() => {
+        this.time.value = 0;
+        this.speed.value = usualSpeed(this.motion.value);
+      });
+    }
+  }
+
+  /** Replaces tables of the scene by those of a TOML text; time goes on. */
+  change(tables: string): void {
+    if (this.scene.value === null) return;
+    try {
+      this.follow(this.core.merged(this.scene.value, tables), this.name, this.files);
+    } catch (error) {
+      this.problem.value = words(error);
+    }
+  }
+
+  /** Goes to a time, or as near to it as the motion is known. */
+  seek(time: number): void {
+    const about = this.about.value;
+    if (!about || Number.isNaN(time)) return;
+    const [first, last] = span(about);
+    this.time.value = Math.min(Math.max(time, first), last);
+  }
+
+  /** Lets `seconds` of the clock pass; a motion that is known up to its end starts again there. */
+  tick(seconds: number): void {
+    const about = this.about.value;
+    if (!this.playing.value || !about) return;
+    const time = this.time.value + seconds * this.speed.value;
+    const [first, last] = span(about);
+    this.time.value = time > last ? first : time < first ? last : time;
+  }
+
+  /** Takes over what is said of the view. */
+  look(view: Partial<ViewState>): void {
+    batch(() => {
+      if (view.shown) this.shown.value = { ...this.shown.value, ...view.shown };
+      if (view.speed !== undefined) this.speed.value = view.speed;
+      if (view.camera !== undefined) this.camera.value = view.camera;
+      if (view.theme !== undefined) this.theme.value = view.theme;
+      if (view.time !== undefined) this.seek(view.time);
+      if (view.playing !== undefined) this.playing.value = view.playing;
+    });
+  }
+
+  /** Draws a thing, or no longer. */
+  toggle(thing: keyof Shown): void {
+    this.shown.value = { ...this.shown.value, [thing]: !this.shown.value[thing] };
+  }
+
+  dispose(): void {
+    this.motion.value?.close();
+  }
+
+  private follow(scene: string, name: string, files: Files): boolean {
+    try {
+      this.become(this.core.open(scene, { name, files, budget: BUDGET }), scene);
+      return true;
+    } catch (error) {
+      this.problem.value = words(error);
+      return false;
+    }
+  }
+
+  private record(about: string, rows: Float64Array, scene: string | null): void {
+    const motion = this.core.recorded(about, rows);
+    this.become(motion, scene);
+    this.time.value = rows[State.time] ?? 0;
+    this.speed.value = usualSpeed(motion);
+  }
+
+  private become(motion: Motion, scene: string | null): void {
+    const old = this.motion.value;
+    batch(() => {
+      this.scene.value = scene;
+      this.motion.value = motion;
+      this.problem.value = null;
+      this.seek(this.time.value);
+    });
+    old?.close();
+  }
+}
+
+/** The times for which a motion is known. */
+export function span(about: About): [number, number] {
+  if (!about.exact) return [0, about.duration];
+  const horizon = about.horizon ?? Number.MAX_VALUE;
+  return [-horizon, horizon];
+}
+
+/** The speed at which the body turns about once in three seconds, of the form 1, 2, 5 times a power of ten. */
+function usualSpeed(motion: Motion | null): number {
+  const row = motion?.states([0]);
+  if (!motion || !row || row.length < ROW) return 1;
+  const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
+  const wanted = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const first = wanted / power;
+  return (first < 1.5 ? 1 : first < 3.5 ? 2 : first < 7.5 ? 5 : 10) * power;
+}
+
+function floats(bytes: Uint8Array): Float64Array {
+  return new Float64Array(bytes.buffer, bytes.byteOffset, Math.floor(bytes.byteLength / 8));
+}
+
+/** An error as people are told of it. */
+export function words(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

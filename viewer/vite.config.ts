@@ -1,0 +1,49 @@
+import { existsSync, readFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { defineConfig, type Plugin } from "vite";
+
+const root = fileURLToPath(new URL("..", import.meta.url));
+const compiled = `${root}target/wasm32-unknown-unknown/viewer/polhode_wasm.wasm`;
+
+/** The compiled core as a module: compressed, in base64, so that the bundle is one file. */
+function core(): Plugin {
+  const name = "virtual:polhode-core";
+  return {
+    name,
+    resolveId: (id) => (id === name ? `\0${name}` : undefined),
+    load(id) {
+      if (id !== `\0${name}`) return undefined;
+      if (!existsSync(compiled)) throw new Error(`${compiled} is missing: run make viewer`);
+      this.addWatchFile(compiled);
+      const packed = gzipSync(readFileSync(compiled), { level: 9 }).toString("base64");
+      return `export default ${JSON.stringify(packed)};`;
+    },
+  };
+}
+
+/** Binary files that presets name, in base64. */
+function binary(): Plugin {
+  return {
+    name: "base64",
+    enforce: "pre",
+    load(id) {
+      const [path, query] = id.split("?");
+      if (query !== "base64" || path === undefined) return undefined;
+      return `export default ${JSON.stringify(readFileSync(path).toString("base64"))};`;
+    },
+  };
+}
+
+export default defineConfig({
+  plugins: [core(), binary()],
+  oxc: { jsx: { runtime: "automatic", importSource: "preact" } },
+  server: { fs: { allow: [root] } },
+  build: {
+    outDir: `${root}python/polhode/_viewer`,
+    emptyOutDir: true,
+    target: "es2022",
+    lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "viewer.js" },
+    chunkSizeWarningLimit: 2000,
+  },
+});

@@ -36,7 +36,7 @@ impl Scene {
         let body = match self.gravity {
             None => body,
             Some(gravity) => {
-                let body = body.moved(Rotor::IDENTITY, -gravity.pivot);
+                let body = body.moved(Rotor::IDENTITY, self.shift());
                 let body = body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
                 laws.insert(0, gravity.law(&body));
                 body
@@ -81,7 +81,7 @@ impl Scene {
     }
 
     /// Whether the body is held at a fixed point.
-    pub(super) fn is_held(&self) -> bool {
+    pub fn is_held(&self) -> bool {
         self.gravity.is_some() || self.torques.iter().any(|law| matches!(law.torque, Torque::Heavy(_)))
     }
 

@@ -32,6 +32,12 @@ impl Scene {
         )
     }
 
+    /// Where the origin that the scene speaks of is in the axes of the built body: under gravity the pivot becomes
+    /// their origin.
+    pub fn shift(&self) -> Vector {
+        self.gravity.map_or(Vector::default(), |gravity| -gravity.pivot)
+    }
+
     /// The forces.
     pub fn pushes(&self) -> Vec<Force> {
         self.forces.iter().map(|push| push.force.clone()).collect()

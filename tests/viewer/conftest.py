@@ -2,12 +2,14 @@
 
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 
 from node_core import NodeCore
+from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
+
+BUNDLE = ROOT / "python/polhode/_viewer/viewer.js"
 
 
 @pytest.fixture(scope="package")
@@ -35,3 +37,47 @@ def follow(tmp_path_factory):
     """The scene of a name, followed by Python."""
     folder = tmp_path_factory.mktemp("scenes")
     return lambda name: followed(name, folder)
+
+
+@pytest.fixture(scope="package")
+def browser():
+    """Chromium, one for all tests. Its driver must end with this directory: it holds an event loop."""
+    if not BUNDLE.exists():
+        pytest.skip("the viewer was not built: make viewer")
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright was not found")
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("Chromium was not found")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=list(CHROMIUM), chromium_sandbox=False)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="package")
+def _pages(browser):
+    """What opens a page without a network, in a profile of its own; all are closed with the browser."""
+
+    def opened(**options):
+        context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
+        context.set_offline(True)
+        return ViewerPage(context.new_page())
+
+    return opened
+
+
+@pytest.fixture
+def new_page(_pages):
+    """Opens pages; whatever a test does there, no page asks the network for anything, nor complains."""
+    opened = []
+
+    def new(**options):
+        opened.append(_pages(**options))
+        return opened[-1]
+
+    yield new
+    for page in opened:
+        page.page.context.close()
+    for page in opened:
+        assert page.requests == []
+        assert page.complaints == []

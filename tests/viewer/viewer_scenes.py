@@ -45,7 +45,7 @@ TORQUES = {
     "formula in space": 'torque_space = "-0.05 L + 0.1 I e3"',
     "sum": 'viscous_damping = 0.1\nconstant_space = [0, 0.1, 0]\ntorque_body = "0.1 e1e2 sin(2*t)"',
 }
-METHODS = ("cg4", "dop853", "rk4", "midpoint", "splitting4")
+METHODS = ("strang", "yoshida4", "yoshida6", "kahan_li6", "kahan_li8", "rkn6", "rk4", "midpoint", "dmv")
 
 SCENES = {
     "asymmetric": TUMBLING + RUN,
@@ -65,6 +65,10 @@ SCENES = {
     "heavy asymmetric": HELD.replace('["2 kg m^2", 2, 1]', "[2, 2.5, 1]") + RUN,
 } | {
     name: TUMBLING + f"[torque]\n{law}\n" + RUN for name, law in TORQUES.items()
+}
+BY_METHOD = {
+    f"by {name}": TUMBLING + f'[torque]\n{TORQUES['torsion spring']}\n{RUN}[method]\nname = "{name}"\nstep = 0.01\n'
+    for name in METHODS
 }
 
 
@@ -124,6 +128,6 @@ def followed(name, folder):
     path = FILES.get(name) or PRESETS.get(name)
     if path is None:
         path = folder / f"{name}.toml"
-        path.write_text(SCENES[name])
+        path.write_text((SCENES | BY_METHOD)[name])
     scene = ph.Scene.read(path).alone()
     return Followed(name, path, path.read_text(), scene, scene.run())

@@ -1,0 +1,86 @@
+"""The viewer's page in a browser that has no network, and what it shows."""
+
+from pathlib import Path
+
+import numpy as np
+
+# Chromium draws WebGL in software where there is no graphics card.
+CHROMIUM = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
+VIEWER = "document.querySelector('polhode-viewer')"
+
+
+class ViewerPage:
+    """A page with one viewer. It counts what it asked of the network and what it complained of: both must stay empty.
+
+    Attributes
+    ----------
+    page, viewer
+        Playwright's page, and the locator of the element.
+    requests
+        Addresses that were asked for, but for files, data and blobs.
+    complaints
+        Errors and warnings of the page.
+    """
+
+    def __init__(self, page):
+        self.page, self.viewer = page, page.locator("polhode-viewer")
+        self.requests, self.complaints = [], []
+        page.on("request", self._requested)
+        page.on("console", self._told)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+
+    def _requested(self, request):
+        if not request.url.startswith(("file:", "data:", "blob:")):
+            self.requests.append(request.url)
+
+    def _told(self, message):
+        # What the driver of the graphics card tells of its speed is not the page's.
+        if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
+            self.complaints.append(message.text)
+
+    def open(self, path):
+        """Open a file and wait until its motion is there, or what is wrong with it."""
+        self.page.goto(Path(path).as_uri())
+        self.settled()
+
+    def settled(self):
+        """Wait until the core is there and the document was read."""
+        self.page.wait_for_function(f"['ready', 'problem'].includes({VIEWER}?.dataset.state)")
+
+    def data(self, name):
+        """Return what the element says of a quantity, `time` or `omega-body`, as numbers."""
+        numbers = np.array(self.viewer.get_attribute(f"data-{name}").split(), dtype=float)
+        return numbers.item() if numbers.size == 1 else numbers
+
+    def seek(self, time):
+        """Go to a time, with all its digits."""
+        self.page.evaluate(f"async time => (await {VIEWER}.ready).seek(time)", time)
+
+    def state(self):
+        """Return all quantities of the time shown, by the names of `node_core.PARTS`."""
+        names = ("time", "rotor", "omega_body", "omega_space", "momentum_space", "energy")
+        return {name: self.data(name.replace("_", "-")) for name in names}
+
+    def show(self, document):
+        """Give the element another document, and wait for its motion, or for what is wrong with it."""
+        self.page.evaluate(
+            f"""async document => {{
+                const model = await {VIEWER}.ready;
+                const before = model.motion.value;
+                model.problem.value = null;
+                {VIEWER}.document = document;
+                while (model.motion.value === before && model.problem.value === null) {{
+                    await new Promise(requestAnimationFrame);
+                }}
+            }}""",
+            document,
+        )
+
+    def scene(self):
+        """Return the text of the scene that is shown."""
+        return self.page.evaluate(f"async () => (await {VIEWER}.ready).scene.value")
+
+    def drawn(self):
+        """Wait until what the page shows is on the screen: for two frames."""
+        self.page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

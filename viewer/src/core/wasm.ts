@@ -26,7 +26,8 @@ const BUDGET = 10;
 /** Loads the core that is in this bundle. */
 export async function loadCore(): Promise<Core> {
   const imports = { page: { now: () => performance.now() / 1000 } };
-  const { instance } = await WebAssembly.instantiate(await unpacked(packed), imports);
+  const module = await WebAssembly.compile(await unpacked(packed));
+  const instance = await WebAssembly.instantiate(module, imports);
   return new Compiled(instance.exports as unknown as Exports);
 }
 

@@ -130,8 +130,8 @@ def simulate(
     problem = Problem(
         bodies_of(body)[()],
         state,
-        _torque(torque),
-        None if force is None else _force(force),
+        as_torque(torque),
+        None if force is None else as_force(force),
         given.times,
         given.method,
         given.step,
@@ -215,7 +215,7 @@ def _given(
     step: float | None,
 ) -> Ensemble:
     """Return what is to be simulated, checked."""
-    torque = _torque(torque)
+    torque = as_torque(torque)
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     check_state(state)
@@ -258,7 +258,7 @@ def _threads(threads: Any) -> int | None:
     return None if threads is None else min(as_count(threads, "threads"), 1024)
 
 
-def _torque(torque: Any) -> Torque | None:
+def as_torque(torque: Any) -> Torque | None:
     if torque is None or isinstance(torque, Torque):
         return torque
     # A maker of laws, given without its arguments, is callable too.
@@ -289,7 +289,7 @@ def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None
         return [], None
     if Inertia in {*map(type, bodies.flat)}:
         raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
-    law = _force(force)
+    law = as_force(force)
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
     if not thrusts:
         return list(law.laws), None
@@ -299,7 +299,7 @@ def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None
     return list(law.laws), sum(torques[1:], torques[0])
 
 
-def _force(force: Any) -> Force:
+def as_force(force: Any) -> Force:
     if isinstance(force, Force):
         return force
     # A maker of forces, given without its arguments, is callable too.

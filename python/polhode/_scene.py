@@ -219,6 +219,8 @@ class Scene:
             progress=progress,
         )
         trajectory.attributes.update({"title": self.name, "scene": self.text})
+        if not trajectory.shape:
+            object.__setattr__(trajectory, "_origin", self)
         return trajectory
 
 

@@ -56,7 +56,7 @@ def with_links_inside(app, docname, source):
 
 
 def write_viewer(app, exception):
-    """Put the viewer beside the pages. From disk a page may not load a module by its address, but may by its text."""
+    """Put the viewer beside the pages, as text: from disk a page may load a module by its text alone."""
     if exception is None and viewer_is_there():
         text = json.dumps(bundle_path().read_text())
         (Path(app.outdir) / "_static/polhode-viewer.js").write_text(

@@ -24,7 +24,7 @@ PARTS = {
 }
 
 
-class Problem(Exception):
+class Problem(Exception):  # noqa: N818, as in core.ts
     """What the core told of a scene or of a question."""
 
 
@@ -62,7 +62,10 @@ class NodeCore:
 def states(rows):
     """Return numbers of states as arrays by name."""
     rows = np.array(rows, dtype=float).reshape(-1, ROW)
-    return {name: rows[:, part].squeeze(-1) if name in ("time", "energy") else rows[:, part] for name, part in PARTS.items()}
+    return {
+        name: rows[:, part].squeeze(-1) if name in ("time", "energy") else rows[:, part]
+        for name, part in PARTS.items()
+    }
 
 
 def packed(path):

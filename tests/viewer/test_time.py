@@ -23,7 +23,9 @@ def opened(new_page, follow, tmp_path):
 def test_a_page_begins_at_the_start_and_stands_still(opened, follow):
     page = opened("t-handle")
     assert page.data("time") == 0
-    np.testing.assert_array_equal(page.data("omega-body"), follow("t-handle").scene.state.omega_body.components)
+    np.testing.assert_array_equal(
+        page.data("omega-body"), follow("t-handle").scene.state.omega_body.components
+    )
     assert page.page.get_by_role("button", name="Play").is_visible()
 
 

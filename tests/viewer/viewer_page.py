@@ -11,7 +11,7 @@ VIEWER = "document.querySelector('polhode-viewer')"
 
 
 class ViewerPage:
-    """A page with one viewer. It counts what it asked of the network and what it complained of: both must stay empty.
+    """A page with one viewer. What it asked of the network and what it complained of must stay empty.
 
     Attributes
     ----------
@@ -83,4 +83,6 @@ class ViewerPage:
 
     def drawn(self):
         """Wait until what the page shows is on the screen: for two frames."""
-        self.page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        self.page.evaluate(
+            "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        )

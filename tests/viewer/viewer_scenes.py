@@ -49,13 +49,19 @@ METHODS = ("strang", "yoshida4", "yoshida6", "kahan_li6", "kahan_li8", "rkn6", "
 
 SCENES = {
     "asymmetric": TUMBLING + RUN,
-    "about the middle axis": TUMBLING.replace("[0.3, 1, 0.2]", "[1e-8, 1, 1e-8]") + RUN.replace("5 s", "90 s"),
+    "about the middle axis": TUMBLING.replace("[0.3, 1, 0.2]", "[1e-8, 1, 1e-8]")
+    + RUN.replace("5 s", "90 s"),
     "separatrix": TUMBLING.replace("[0.3, 1, 0.2]", "[1.7320508075688772, 0, 1]") + RUN,
     "symmetric": TUMBLING.replace("1, 2, 3", "2, 2, 3") + RUN,
     "spherical": TUMBLING.replace("1, 2, 3", "2, 2, 2") + RUN,
     "at rest": TUMBLING.replace("[0.3, 1, 0.2]", "[0, 0, 0]") + RUN,
-    "full inertia": TUMBLING.replace("moments = [1, 2, 3]", "inertia = [[2, 0.1, 0], [0.1, 3, 0.2], [0, 0.2, 4]]") + RUN,
-    "spin in space": TUMBLING.replace(" }", ', frame = "space" }\nattitude = { plane = "e1e2 + e2e3", angle = "1 rad" }')
+    "full inertia": TUMBLING.replace(
+        "moments = [1, 2, 3]", "inertia = [[2, 0.1, 0], [0.1, 3, 0.2], [0, 0.2, 4]]"
+    )
+    + RUN,
+    "spin in space": TUMBLING.replace(
+        " }", ', frame = "space" }\nattitude = { plane = "e1e2 + e2e3", angle = "1 rad" }'
+    )
     + RUN,
     "thrown": TUMBLING.replace("[body]", '[body]\nmass = "2 kg"')
     + 'position = [0, 0, 1]\nvelocity = [1, 0, 2]\n[force]\nconstant = "-19.62 e3"\n'
@@ -63,11 +69,10 @@ SCENES = {
     "lagrange": HELD + RUN,
     "sleeping": HELD.replace("60 deg", "0 deg") + RUN,
     "heavy asymmetric": HELD.replace('["2 kg m^2", 2, 1]', "[2, 2.5, 1]") + RUN,
-} | {
-    name: TUMBLING + f"[torque]\n{law}\n" + RUN for name, law in TORQUES.items()
-}
+} | {name: TUMBLING + f"[torque]\n{law}\n" + RUN for name, law in TORQUES.items()}
+SPRING = TORQUES["torsion spring"]
 BY_METHOD = {
-    f"by {name}": TUMBLING + f'[torque]\n{TORQUES['torsion spring']}\n{RUN}[method]\nname = "{name}"\nstep = 0.01\n'
+    f"by {name}": TUMBLING + f'[torque]\n{SPRING}\n{RUN}[method]\nname = "{name}"\nstep = 0.01\n'
     for name in METHODS
 }
 
@@ -94,7 +99,10 @@ class Followed:
         motion = self.motion
         states = quantities(motion.rotor[picked], motion.omega_body[picked], motion.momentum_space[picked])
         states |= {"energy": motion.energy[picked]}
-        states |= {"position": motion.position[picked].components, "velocity": motion.velocity[picked].components}
+        states |= {
+            "position": motion.position[picked].components,
+            "velocity": motion.velocity[picked].components,
+        }
         return motion.time[picked], states
 
     def between(self, count=5):

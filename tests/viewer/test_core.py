@@ -109,7 +109,7 @@ def test_mistakes_are_told_as_python_tells_them(written, instead, core, tmp_path
 def test_a_motion_that_takes_too_long_is_given_up(core):
     slow = (
         TUMBLING
-        + '[torque]\nquadratic_damping = 0.1\n[run]\nduration = "100 d"\n[method]\nname = "rk4"\nstep = "1 ms"'
+        + '[torque]\nquadratic_damping = 0.1\n[run]\nduration = "9 d"\n[method]\nname = "rk4"\nstep = "1 ms"'
     )
     with pytest.raises(Problem, match="takes too long"):
         core.motion(slow, [], budget=0.2)

@@ -7,6 +7,7 @@ import subprocess
 import pytest
 
 from node_core import NodeCore
+from polhode import _document, _html
 from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
 
@@ -94,3 +95,18 @@ def new_page(_pages):
     for page in opened:
         assert page.requests == []
         assert page.complaints == []
+
+
+@pytest.fixture
+def opened(new_page, follow, tmp_path):
+    """Opens the page of a document, or of the scene of a name, from disk."""
+
+    def opened(given, **options):
+        document = given if isinstance(given, dict) else _document.of_scene(follow(given).scene)
+        page = new_page(**options)
+        path = tmp_path / f"{id(page)}.html"
+        path.write_text(_html.page(document))
+        page.open(path)
+        return page
+
+    return opened

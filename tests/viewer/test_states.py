@@ -1,26 +1,12 @@
 """What a page tells of a motion is what Python computes."""
 
-import numpy as np
 import pytest
 
 from command_line import polhode
 from polhode import _document, _html
 from viewer_scenes import FILES, PRESETS, SCENES
 
-SHOWN = ("rotor", "omega_body", "omega_space", "momentum_space", "energy")
 EVERY = [*FILES, *PRESETS, *SCENES]
-
-
-def compare(page, followed):
-    """Seek a page to output times and hold what it shows to 1e-12 of the size of each quantity."""
-    times, expected = followed.outputs()
-    for k, time in enumerate(times):
-        page.seek(time)
-        shown = page.state()
-        assert shown["time"] == time
-        for name in SHOWN:
-            tolerance = 1e-12 * followed.scale(name)
-            np.testing.assert_allclose(shown[name], expected[name][k], rtol=0, atol=tolerance, err_msg=name)
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +26,7 @@ def test_scenes_are_followed_as_by_python(name, shared, follow):
     followed = follow(name)
     shared.show(_document.of_scene(followed.scene))
     assert shared.viewer.get_attribute("data-method") == followed.motion.certificate.method
-    compare(shared, followed)
+    shared.compare(followed)
 
 
 @pytest.mark.parametrize("name", ["t-handle", "nutating-top", "gravity-gradient", "dual-spin", "detumbling"])
@@ -51,4 +37,4 @@ def test_pages_that_run_writes(name, new_page, follow, tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     page = new_page()
     page.open(path)
-    compare(page, followed)
+    page.compare(followed)

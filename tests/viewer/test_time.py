@@ -3,22 +3,6 @@
 import numpy as np
 import pytest
 
-from polhode import _document, _html
-
-
-@pytest.fixture
-def opened(new_page, follow, tmp_path):
-    """Opens a page with the scene of a name."""
-
-    def opened(name, **options):
-        path = tmp_path / f"{name}.html"
-        path.write_text(_html.page(_document.of_scene(follow(name).scene)))
-        page = new_page(**options)
-        page.open(path)
-        return page
-
-    return opened
-
 
 def test_a_page_begins_at_the_start_and_stands_still(opened, follow):
     page = opened("t-handle")

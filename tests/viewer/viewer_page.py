@@ -7,6 +7,9 @@ import numpy as np
 # Chromium draws WebGL in software where there is no graphics card.
 CHROMIUM = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
+# What can be read off the element.
+SHOWN = ("rotor", "omega_body", "omega_space", "momentum_space", "energy")
+
 VIEWER = "document.querySelector('polhode-viewer')"
 
 
@@ -20,12 +23,12 @@ class ViewerPage:
     requests
         Addresses that were asked for, but for files, data and blobs.
     complaints
-        Errors and warnings of the page.
+        Errors and warnings of the page, but for those that begin with one of `allowed`.
     """
 
     def __init__(self, page):
         self.page, self.viewer = page, page.locator("polhode-viewer")
-        self.requests, self.complaints = [], []
+        self.requests, self.complaints, self.allowed = [], [], ()
         page.on("request", self._requested)
         page.on("console", self._told)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -36,7 +39,8 @@ class ViewerPage:
 
     def _told(self, message):
         # What the driver of the graphics card tells of its speed is not the page's.
-        if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
+        ours = "GL Driver Message" not in message.text and not message.text.startswith(tuple(self.allowed))
+        if message.type in ("error", "warning") and ours:
             self.complaints.append(message.text)
 
     def open(self, path):
@@ -59,8 +63,18 @@ class ViewerPage:
 
     def state(self):
         """Return all quantities of the time shown, by the names of `node_core.PARTS`."""
-        names = ("time", "rotor", "omega_body", "omega_space", "momentum_space", "energy")
-        return {name: self.data(name.replace("_", "-")) for name in names}
+        return {name: self.data(name.replace("_", "-")) for name in ("time", *SHOWN)}
+
+    def compare(self, followed, tolerance=1e-12):
+        """Seek output times of a motion, and hold what is shown to a part of the size of each quantity."""
+        times, expected = followed.outputs()
+        for k, time in enumerate(times):
+            self.seek(time)
+            shown = self.state()
+            assert shown["time"] == time
+            for name in SHOWN:
+                atol = tolerance * followed.scale(name)
+                np.testing.assert_allclose(shown[name], expected[name][k], rtol=0, atol=atol, err_msg=name)
 
     def show(self, document):
         """Give the element another document, and wait for its motion, or for what is wrong with it."""

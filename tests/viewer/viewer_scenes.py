@@ -81,7 +81,6 @@ BY_METHOD = {
 class Followed:
     """A scene with the files that it needs, and its motion as Python has it."""
 
-    name: str
     path: Path
     text: str
     scene: ph.Scene
@@ -134,8 +133,16 @@ def quantities(rotor, omega_body, momentum_space=None):
 def followed(name, folder):
     """Return an example, a preset or one of `SCENES` by name, followed once."""
     path = FILES.get(name) or PRESETS.get(name)
-    if path is None:
-        path = folder / f"{name}.toml"
-        path.write_text((SCENES | BY_METHOD)[name])
+    return followed_at(path) if path else followed_text((SCENES | BY_METHOD)[name], folder / f"{name}.toml")
+
+
+def followed_at(path):
+    """Return the scene of a file, followed."""
     scene = ph.Scene.read(path).alone()
-    return Followed(name, path, path.read_text(), scene, scene.run())
+    return Followed(path, path.read_text(), scene, scene.run())
+
+
+def followed_text(text, path):
+    """Return the scene of a text, which is written to a path, followed."""
+    path.write_text(text)
+    return followed_at(path)

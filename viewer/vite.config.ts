@@ -45,6 +45,8 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "viewer.js" },
+    // A library is left readable unless this is said.
+    rolldownOptions: { output: { minify: true } },
     chunkSizeWarningLimit: 2000,
   },
 });

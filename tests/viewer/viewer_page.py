@@ -79,11 +79,11 @@ class ViewerPage:
     def show(self, document):
         """Give the element another document, and wait for its motion, or for what is wrong with it."""
         self.page.evaluate(
-            f"""async document => {{
+            f"""async given => {{
                 const model = await {VIEWER}.ready;
                 const before = model.motion.value;
                 model.problem.value = null;
-                {VIEWER}.document = document;
+                {VIEWER}.document = given;
                 while (model.motion.value === before && model.problem.value === null) {{
                     await new Promise(requestAnimationFrame);
                 }}

@@ -180,7 +180,7 @@ def _view(options: argparse.Namespace) -> int:
     from polhode import _view
 
     try:
-        return _view.run(options)
+        return _view.run(options, _progress)
     except _view.UnreadableError as error:
         return _complain(str(error), BAD_INPUT)
 
@@ -221,7 +221,7 @@ def _run(options: argparse.Namespace) -> int:
         print("Written")
         print("\n".join(f"  {path}" for path in written))
     else:
-        print("Nothing was written; add -o FILE.nc for the data and the figures, --html FILE.html for a page.")
+        print("Nothing was written; add -o FILE.nc for data and figures, --html FILE.html for a page.")
     if result["run"]["drift_within_bound"] is None:
         return _complain("polhode: error: no body could be followed to the end", FAILED)
     return OK if result["run"]["drift_within_bound"] else DRIFTED

@@ -131,7 +131,7 @@ def of_trajectory(trajectory: Trajectory, path: Path = Path("motion.nc")) -> Doc
     shown, origin = _live(trajectory, path)
     if "scene" in shown and trajectory.certificate.method == "exact":
         return shown
-    return {**shown, "recorded": recorded(trajectory, origin)}
+    return {**shown, "recorded": recorded(trajectory, origin, "files" in shown)}
 
 
 def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem | None]:

@@ -77,8 +77,8 @@ def served_page(title: str) -> str:
 def _inline(script: str) -> str:
     """Return a script that may stand in a page: nothing in it ends it early.
 
-    In a text, the only place where ``</script`` can stand in a script, ``\\x3C`` is ``<``. After ``<!--`` a
-    page reads scripts by other rules.
+    ``</script`` stands in texts alone, where < can be written by its number. After ``<!--`` a page reads
+    scripts by other rules.
     """
     if "<!--" in script:
         raise ValueError("the viewer's bundle has the mark `<!--`, with which it cannot stand in a page")

@@ -21,7 +21,6 @@ from polhode._packed import packed
 from polhode._scene import Scene
 from polhode._scene_text import Problem
 from polhode._trajectory import Trajectory, _Points
-from polhode.torque import Torque
 
 # Between rows a body turns by less than this, in rad, as long as there are no more rows than a page bears.
 _TURN = 0.2
@@ -41,7 +40,7 @@ _SOLIDS: dict[str, tuple[str, ...]] = {
 }
 
 
-def recorded(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, str]:
+def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool) -> dict[str, str]:
     """Return what a page needs to show the motion of one body without following it again.
 
     At most 20,000 rows, evenly chosen among the output times. Where the motion is known between these, and
@@ -53,6 +52,8 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str
         The motion.
     origin
         What was run, or asked for; None where that is not known.
+    mesh
+        Whether the document brings the mesh of its scene.
 
     Raises
     ------
@@ -61,6 +62,7 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str
     """
     points = _points(trajectory)
     about = _about(trajectory, origin, points)
+    about["body"]["mesh"] = mesh
     rows = _rows(points).astype("<f8").tobytes()
     return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows)}
 
@@ -77,7 +79,9 @@ def _points(trajectory: Trajectory) -> _Points:
         return _Points.of(trajectory._motion.at(np.linspace(0.0, last, max(wanted, 2))))
     if times[0] != 0:
         raise ValueError(f"the viewer shows motions from time 0 on, and this one begins at {times[0]:g} s")
-    kept = np.linspace(0, len(times) - 1, wanted).round().astype(int)
+    # Output times may stand twice.
+    rising = np.flatnonzero(np.diff(times, prepend=-1.0) > 0)
+    kept = rising[np.linspace(0, len(rising) - 1, min(wanted, len(rising))).round().astype(int)]
     return _Points(
         times[kept],
         *(getattr(trajectory, name)[kept] for name in ("rotor", "omega_body", "momentum_space", "energy")),
@@ -114,7 +118,6 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             **body,
             "moments": inertia.principal_moments.tolist(),
             "frame": inertia.principal_frame.components.tolist(),
-            "mesh": False,
         },
         "held": held,
         "heavy": weight(torque).tolist() if held else None,
@@ -180,13 +183,25 @@ def _own_center(solid: dict[str, Any] | None) -> Array:
 
 
 def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
-    """Return each law by its name, and its formula or its arguments."""
+    """Return each law by the name of its field in a scene, and its formula or its numbers."""
     laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
     formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
-    return [
-        {"name": law.name, "text": text or repr(Torque((law,)))[len(law.name) + 1 : -1]}
-        for law, text in zip(laws, formulas, strict=True)
-    ]
+    told = []
+    for law, formula in zip(laws, formulas, strict=True):
+        arguments = law.arguments
+        if law.name == "formula":
+            told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
+        elif law.name in ("tabulated", "function"):
+            told.append({"name": law.name, "text": ""})
+        else:
+            told.append({"name": law.name, "text": ", ".join(map(_number, arguments))})
+    return told
+
+
+def _number(argument: Any) -> str:
+    if isinstance(argument, tuple):
+        return f"({', '.join(map(_number, argument))})"
+    return repr(argument).removesuffix(".0")
 
 
 def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:

@@ -272,7 +272,7 @@ class Trajectory:
 
         Of one body; a ValueError for a batch.
         """
-        from polhode._widget import view
+        from polhode._notebook import view
 
         return view(self)
 

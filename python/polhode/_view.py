@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import argparse
 import json
-import signal
 import sys
 import threading
 import webbrowser
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from polhode._document import Document, of_file, of_scene, of_text, of_trajectory
 from polhode._files import check_target
 from polhode._html import bundle_path, page, served_page
-from polhode._native import SceneError
-
-if TYPE_CHECKING:
-    from polhode._scene import Scene
-    from polhode._trajectory import Trajectory
+from polhode._scene import Scene
+from polhode._trajectory import Trajectory
 
 _HOST = "127.0.0.1"
 
@@ -62,27 +60,26 @@ def motion_page(trajectory: Trajectory) -> bytes:
 
 # --- view
 
+# Shows how far a run is: takes the name of a file, gives what to call with the pass and the fraction done.
+Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | None]]
 
-def run(options: argparse.Namespace) -> int:
+
+def run(options: argparse.Namespace, bar: Bar) -> int:
     """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt.
 
     Raises
     ------
     UnreadableError, SceneError
         If the file cannot be shown.
-    OSError
-        If nothing can be served there, or the viewer was not built.
+    OSError, ValueError
+        If nothing can be served there, or the viewer was not built; if the motion cannot be followed.
     """
     path = Path(options.file)
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     script = bundle_path().read_bytes()
-    try:
-        of_file(path)
-    except (OSError, ValueError) as error:
-        if isinstance(error, SceneError):
-            raise
-        raise UnreadableError(f"polhode: error: {error}") from error
-    with Server(path, script, options.port) as server:
+    source = Source(path)
+    with bar(path.name) as report:
+        source.document(report)
+    with Server(source, script, options.port) as server:
         print(f"{path} is shown at {server.url}", "Ctrl-C ends it.", sep="\n", flush=True)
         if options.browser:
             # A browser that is a program of the terminal would keep us from serving it.
@@ -94,13 +91,51 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+class Source:
+    """A file to be shown, as it is whenever it is asked for."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lock = threading.Lock()
+        self._scene: Document = {}
+        self._document: Document = {}
+
+    def document(self, progress: Callable[[int, float], object] | None = None) -> Document:
+        """Return the document of the file; what a scene says is followed when it is new.
+
+        An UnreadableError or a SceneError says what is wrong with the file; a ValueError, why its motion
+        cannot be followed.
+        """
+        if self.path.suffix.lower() == ".nc":
+            try:
+                return of_file(self.path)
+            except (OSError, ValueError) as error:
+                raise UnreadableError(f"polhode: error: {error}") from error
+        scene = Scene.read(self.path)
+        with self._lock:
+            if (shown := of_scene(scene)) != self._scene:
+                followed = scene.ensemble is None
+                self._document = of_trajectory(scene.run(progress)) if followed else shown
+                self._scene = shown
+            return self._document
+
+    def shown(self) -> Document:
+        """Return the document, also of a scene that is wrong or cannot be followed: the page tells why."""
+        try:
+            return self.document()
+        except UnreadableError:
+            raise
+        except ValueError:
+            return of_text(self.path.read_text(encoding="utf-8", errors="replace"), self.path)
+
+
 class Server(ThreadingHTTPServer):
     """Serves one file to browsers on this machine, read again whenever the page is loaded."""
 
     daemon_threads = True
 
-    def __init__(self, path: Path, script: bytes, port: int = 0) -> None:
-        self.path, self.script = path, script
+    def __init__(self, source: Source, script: bytes, port: int = 0) -> None:
+        self.source, self.script = source, script
         try:
             super().__init__((_HOST, port), _Handler)
         except OSError as error:
@@ -136,13 +171,6 @@ class Server(ThreadingHTTPServer):
         if not isinstance(error, ConnectionError):
             print(f"polhode: error: {type(error).__name__}: {error}", file=sys.stderr)
 
-    def document(self) -> Document:
-        """Return the document of the file as it is now; of a scene that is wrong too, for the page tells why."""
-        try:
-            return of_file(self.path)
-        except SceneError:
-            return of_text(self.path.read_text(encoding="utf-8", errors="replace"), self.path)
-
 
 class _Handler(BaseHTTPRequestHandler):
     server: Server
@@ -162,7 +190,7 @@ class _Handler(BaseHTTPRequestHandler):
             return
         match self.path:
             case "/":
-                self._send(HTTPStatus.OK, "text/html", served_page(self.server.path.name).encode())
+                self._send(HTTPStatus.OK, "text/html", served_page(self.server.source.path.name).encode())
             case "/viewer.js":
                 self._send(HTTPStatus.OK, "text/javascript", self.server.script)
             case "/document.json":
@@ -172,8 +200,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _document(self) -> None:
         try:
-            text = json.dumps(self.server.document(), allow_nan=False)
-        except (OSError, ValueError) as error:
+            text = json.dumps(self.server.source.shown(), allow_nan=False)
+        except (OSError, UnreadableError) as error:
             self._send(HTTPStatus.NOT_FOUND, "text/plain", f"{error}\n".encode())
         else:
             self._send(HTTPStatus.OK, "application/json", text.encode())

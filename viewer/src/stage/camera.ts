@@ -6,7 +6,7 @@ import { AXES } from "./rotor.ts";
 /** Degrees from bottom to top: a long lens, under which a figure looks as in a book. */
 const LENS = 24;
 /** The radius of a ball that is wholly in view, in drawn units. */
-const FIT = 1.95;
+const FIT = 1.82;
 /** How near and far one may go, in units of the distance at which that ball fits. */
 const NEAREST = 0.2;
 const FARTHEST = 4;

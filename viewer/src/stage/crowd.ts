@@ -8,7 +8,7 @@ import { quaternion } from "./rotor.ts";
 /** Bodies at most. */
 const MOST = 1000;
 /** The length of a small body. */
-const SIZE = 0.1;
+const SIZE = 0.06;
 
 /**
  * The bodies of an ensemble: each as a small copy with its own attitude, on the sphere around the nominal body in the
@@ -16,7 +16,7 @@ const SIZE = 0.1;
  */
 export class Crowd implements Part {
   readonly inSpace = new Group();
-  private readonly material = new MeshLambertMaterial({ emissiveIntensity: 0.35 });
+  private readonly material = new MeshLambertMaterial({ emissiveIntensity: 0.15 });
   private bodies: InstancedMesh<BoxGeometry, MeshLambertMaterial> | null = null;
   private motion: Motion | null = null;
   private axis = new Vector3();

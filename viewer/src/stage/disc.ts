@@ -32,14 +32,14 @@ export const OMEGA: DiscStyle = {
   bivector: "omega",
   symbol: "Ω",
   unit: "rad/s",
-  radius: 1.12,
+  radius: 1.1,
   label: [1, -0.45],
 };
 export const MOMENTUM: DiscStyle = {
   bivector: "momentum",
   symbol: "L",
   unit: "kg m²/s",
-  radius: 1.42,
+  radius: 1.32,
   label: [-1, -0.45],
 };
 
@@ -73,10 +73,10 @@ export class Disc implements Part {
   ) {
     this.fill = new Mesh(
       new CircleGeometry(1, 96),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.13, side: DoubleSide, depthWrite: false }),
+      new MeshBasicMaterial({ transparent: true, opacity: 0.09, side: DoubleSide, depthWrite: false }),
     );
     this.fill.renderOrder = 3;
-    this.rim = new Ribbon(screen, { width: 2, behind: 0.25 });
+    this.rim = new Ribbon(screen, { width: 2, behind: 0.18 });
     this.rim.set(circle(96), { closed: true });
     for (let k = 0; k < HEADS; k++) this.heads.add(new Mesh(this.head, this.solid));
     this.arrow = new Arrow(screen, { width: 2.6, behind: 0.35 });

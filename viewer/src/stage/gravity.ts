@@ -11,6 +11,7 @@ import { AXES } from "./rotor.ts";
 
 /** Height of the stand under the pivot. */
 export const STAND = 0.42;
+const WEIGHT = 0.75;
 const CIRCLES = 5;
 
 /** What belongs to a body that is held: the pivot, the weight, and the sphere on which its axis draws the locus. */
@@ -35,7 +36,7 @@ export class Gravity implements Part {
       material,
     );
     this.weight = new Arrow(screen, { width: 2.6, behind: 0.4 });
-    this.weight.point(new Vector3(0, 0, -0.55));
+    this.weight.point(new Vector3(0, 0, -WEIGHT));
     this.sphere = sphereOf(screen);
     this.label = labels.add("mg", { rank: 4 });
     this.inSpace.add(this.stand, this.weight.object, ...this.sphere.map(({ object }) => object));
@@ -68,7 +69,7 @@ export class Gravity implements Part {
     this.label.hide(!heavy);
     if (!heavy) return;
     this.weight.object.position.copy(figure.centre).applyQuaternion(attitude);
-    this.label.at.copy(this.weight.object.position).addScaledVector(AXES[2], -0.55);
+    this.label.at.copy(this.weight.object.position).addScaledVector(AXES[2], -WEIGHT);
   }
 
   dispose(): void {

@@ -1,9 +1,12 @@
 import { type Camera, type Matrix4, Vector3 } from "three";
 
-/** Sizes in CSS pixels. Widths are reckoned, for asking the page about them in each frame would lay it out anew. */
+/** CSS pixels. */
 const HEIGHT = 19;
-const LETTER = 9.5;
-const AWAY = 13;
+const GAP = 5;
+const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
+const SIZES = { letter: 17, small: 13 };
+/** Measures texts; to ask the page for their width in each frame would lay it out anew. */
+const ruler = document.createElement("canvas").getContext("2d")!;
 /** Where a label goes that would lie on another: so many heights up or down. */
 const PLACES = [0, -1, 1, -2, 2];
 
@@ -13,7 +16,8 @@ export class Label {
   readonly at = new Vector3();
   readonly element = document.createElement("div");
   private readonly value = document.createElement("span");
-  private letters = 1;
+  private readonly symbolWidth: number;
+  width: number;
 
   constructor(
     symbol: string,
@@ -23,15 +27,17 @@ export class Label {
     const letter = document.createElement("i");
     letter.textContent = symbol;
     this.element.append(letter);
-    this.letters = symbol.length;
+    this.symbolWidth =
+      measured(symbol, `italic ${SIZES.letter}px`) +
+      (style.index === undefined ? 0 : measured(String(style.index), `${SIZES.small}px`));
+    this.width = this.symbolWidth;
     if (style.index !== undefined) {
       const index = document.createElement("sub");
       index.textContent = String(style.index);
-      index.style.cssText = "font-size: 0.72em; line-height: 0";
+      index.style.cssText = `font-size: ${SIZES.small}px; line-height: 0`;
       this.element.append(index);
-      this.letters += 0.7;
     }
-    this.value.style.cssText = "font-size: 0.82em; margin-left: 0.35em; font-variant-numeric: tabular-nums";
+    this.value.style.cssText = `font-size: ${SIZES.small}px; margin-left: ${GAP}px; font-variant-numeric: tabular-nums`;
     this.element.append(this.value);
     this.element.style.cssText =
       "position: absolute; left: 0; top: 0; white-space: nowrap; will-change: transform";
@@ -41,12 +47,10 @@ export class Label {
     return this.element.style.display === "none";
   }
 
-  get width(): number {
-    return LETTER * (this.letters + 0.75 * (this.value.textContent?.length ?? 0));
-  }
-
   say(value: string): void {
-    if (this.value.textContent !== value) this.value.textContent = value;
+    if (this.value.textContent === value) return;
+    this.value.textContent = value;
+    this.width = this.symbolWidth + (value ? GAP + measured(value, `${SIZES.small}px`) : 0);
   }
 
   hide(hidden: boolean): void {
@@ -80,7 +84,7 @@ export class Labels {
     this.element.setAttribute("aria-hidden", "true");
     this.element.style.cssText =
       "position: absolute; inset: 0; overflow: hidden; pointer-events: none; user-select: none; " +
-      'font: 17px/19px "STIX Two Text", "Latin Modern Roman", "Cambria", "Times New Roman", serif';
+      `font: ${SIZES.letter}px/${HEIGHT}px ${FAMILY}`;
   }
 
   add(symbol: string, style: { index?: number; rank: number }): Label {
@@ -117,17 +121,21 @@ export class Labels {
   }
 }
 
+function measured(text: string, font: string): number {
+  ruler.font = `${font} ${FAMILY}`;
+  return ruler.measureText(text).width;
+}
+
 function onScreen(point: Vector3, camera: Camera, width: number, height: number): { x: number; y: number } {
   point.project(camera);
   return { x: ((1 + point.x) * width) / 2, y: ((1 - point.y) * height) / 2 };
 }
 
-/** The box of a label beside a point, on the side away from the centre. */
+/** The box of a label beside a point, on the side away from the centre, so far that the point is not in it. */
 function around(point: { x: number; y: number }, centre: { x: number; y: number }, width: number): Box {
-  const [dx, dy] = [point.x - centre.x, point.y - centre.y];
-  const far = Math.hypot(dx, dy) || 1;
-  const x = point.x + (dx / far) * (AWAY + width / 2 - 5);
-  const y = point.y + (dy / far) * AWAY;
+  const [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];
+  const away = Math.min((width / 2 + GAP) / Math.abs(dx), (HEIGHT / 2 + GAP) / Math.abs(dy));
+  const [x, y] = [point.x + dx * away, point.y + dy * away];
   return { left: x - width / 2, right: x + width / 2, top: y - HEIGHT / 2, bottom: y + HEIGHT / 2 };
 }
 

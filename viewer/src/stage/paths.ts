@@ -30,8 +30,9 @@ export class Paths implements Part {
   private readonly herpolhode: Ribbon;
   private readonly polhode: Ribbon;
   private figure: Figure | null = null;
-  /** How long a tail is, in s, and the middle of the stretch. */
+  /** How long a tail is, in s, that of the paths of ω, and the middle of the stretch. */
   private tail = 1;
+  private turns = 1;
   private middle = Number.NaN;
   private closed = false;
 
@@ -54,6 +55,8 @@ export class Paths implements Part {
     this.figure = figure;
     this.middle = Number.NaN;
     this.tail = tailOf(figure);
+    // ω goes the same ways again and again.
+    this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
     const period = figure.about.free?.period ?? null;
     this.closed = period !== null && within(figure, period);
     if (this.closed) this.polhode.set(polhodeOf(figure, period!), { closed: true });
@@ -74,10 +77,10 @@ export class Paths implements Part {
       : [shown.trace, shown.herpolhode, shown.polhode];
     if (!this.figure || !all.includes(true)) return;
     if (!(Math.abs(time - this.middle) <= this.tail / 2)) this.ask(this.figure, time);
-    const now = (time - this.middle) / this.tail;
-    this.trace.fade(now, AHEAD);
-    this.herpolhode.fade(now, AHEAD);
-    if (!this.closed) this.polhode.fade(now, AHEAD);
+    const since = time - this.middle;
+    this.trace.fade(since / this.tail, AHEAD);
+    this.herpolhode.fade(since / this.turns, AHEAD);
+    if (!this.closed) this.polhode.fade(since / this.turns, AHEAD);
   }
 
   dispose(): void {
@@ -97,8 +100,8 @@ export class Paths implements Part {
     );
     const rows = figure.motion.states(times);
     this.middle = time;
-    const parameters = times.map((t) => (t - time) / this.tail);
-    this.trace.set(traced(rows, figure.traced), { parameters });
+    this.trace.set(traced(rows, figure.traced), { parameters: times.map((t) => (t - time) / this.tail) });
+    const parameters = times.map((t) => (t - time) / this.turns);
     this.herpolhode.set(taken(rows, State.omegaSpace, figure.rate), { parameters });
     if (!this.closed) this.polhode.set(taken(rows, State.omegaBody, LIFTED * figure.rate), { parameters });
   }

@@ -16,7 +16,7 @@ import type { Instant, Part } from "./part.ts";
 import { Ribbon, type Screen } from "./ribbon.ts";
 import { AXES, quaternion } from "./rotor.ts";
 
-const PLANE = 2;
+const PLANE = 1.6;
 
 /**
  * Poinsot's construction. The ellipsoid x·I(x) = 2T of the body touches the plane with normal L at the distance 2T/|L|,
@@ -38,11 +38,11 @@ export class Poinsot implements Part {
   constructor(screen: Screen) {
     this.skin = new Mesh(
       new SphereGeometry(1, 96, 64).rotateX(Math.PI / 2),
-      new MeshLambertMaterial({ transparent: true, opacity: 0.22, side: FrontSide, depthWrite: false }),
+      new MeshLambertMaterial({ transparent: true, opacity: 0.14, side: FrontSide, depthWrite: false }),
     );
     this.skin.renderOrder = 4;
     this.circles = AXES.map((axis) => {
-      const ribbon = new Ribbon(screen, { width: 1, opacity: 0.7, behind: 0.3 });
+      const ribbon = new Ribbon(screen, { width: 1, opacity: 0.5, behind: 0.4 });
       ribbon.set(circle(128), { closed: true });
       ribbon.object.quaternion.setFromUnitVectors(AXES[2], axis);
       return ribbon;
@@ -68,7 +68,7 @@ export class Poinsot implements Part {
   paint(palette: Palette): void {
     this.skin.material.color.set(palette.polhode);
     for (const ribbon of this.circles) ribbon.paint(palette.polhode);
-    this.sheet.material.color.set(palette.momentum);
+    this.sheet.material.color.set(palette.faint);
     for (const ribbon of this.grid) ribbon.paint(palette.faint);
     this.contact.material.color.set(palette.omega);
   }
@@ -104,8 +104,8 @@ export class Poinsot implements Part {
 
 /** Circles and a cross on the plane. */
 function gridOf(screen: Screen): Ribbon[] {
-  const lines = [0.5, 1, 1.5, 2].map((radius) => {
-    const ribbon = new Ribbon(screen, { width: 1, opacity: 0.5 });
+  const lines = [0.4, 0.8, 1.2, 1.6].map((radius) => {
+    const ribbon = new Ribbon(screen, { width: 1, opacity: 0.45 });
     ribbon.set(
       circle(128).map((x) => x * radius),
       { closed: true },

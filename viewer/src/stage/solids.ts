@@ -16,7 +16,7 @@ import type { Surface } from "./surface.ts";
 /** Steps around an axis of revolution. A multiple of four, so that no face lies in two quadrants. */
 const ROUND = 96;
 /** What has no thickness is drawn with this part of its size. */
-const THIN = 0.02;
+const THIN = 0.03;
 
 /** The surface of a solid in its own axes, m; axes of revolution lie along e3, as in crates/rigid/src/solids.rs. */
 export function surfaceOf(solid: Solid): Surface {

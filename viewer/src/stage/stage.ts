@@ -101,6 +101,7 @@ export class Stage {
     // The lamp goes with the viewer, over their left shoulder.
     this.lamp.position.set(-3, 4, 6);
     this.viewpoint.camera.add(this.lamp, this.lamp.target);
+    this.hemisphere.position.set(0, 0, 1);
     this.scene.add(this.space, this.viewpoint.camera, this.hemisphere);
     this.furnish();
     this.observer = new ResizeObserver(this.resize);
@@ -242,8 +243,8 @@ export class Stage {
     this.renderer.setClearColor(background);
     this.hemisphere.color.set("#ffffff");
     this.hemisphere.groundColor.set(dark ? "#58606c" : "#9aa3af");
-    this.hemisphere.intensity = dark ? 2.0 : 2.1;
-    this.lamp.intensity = dark ? 1.6 : 1.5;
+    this.hemisphere.intensity = dark ? 2.3 : 2.5;
+    this.lamp.intensity = dark ? 1.8 : 1.7;
     this.message.style.color = palette.text;
     this.labels.paint(palette.background);
     for (const part of this.parts) part.paint(palette);

@@ -13,3 +13,5 @@ pub mod merged;
 pub mod opened;
 pub mod recorded;
 mod rows;
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,4 @@
-"""What the viewer is given: scenes written from numbers are the same motion, recordings are what was computed."""
+"""What the viewer is given: scenes written from numbers are the same motion, recordings what was computed."""
 
 import json
 import re
@@ -94,7 +94,9 @@ def test_forces_are_read_back_as_the_same_values(tmp_path):
     pushes = F.constant([0, 0, -9.81]) + F.drag(0.1) + F.quadratic_drag(1 / 3) + F.spring(2, [1, 2, 3])
     pushes += F.central(3.986e14)
     for force in (pushes, F.thrust([1, 2, 3]), F.thrust([1, 2, 3], [0.1, 0, 1e-9])):
-        found = read_back(problem(ph.Body.disc(0.1, mass=0.2) + ph.Body.sphere(0.1, mass=1), force=force), tmp_path)
+        found = read_back(
+            problem(ph.Body.disc(0.1, mass=0.2) + ph.Body.sphere(0.1, mass=1), force=force), tmp_path
+        )
         assert found.force == force
 
 
@@ -205,10 +207,10 @@ def interface(name):
     """The names of the fields of an interface in TypeScript, those inside others too."""
     text = (ROOT / "viewer/src/core/core.ts").read_text()
     body = re.search(rf"export interface {name} {{\n(.*?)\n}}", text, flags=re.DOTALL)[1]
-    return re.findall(r"^  (\w+):", body, flags=re.MULTILINE), dict(
-        (outer, re.findall(r"^    (\w+):", inner, flags=re.MULTILINE))
+    return re.findall(r"^  (\w+):", body, flags=re.MULTILINE), {
+        outer: re.findall(r"^    (\w+):", inner, flags=re.MULTILINE)
         for outer, inner in re.findall(r"^  (\w+): {\n(.*?)^  }", body, flags=re.MULTILINE | re.DOTALL)
-    )
+    }
 
 
 def test_the_form_is_that_of_the_viewer():
@@ -299,7 +301,11 @@ def test_a_mesh_that_was_stepped_is_drawn_as_one(tmp_path):
     [
         ('solid = "box"\nlengths = ["10 cm", 0.05, "2 cm"]', {"lengths": [0.1, 0.05, 0.02]}, 0),
         ('solid = "cone"\nradius = "3 cm"\nheight = "8 cm"', {"radius": 0.03, "height": 0.08}, 0),
-        ('solid = "torus"\nmajor_radius = 2\nminor_radius = "1 m"', {"major_radius": 2, "minor_radius": 1}, 0),
+        (
+            'solid = "torus"\nmajor_radius = 2\nminor_radius = "1 m"',
+            {"major_radius": 2, "minor_radius": 1},
+            0,
+        ),
     ],
 )
 def test_solids_are_told_with_their_sizes(body, solid, at, tmp_path):
@@ -353,9 +359,15 @@ def test_a_motion_without_an_end_is_shown_for_20_turns():
 @pytest.mark.parametrize(
     ("motion", "law"),
     [
-        (ph.LagrangeTop(ph.Inertia.from_principal_moments(1, 1, 0.5), ATTITUDE, [1, 2, 3], [0, 0, 2]), "heavy"),
+        (
+            ph.LagrangeTop(ph.Inertia.from_principal_moments(1, 1, 0.5), ATTITUDE, [1, 2, 3], [0, 0, 2]),
+            "heavy",
+        ),
         (ph.DampedTop(MOMENTS, ATTITUDE, [1, 2, 3], 0.1), "damping"),
-        (ph.LarmorSphere(ph.Inertia.from_principal_moments(1, 1, 1), ATTITUDE, [1, 2, 3], [0, 1, 0]), "larmor"),
+        (
+            ph.LarmorSphere(ph.Inertia.from_principal_moments(1, 1, 1), ATTITUDE, [1, 2, 3], [0, 1, 0]),
+            "larmor",
+        ),
     ],
 )
 def test_closed_forms_are_shown_by_the_scene_they_solve(motion, law):

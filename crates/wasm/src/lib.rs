@@ -1,1 +1,3 @@
 //! The core in the browser.
+
+pub mod json;

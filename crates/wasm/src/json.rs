@@ -108,7 +108,8 @@ mod tests {
             ("none", Json::or_null(None::<f64>)),
             ("some", Json::or_null(Some(true))),
         ]);
-        let expected = r#"{"text":"a∧b \"\\\u000a\u0001","list":[1.0,-0.0,1e300,0.1,null],"none":null,"some":true}"#;
+        let expected =
+            r#"{"text":"a∧b \"\\\u000a\u0001","list":[1.0,-0.0,1e300,0.1,null],"none":null,"some":true}"#;
         assert_eq!(value.to_string(), expected);
     }
 }

@@ -1,3 +1,4 @@
 //! The core in the browser.
 
+pub mod formulas;
 pub mod json;

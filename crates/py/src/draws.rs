@@ -2,9 +2,9 @@
 
 use crate::arrays::{Array, bad, line, table};
 use crate::bodies::Inertia;
-use crate::scene::{Numbers, call, named};
+use crate::scene::named;
 use numpy::{PyArray1, PyArrayMethods};
-use polhode_rigid::torque::Torque;
+use polhode_rigid::torque::{Argument, Torque};
 use polhode_rigid::{body, scene};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -83,7 +83,7 @@ fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> 
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
     }
-    let calls: Vec<(&str, Vec<Numbers>)> = torques.iter().filter_map(call).collect();
+    let calls: Vec<(&str, Vec<Argument>)> = torques.iter().filter_map(Torque::call).collect();
     let Some((name, first)) = calls.first() else { return Err(bad("a law without numbers varies")) };
     let column = |k: usize| column(py, calls.iter().map(|(_, numbers)| &numbers[k]));
     let columns: Vec<Array<'_>> = (0..first.len()).map(column).collect::<PyResult<_>>()?;
@@ -91,13 +91,13 @@ fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> 
 }
 
 /// One argument of all bodies.
-fn column<'a, 'py>(py: Python<'py>, numbers: impl Iterator<Item = &'a Numbers>) -> PyResult<Array<'py>> {
+fn column<'a, 'py>(py: Python<'py>, numbers: impl Iterator<Item = &'a Argument>) -> PyResult<Array<'py>> {
     let (mut all, mut count, mut size) = (Vec::new(), 0, None);
     for numbers in numbers {
         count += 1;
         match numbers {
-            Numbers::One(x) => all.push(*x),
-            Numbers::Row(row) => {
+            Argument::One(x) => all.push(*x),
+            Argument::Row(row) => {
                 size = Some(row.len());
                 all.extend(row);
             }

@@ -10,7 +10,7 @@ use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::force::Force;
 use polhode_rigid::scene::Push;
-use polhode_rigid::torque::{Axes, Kind, Torque};
+use polhode_rigid::torque::{Argument, Axes, Kind, Torque};
 use polhode_rigid::{Diagnostic, scene};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -74,12 +74,12 @@ pub(crate) fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
             ("formula", (law.text(), axes(law.axes()), known).into_pyobject(py)?)
         }
         _ => {
-            let Some((name, numbers)) = call(&torque) else {
+            let Some((name, numbers)) = torque.call() else {
                 return Err(PyValueError::new_err("a scene has no functions of Python's"));
             };
-            let argument = |numbers: &Numbers| match numbers {
-                Numbers::One(x) => Ok(x.into_pyobject(py)?.into_any()),
-                Numbers::Row(row) => Ok(PyTuple::new(py, row)?.into_any()),
+            let argument = |argument: &Argument| match argument {
+                Argument::One(x) => Ok(x.into_pyobject(py)?.into_any()),
+                Argument::Row(row) => Ok(PyTuple::new(py, row)?.into_any()),
             };
             let arguments = numbers.iter().map(argument).collect::<PyResult<Vec<_>>>()?;
             (name, PyTuple::new(py, arguments)?)
@@ -90,40 +90,6 @@ pub(crate) fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
 
 fn axes(axes: Axes) -> &'static str {
     if axes == Axes::Space { "space" } else { "body" }
-}
-
-/// An argument of a law.
-pub(crate) enum Numbers {
-    One(f64),
-    Row(Vec<f64>),
-}
-
-/// The function of `polhode.torque` that makes a law of numbers alone, and its arguments.
-pub(crate) fn call(torque: &Torque) -> Option<(&'static str, Vec<Numbers>)> {
-    use Numbers::One;
-    let row = |numbers: &[f64]| Numbers::Row(numbers.to_vec());
-    Some(match torque {
-        Torque::Heavy(c) => ("heavy", vec![row(&c.0)]),
-        Torque::GravityGradient(orbit) => {
-            let (rate, eccentricity, anomaly) = (orbit.rate(), orbit.eccentricity(), orbit.anomaly());
-            ("gravity_gradient", vec![One(rate), One(eccentricity), One(anomaly)])
-        }
-        Torque::ConstantBody(torque) => ("constant_body", vec![row(&torque.0)]),
-        Torque::ConstantSpace(torque) => ("constant_space", vec![row(&torque.0)]),
-        Torque::Damping(g) => ("damping", vec![One(*g)]),
-        Torque::QuadraticDamping(k) => ("quadratic_damping", vec![One(*k)]),
-        Torque::ViscousDamping(d) => ("viscous_damping", vec![row(&d.along())]),
-        Torque::Magnetic { dipole, field } => ("magnetic", vec![row(&dipole.0), row(&field.0)]),
-        Torque::TorsionSpring { stiffness, rest } => {
-            ("torsion_spring", vec![One(*stiffness), row(&rest.components())])
-        }
-        Torque::Wheel(h) => ("gyrostat", vec![row(&h.0)]),
-        Torque::Control { stiffness, damping, target } => {
-            ("pd_control", vec![row(&stiffness.along()), row(&damping.along()), row(&target.components())])
-        }
-        Torque::Larmor(b) => ("larmor", vec![row(&b.0)]),
-        Torque::Tabulated(_) | Torque::Formula(_) | Torque::Function(_) => return None,
-    })
 }
 
 /// The value of a name in a formula.

@@ -399,9 +399,8 @@ impl Motion {
         if let Some(index) = times.iter().position(|t| !(first..=last).contains(t)) {
             return Err(SimulateError::OutsideMotion { index, time: times[index], first, last });
         }
-        if let Engine::ClosedForm(closed) = &self.engine {
-            let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
-            return Ok(self.problem.states(&states));
+        if let Some(states) = self.exactly(times) {
+            return states;
         }
         let mut order: Vec<usize> = (0..times.len()).collect();
         order.sort_by(|&i, &j| times[i].total_cmp(&times[j]));
@@ -413,6 +412,24 @@ impl Motion {
             group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
         }
         Ok(self.problem.states(&found))
+    }
+
+    /// How far in time, in s, an exact motion is known backwards and forwards; none for one that was stepped.
+    pub fn horizons(&self) -> Option<[f64; 2]> {
+        match &self.engine {
+            Engine::ClosedForm(closed) => Some(closed.horizons()),
+            _ => None,
+        }
+    }
+
+    /// An exact motion at any times within its horizons; none for one that was stepped.
+    pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
+        let Engine::ClosedForm(closed) = &self.engine else { return None };
+        let known = check_horizons(times, closed.horizons());
+        Some(known.map(|()| {
+            let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
+            self.problem.states(&states)
+        }))
     }
 
     /// The output time nearest to a time on the way from 0; none if that is 0 itself.

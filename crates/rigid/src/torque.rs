@@ -3,6 +3,7 @@
 //! A law is a value: what it needs to know, its torque at a point of the motion, and what it conserves
 //! ([`crate::conserved`]). Laws add up.
 
+mod call;
 mod formula;
 mod function;
 mod gains;
@@ -10,6 +11,7 @@ pub(crate) mod lanes;
 mod orbit;
 mod table;
 
+pub use call::Argument;
 pub use formula::{FormulaTorque, given_names};
 pub use function::FunctionTorque;
 pub use gains::Gains;

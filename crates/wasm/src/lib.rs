@@ -1,4 +1,16 @@
-//! The core in the browser.
+//! The core in the browser: the same motion and the same algebra as in Python, behind plain exports.
+//!
+//! [`opened`] follows a scene, [`about`] tells what is known of the motion, [`crowd`] follows an ensemble for looking,
+//! [`recorded`] holds a motion that was followed elsewhere, [`merged`] changes tables of a scene, [`formulas`] evaluates
+//! lines; [`json`] is the text in which the page gets what is not an array. `viewer/src/core/wasm.ts` is the other side
+//! of [`exports`].
 
+pub mod about;
+pub mod crowd;
+mod exports;
 pub mod formulas;
 pub mod json;
+pub mod merged;
+pub mod opened;
+pub mod recorded;
+mod rows;

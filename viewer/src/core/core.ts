@@ -13,8 +13,11 @@ export type Files = ReadonlyMap<string, Uint8Array>;
 export interface Core {
   /** Reads a scene and follows its motion. A Problem if the scene is wrong or takes longer than `budget` seconds. */
   open(scene: string, options?: { name?: string; files?: Files; budget?: number }): Motion;
-  /** A motion that was followed elsewhere, at its times; between them it is interpolated, for looking only. */
-  recorded(about: string, rows: Float64Array): Motion;
+  /**
+   * A motion that was followed elsewhere, at its times; between them it is interpolated, for looking only. `about` is
+   * an `About` as JSON text; the scene is needed for the surface of a mesh alone.
+   */
+  recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion;
   /** The scene with tables replaced by those of `change`, a TOML text; an empty table takes its one away. */
   merged(scene: string, change: string): string;
   /** Each line evaluated, with the names that earlier ones gave values. */

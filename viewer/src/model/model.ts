@@ -66,7 +66,7 @@ export class Model {
       if (document.lines !== undefined) this.lines.value = document.lines;
       this.page.value = document.page ?? "motion";
       if (document.recorded && rows) {
-        this.record(document.recorded.about, rows, document.scene ?? null);
+        this.record(document, rows, files);
       } else if (document.scene !== undefined) {
         this.open(document.scene, { name: document.name ?? "scene.toml", files });
       }
@@ -148,9 +148,11 @@ export class Model {
     }
   }
 
-  private record(about: string, rows: Float64Array, scene: string | null): void {
-    const motion = this.core.recorded(about, rows);
-    this.become(motion, scene);
+  private record(document: PageDocument, rows: Float64Array, files: Files): void {
+    const { scene, name = "scene.toml", recorded } = document;
+    const of = scene === undefined ? undefined : { scene, name, files };
+    const motion = this.core.recorded(recorded?.about ?? "", rows, of);
+    this.become(motion, scene ?? null);
     this.time.value = rows[State.time] ?? 0;
     this.speed.value = usualSpeed(motion);
   }

@@ -129,6 +129,12 @@ impl TriangleMesh {
         TriangleMesh::named(&self.name, vertices, self.faces.clone())
     }
 
+    /// The mesh with all positions moved.
+    pub fn moved(mut self, by: Vector) -> TriangleMesh {
+        self.vertices.iter_mut().for_each(|x| *x += by);
+        self
+    }
+
     /// The enclosed volume, negative where the faces are wound inwards. Only of a closed mesh, which this
     /// does not check, is it a volume.
     pub fn volume(&self) -> f64 {

@@ -11,6 +11,9 @@ use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Rotor, Vector};
 use std::path::Path;
 
+/// Where meshes come from, by their paths: relative ones from the scene's folder.
+pub type MeshSource<'a> = &'a dyn Fn(&Path) -> Result<TriangleMesh, MeshError>;
+
 impl Gravity {
     /// The law on a body whose fixed point is the origin of its axes.
     pub(super) fn law(&self, body: &Body) -> Law {
@@ -23,12 +26,17 @@ impl Scene {
     /// The body and what turns it, ready to move. Under gravity the body is shifted so that the fixed
     /// point is the origin of its axes; then `c = m g (centre of mass)`.
     pub fn build(&self) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
-        let body = self.build_body()?;
+        self.build_with(&TriangleMesh::read)
+    }
+
+    /// The same, with a mesh got from elsewhere: `mesh` is given its path. A browser has no files.
+    pub fn build_with(&self, mesh: MeshSource<'_>) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
+        let body = self.body_with(mesh)?;
         let mut laws = self.torques.clone();
         let body = match self.gravity {
             None => body,
             Some(gravity) => {
-                let body = body.moved(Rotor::IDENTITY, -gravity.pivot);
+                let body = body.moved(Rotor::IDENTITY, self.shift());
                 let body = body.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
                 laws.insert(0, gravity.law(&body));
                 body
@@ -46,14 +54,18 @@ impl Scene {
         Ok((body, laws))
     }
 
-    /// The body; what no body can have is reported at the field that says it. A mesh is read from its
-    /// file, relative to the scene's.
+    /// The body alone, its mesh read from its file.
+    pub fn build_body(&self) -> Result<Body, Vec<Diagnostic>> {
+        self.body_with(&TriangleMesh::read)
+    }
+
+    /// The body; what no body can have is reported at the field that says it.
     ///
     /// A free motion is the same for every mass, so a body given by its inertia alone has 1 kg; under
     /// gravity the mass must be said.
-    pub fn build_body(&self) -> Result<Body, Vec<Diagnostic>> {
+    fn body_with(&self, mesh: MeshSource<'_>) -> Result<Body, Vec<Diagnostic>> {
         let body = match &self.body {
-            BodySpec::Mesh { file, length_unit, amount } => self.mesh_body(file, *length_unit, *amount),
+            BodySpec::Mesh { amount, .. } => self.mesh_body(mesh, *amount),
             BodySpec::Solid { solid, amount } => {
                 solid.body(*amount).map_err(|error| self.body_error(&error, "body.solid", Some(*amount)))
             }
@@ -69,7 +81,7 @@ impl Scene {
     }
 
     /// Whether the body is held at a fixed point.
-    pub(super) fn is_held(&self) -> bool {
+    pub fn is_held(&self) -> bool {
         self.gravity.is_some() || self.torques.iter().any(|law| matches!(law.torque, Torque::Heavy(_)))
     }
 
@@ -88,12 +100,17 @@ impl Scene {
         !matches!(self.body, BodySpec::Moments { mass: None, .. } | BodySpec::Inertia { mass: None, .. })
     }
 
-    fn mesh_body(&self, file: &str, length_unit: f64, amount: Amount) -> Result<Body, Diagnostic> {
+    /// The mesh of the body, in metres, if it has one.
+    pub fn mesh_with(&self, mesh: MeshSource<'_>) -> Option<Result<TriangleMesh, MeshError>> {
+        let BodySpec::Mesh { file, length_unit, .. } = &self.body else { return None };
         let path = self.path.parent().unwrap_or(Path::new("")).join(file);
-        let body = TriangleMesh::read(&path)
-            .and_then(|mesh| mesh.scaled(length_unit))
-            .and_then(|mesh| mesh.body(amount));
-        body.map_err(|error| match error {
+        Some(mesh(&path).and_then(|mesh| mesh.scaled(*length_unit)))
+    }
+
+    fn mesh_body(&self, mesh: MeshSource<'_>, amount: Amount) -> Result<Body, Diagnostic> {
+        let none = || Err(self.diagnose("body", "has no mesh"));
+        let Some(mesh) = self.mesh_with(mesh) else { return none() };
+        mesh.and_then(|mesh| mesh.body(amount)).map_err(|error| match error {
             MeshError { problem: MeshProblem::Body(error), .. } => {
                 self.body_error(&error, "body.mesh", Some(amount))
             }

@@ -71,6 +71,7 @@ mod initial;
 mod parameters;
 mod reader;
 mod run;
+mod solve;
 mod spread;
 #[cfg(test)]
 mod tests;
@@ -79,6 +80,7 @@ mod torques;
 use crate::force::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
+pub use build::MeshSource;
 pub use draws::{DrawError, Drawn};
 pub use ensemble::{Attitudes, Ensemble, Varied};
 pub use forces::Push;

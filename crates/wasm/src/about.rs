@@ -1,0 +1,142 @@
+//! What is known of a motion besides its states: `About` in `viewer/src/core/core.ts`.
+
+use crate::json::Json;
+use crate::opened::Opened;
+use polhode_rigid::Solid;
+use polhode_rigid::free::FreeMotion;
+use polhode_rigid::regime::FreeDescription;
+use polhode_rigid::scene::{BodySpec, Law};
+use polhode_rigid::torque::{Argument, Torque};
+
+fn count(n: usize) -> Json {
+    Json::Number(n as f64)
+}
+
+fn numbers(row: &[f64]) -> Json {
+    Json::list(row.iter().copied())
+}
+
+/// As a JSON object.
+pub fn about(of: &Opened) -> Json {
+    let (scene, certificate) = (&of.scene, &of.motion.certificate);
+    let conserved = certificate.drifts.iter().map(|(quantity, value, drift)| {
+        Json::Object(vec![
+            ("name", quantity.name().into()),
+            ("value", (*value).into()),
+            ("drift", (*drift).into()),
+        ])
+    });
+    let horizon = of.motion.horizons().map(|[past, future]| past.min(future)).filter(|h| h.is_finite());
+    let heavy = of.laws.iter().find_map(|law| match law.torque {
+        Torque::Heavy(c) => Some(c),
+        _ => None,
+    });
+    Json::Object(vec![
+        ("title", Json::or_null(scene.title.clone())),
+        ("body", body(of)),
+        ("held", scene.is_held().into()),
+        ("heavy", Json::or_null(heavy.map(|c| numbers(&c.0)))),
+        ("laws", Json::List(of.laws.iter().map(law).collect())),
+        (
+            "start",
+            Json::Object(vec![
+                ("rotor", numbers(&scene.attitude.components())),
+                ("omega_body", numbers(&scene.omega_body().0)),
+            ]),
+        ),
+        ("duration", scene.run.duration.into()),
+        ("samples", count(scene.run.samples)),
+        ("method", certificate.method.into()),
+        ("exact", of.motion.horizons().is_some().into()),
+        ("horizon", Json::or_null(horizon)),
+        ("steps", Json::Number(certificate.steps as f64)),
+        ("error_estimate", Json::or_null(certificate.error_estimate)),
+        ("conserved", Json::List(conserved.collect())),
+        ("norm_drift", certificate.norm_drift.into()),
+        ("free", Json::or_null(free(of).map(described))),
+        ("ensemble", Json::or_null(scene.ensemble.as_ref().map(|ensemble| count(ensemble.number)))),
+    ])
+}
+
+fn body(of: &Opened) -> Json {
+    let inertia = of.scene.ruling_inertia(&of.body);
+    let solid = match &of.scene.body {
+        BodySpec::Solid { solid, .. } => Some(sizes(solid)),
+        _ => None,
+    };
+    Json::Object(vec![
+        ("mass", Json::or_null(of.scene.tells_mass().then_some(of.body.mass))),
+        ("center_of_mass", numbers(&of.body.center_of_mass.0)),
+        ("moments", numbers(&inertia.principal_moments())),
+        ("frame", numbers(&inertia.principal_frame().components())),
+        ("solid", Json::or_null(solid)),
+        ("solid_at", numbers(&of.scene.shift().0)),
+        ("mesh", of.mesh().is_some().into()),
+    ])
+}
+
+/// A solid by the names that scenes give its sizes.
+fn sizes(solid: &Solid) -> Json {
+    let (kind, sizes): (&str, Vec<(&'static str, Json)>) = match *solid {
+        Solid::Box { lengths } => ("box", vec![("lengths", numbers(&lengths))]),
+        Solid::Ellipsoid { semi_axes } => ("ellipsoid", vec![("semi_axes", numbers(&semi_axes))]),
+        Solid::Sphere { radius } => ("sphere", vec![("radius", radius.into())]),
+        Solid::HollowSphere { outer_radius, inner_radius } => (
+            "hollow_sphere",
+            vec![("outer_radius", outer_radius.into()), ("inner_radius", inner_radius.into())],
+        ),
+        Solid::Cylinder { radius, height } => {
+            ("cylinder", vec![("radius", radius.into()), ("height", height.into())])
+        }
+        Solid::Cone { radius, height } => {
+            ("cone", vec![("radius", radius.into()), ("height", height.into())])
+        }
+        Solid::Rod { length } => ("rod", vec![("length", length.into())]),
+        Solid::Disc { radius } => ("disc", vec![("radius", radius.into())]),
+        Solid::Torus { major_radius, minor_radius } => {
+            ("torus", vec![("major_radius", major_radius.into()), ("minor_radius", minor_radius.into())])
+        }
+        Solid::Capsule { radius, height } => {
+            ("capsule", vec![("radius", radius.into()), ("height", height.into())])
+        }
+    };
+    Json::Object([("kind", kind.into())].into_iter().chain(sizes).collect())
+}
+
+/// A law by its name and, in words, what it has: its formula as the scene says it, or its numbers.
+fn law(law: &Law) -> Json {
+    let argument = |argument: &Argument| match argument {
+        Argument::One(x) => x.to_string(),
+        Argument::Row(row) => {
+            let row: Vec<String> = row.iter().map(f64::to_string).collect();
+            format!("({})", row.join(", "))
+        }
+    };
+    let text = match (&law.formula, law.torque.call()) {
+        (Some(formula), _) => formula.clone(),
+        (None, Some((_, arguments))) => arguments.iter().map(argument).collect::<Vec<_>>().join(", "),
+        (None, None) => String::new(),
+    };
+    Json::Object(vec![("name", law.name.into()), ("text", text.into())])
+}
+
+/// What the invariants of a free motion tell.
+fn free(of: &Opened) -> Option<FreeDescription> {
+    let turned = !of.laws.is_empty() || of.scene.thrust_torques(&of.body).next().is_some();
+    if turned {
+        return None;
+    }
+    let inertia = of.scene.ruling_inertia(&of.body);
+    FreeMotion::new(&inertia, of.scene.attitude, of.scene.omega_body()).ok().map(|motion| motion.describe())
+}
+
+fn described(free: FreeDescription) -> Json {
+    Json::Object(vec![
+        ("regime", free.regime.to_string().into()),
+        ("modulus", free.modulus.into()),
+        ("axis", count(free.axis + 1)),
+        ("period", Json::or_null(free.period)),
+        ("precession_period", Json::or_null(free.precession_period())),
+        ("flip_time", Json::or_null(free.flip_time())),
+    ])
+}

@@ -1,0 +1,94 @@
+//! The bodies of an ensemble, for looking at.
+
+use crate::opened::{GoOn, Opened};
+use crate::recorded::between;
+use polhode_ga::threads::Threads;
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
+use polhode_rigid::force::Center;
+use polhode_rigid::simulate::Motion;
+
+/// Frames that are kept of bodies that have to be stepped.
+const FRAMES: usize = 241;
+
+/// Followed bodies.
+pub enum Crowd {
+    /// Known at any time.
+    Exact(Vec<Motion>),
+    /// Rotors, frame by frame, at even times from 0 to a duration; NaN where a body could not be followed.
+    Stepped {
+        /// In s.
+        duration: f64,
+        /// Bodies by frames.
+        rotors: Vec<[f64; 4]>,
+    },
+}
+
+impl Crowd {
+    /// The first bodies of the scene's ensemble, at most `count`.
+    pub fn new(of: &Opened, count: usize, go_on: GoOn) -> Result<Crowd, String> {
+        let Some(ensemble) = &of.scene.ensemble else {
+            return Err("this scene is one body, without a table [ensemble]".to_owned());
+        };
+        let count = count.clamp(1, ensemble.number);
+        let drawn =
+            ensemble.draw(&of.scene, (&of.body, &of.laws), 0..count).map_err(|error| error.to_string())?;
+        let starts = drawn.rotors.iter().zip(&drawn.omegas).zip(&drawn.centers);
+        let starts = starts.map(|((rotor, omega), [x, y, z, u, v, w])| Start {
+            rotor: Rotor::from_unit_components(*rotor),
+            omega: Bivector(*omega),
+            center: Center { position: Vector([*x, *y, *z]), velocity: Vector([*u, *v, *w]) },
+        });
+        let laws = drawn.laws.into_iter().chain(of.scene.thrust_torques(&of.body).map(|torque| vec![torque]));
+        let bodies = Ensemble {
+            inertias: Rows::new(drawn.inertias),
+            starts: starts.collect(),
+            laws: laws.map(Rows::new).collect(),
+            masses: Rows::new(vec![of.body.mass]),
+            forces: of.scene.pushes(),
+        };
+        if of.motion.horizons().is_some() {
+            let options = of.scene.options();
+            let follow = |body| bodies.problem(body).simulate(&[0.0], options.clone(), &mut |_| go_on());
+            let motions: Result<Vec<Motion>, _> = (0..count).map(follow).collect();
+            return motions.map(Crowd::Exact).map_err(|error| error.to_string());
+        }
+        Crowd::stepped(&bodies, of, go_on)
+    }
+
+    fn stepped(bodies: &Ensemble, of: &Opened, go_on: GoOn) -> Result<Crowd, String> {
+        let (count, duration) = (bodies.starts.len(), of.scene.run.duration);
+        let times: Vec<f64> = (0..FRAMES).map(|k| duration * k as f64 / (FRAMES - 1) as f64).collect();
+        let mut room = [4, 3, 3, 1].map(|size| vec![f64::NAN; count * FRAMES * size]);
+        let [rotors, omegas, momenta, energies] = &mut room;
+        let outputs = Outputs { rotors, omegas, momenta, energies, centers: None };
+        let run = bodies.run(&times, &of.scene.options(), Threads::ONE, outputs, &mut |_| go_on());
+        run.map_err(|error| error.to_string())?;
+        Ok(Crowd::Stepped { duration, rotors: room[0].as_chunks().0.to_vec() })
+    }
+
+    /// The rotors at a time. Those of stepped bodies turn evenly between frames, which is for looking only.
+    pub fn at(&self, time: f64) -> Vec<[f64; 4]> {
+        match self {
+            Crowd::Exact(motions) => motions.iter().map(|motion| exactly(motion, time)).collect(),
+            Crowd::Stepped { duration, rotors } => {
+                let frame = (time / duration).clamp(0.0, 1.0) * (FRAMES - 1) as f64;
+                let (k, part) = ((frame as usize).min(FRAMES - 2), frame - frame.floor());
+                let part = if frame as usize > k { 1.0 } else { part };
+                rotors.chunks_exact(FRAMES).map(|body| turned(body[k], body[k + 1], part)).collect()
+            }
+        }
+    }
+}
+
+fn exactly(motion: &Motion, time: f64) -> [f64; 4] {
+    let states = motion.exactly(&[time]).and_then(Result::ok);
+    states.map_or([f64::NAN; 4], |states| states.rotors[0].components())
+}
+
+fn turned(a: [f64; 4], b: [f64; 4], part: f64) -> [f64; 4] {
+    if a.iter().chain(&b).any(|x| x.is_nan()) {
+        return [f64::NAN; 4];
+    }
+    between(Rotor::from_unit_components(a), Rotor::from_unit_components(b), part).components()
+}

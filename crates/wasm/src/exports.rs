@@ -1,0 +1,243 @@
+//! What JavaScript calls.
+//!
+//! A call takes what was put into [`room`]s before it, in their order, and leaves an answer at [`reply`], of
+//! [`reply_size`] bytes; it returns 0 or a handle, or −1 where the answer says what is wrong. So no pointer from outside
+//! is ever followed, and all memory is the core's own. The page has one thread.
+
+// A name for JavaScript is `unsafe` in so far as two crates might choose the same.
+#![allow(unsafe_code)]
+
+use crate::about::about;
+use crate::formulas;
+use crate::merged::merged;
+use crate::opened::{Files, Opened, surface, vertices};
+use crate::recorded::Recorded;
+use crate::rows::ROW;
+use polhode_rigid::TriangleMesh;
+use std::cell::RefCell;
+
+/// A motion that the page shows.
+enum Held {
+    Followed(Box<Opened>),
+    Recorded(Recorded, Option<TriangleMesh>),
+}
+
+#[derive(Default)]
+struct Desk {
+    /// What the next call takes.
+    rooms: Vec<Vec<u8>>,
+    reply: Vec<u8>,
+    held: Vec<Option<Held>>,
+}
+
+thread_local! {
+    static DESK: RefCell<Desk> = RefCell::default();
+}
+
+type Outcome<T> = Result<T, String>;
+
+mod clock {
+    #[cfg(target_arch = "wasm32")]
+    #[link(wasm_import_module = "page")]
+    unsafe extern "C" {
+        /// Seconds since some moment.
+        safe fn now() -> f64;
+    }
+
+    /// Seconds since some moment.
+    pub fn seconds() -> f64 {
+        #[cfg(target_arch = "wasm32")]
+        return now();
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            use std::sync::OnceLock;
+            use std::time::Instant;
+            static START: OnceLock<Instant> = OnceLock::new();
+            START.get_or_init(Instant::now).elapsed().as_secs_f64()
+        }
+    }
+}
+
+/// Whether there is time left, of so many seconds from now.
+fn within(budget: f64) -> impl FnMut() -> bool {
+    let end = clock::seconds() + budget;
+    move || clock::seconds() < end
+}
+
+/// Room for so many bytes of what the next call takes.
+#[unsafe(no_mangle)]
+pub extern "C" fn room(size: usize) -> *mut u8 {
+    DESK.with_borrow_mut(|desk| {
+        desk.rooms.push(vec![0; size]);
+        desk.rooms.last_mut().map_or(std::ptr::null_mut(), |room| room.as_mut_ptr())
+    })
+}
+
+/// Where the last answer is.
+#[unsafe(no_mangle)]
+pub extern "C" fn reply() -> *const u8 {
+    DESK.with_borrow(|desk| desk.reply.as_ptr())
+}
+
+/// How many bytes it has.
+#[unsafe(no_mangle)]
+pub extern "C" fn reply_size() -> usize {
+    DESK.with_borrow(|desk| desk.reply.len())
+}
+
+/// Does the work with what was put into rooms.
+fn answered(work: impl FnOnce(&mut Desk, Vec<Vec<u8>>) -> Outcome<(i32, Vec<u8>)>) -> i32 {
+    DESK.with_borrow_mut(|desk| {
+        let rooms = std::mem::take(&mut desk.rooms);
+        let (code, reply) = work(desk, rooms).unwrap_or_else(|problem| (-1, problem.into_bytes()));
+        desk.reply = reply;
+        code
+    })
+}
+
+fn text(bytes: Option<Vec<u8>>) -> Outcome<String> {
+    String::from_utf8(bytes.unwrap_or_default()).map_err(|_| "not UTF-8 text".to_owned())
+}
+
+fn floats(bytes: &[u8]) -> Vec<f64> {
+    bytes.as_chunks().0.iter().map(|eight| f64::from_le_bytes(*eight)).collect()
+}
+
+fn bytes(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    numbers.into_iter().flat_map(f64::to_le_bytes).collect()
+}
+
+/// The rest of the rooms: a scene, its name, and files, each after its name.
+fn scene(mut rooms: impl Iterator<Item = Vec<u8>>) -> Outcome<(String, String, Files)> {
+    let (scene, name) = (text(rooms.next())?, text(rooms.next())?);
+    let mut files = Files::new();
+    while let (Some(name), Some(content)) = (rooms.next(), rooms.next()) {
+        files.insert(text(Some(name))?, content);
+    }
+    Ok((scene, name, files))
+}
+
+impl Desk {
+    fn hold(&mut self, held: Held) -> i32 {
+        let free = self.held.iter().position(Option::is_none);
+        let place = free.unwrap_or_else(|| {
+            self.held.push(None);
+            self.held.len() - 1
+        });
+        self.held[place] = Some(held);
+        place as i32
+    }
+
+    fn get(&self, handle: usize) -> Outcome<&Held> {
+        self.held.get(handle).and_then(Option::as_ref).ok_or_else(|| format!("there is no motion {handle}"))
+    }
+
+    fn followed(&self, handle: usize) -> Outcome<&Opened> {
+        match self.get(handle)? {
+            Held::Followed(opened) => Ok(opened),
+            Held::Recorded(..) => Err("this motion was recorded".to_owned()),
+        }
+    }
+
+    fn mesh(&self, handle: usize) -> Outcome<&TriangleMesh> {
+        let mesh = match self.get(handle)? {
+            Held::Followed(opened) => opened.mesh(),
+            Held::Recorded(_, mesh) => mesh.as_ref(),
+        };
+        mesh.ok_or_else(|| "the body is no mesh".to_owned())
+    }
+}
+
+/// Takes a scene, its name and files; follows the motion for at most so many seconds; a handle.
+#[unsafe(no_mangle)]
+pub extern "C" fn open(budget: f64) -> i32 {
+    answered(|desk, rooms| {
+        let (scene, name, files) = scene(rooms.into_iter())?;
+        let opened = Opened::new(&scene, &name, &files, &mut within(budget))?;
+        Ok((desk.hold(Held::Followed(Box::new(opened))), Vec::new()))
+    })
+}
+
+/// Takes rows of a recorded motion and, where its body has a mesh, the scene, its name and files; a handle.
+#[unsafe(no_mangle)]
+pub extern "C" fn record() -> i32 {
+    answered(|desk, rooms| {
+        let mut rooms = rooms.into_iter();
+        let recorded = Recorded::new(&floats(&rooms.next().unwrap_or_default()))?;
+        let (scene, name, files) = scene(rooms)?;
+        Ok((desk.hold(Held::Recorded(recorded, surface(&scene, &name, &files))), Vec::new()))
+    })
+}
+
+/// Lets go of a motion.
+#[unsafe(no_mangle)]
+pub extern "C" fn close(handle: usize) {
+    DESK.with_borrow_mut(|desk| {
+        if let Some(held) = desk.held.get_mut(handle) {
+            *held = None;
+        }
+    });
+}
+
+/// What is known of a motion, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn about_motion(handle: usize) -> i32 {
+    answered(|desk, _| Ok((0, about(desk.followed(handle)?).to_string().into_bytes())))
+}
+
+/// Takes times, answers rows of states.
+#[unsafe(no_mangle)]
+pub extern "C" fn states(handle: usize) -> i32 {
+    answered(|desk, rooms| {
+        let times = floats(rooms.first().map_or(&[], |room| room));
+        let rows: Vec<[f64; ROW]> = match desk.get(handle)? {
+            Held::Followed(opened) => opened.states(&times)?,
+            Held::Recorded(recorded, _) => recorded.states(&times)?,
+        };
+        Ok((0, bytes(rows.into_iter().flatten())))
+    })
+}
+
+/// The vertices of the surface in body axes, in m.
+#[unsafe(no_mangle)]
+pub extern "C" fn surface_vertices(handle: usize) -> i32 {
+    answered(|desk, _| Ok((0, bytes(vertices(desk.mesh(handle)?)))))
+}
+
+/// The triangles of the surface, as 32-bit numbers of vertices.
+#[unsafe(no_mangle)]
+pub extern "C" fn surface_faces(handle: usize) -> i32 {
+    answered(|desk, _| {
+        let faces = desk.mesh(handle)?.faces();
+        Ok((0, faces.iter().flatten().copied().flat_map(u32::to_le_bytes).collect()))
+    })
+}
+
+/// Rotors of the first bodies of an ensemble, at most `count`, at a time. The first call follows them, for at most so
+/// many seconds.
+#[unsafe(no_mangle)]
+pub extern "C" fn bodies(handle: usize, time: f64, count: usize, budget: f64) -> i32 {
+    answered(|desk, _| {
+        let rotors = desk.followed(handle)?.bodies(time, count, &mut within(budget))?;
+        Ok((0, bytes(rotors.into_iter().flatten())))
+    })
+}
+
+/// Takes a scene and tables, answers the scene with its tables replaced.
+#[unsafe(no_mangle)]
+pub extern "C" fn merge() -> i32 {
+    answered(|_, rooms| {
+        let mut rooms = rooms.into_iter();
+        let (scene, change) = (text(rooms.next())?, text(rooms.next())?);
+        Ok((0, merged(&scene, &change)?.into_bytes()))
+    })
+}
+
+/// Takes lines of formulas, answers what each came to, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn evaluate() -> i32 {
+    answered(|_, rooms| {
+        let lines = text(rooms.into_iter().next())?;
+        Ok((0, formulas::evaluated(&lines).into_bytes()))
+    })
+}

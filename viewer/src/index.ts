@@ -1,1 +1,1 @@
-export {};
+export { loadCore } from "./core/wasm.ts";

@@ -98,6 +98,7 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     /// The same where `mul_add` is one instruction; elsewhere it is a call, a hundred times slower. For sums
     /// of many terms, and for kernels that find by it what they find otherwise in more steps: the rounding
     /// errors of products.
+    #[cfg_attr(target_family = "wasm", allow(dead_code))] // which has no such instruction
     #[inline(always)]
     fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
         self.block(a, b, out);

@@ -14,3 +14,5 @@ pub mod merged;
 pub mod opened;
 pub mod recorded;
 mod rows;
+#[cfg(test)]
+mod tests;

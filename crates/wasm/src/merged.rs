@@ -1,6 +1,6 @@
 //! Tables of a scene replaced by others, all else kept as it was written.
 
-use toml_edit::DocumentMut;
+use toml_edit::{Decor, DocumentMut};
 
 /// The scene with its tables replaced by those of `change`; an empty table takes its one away. Comments and the order
 /// of the rest stay.
@@ -21,9 +21,7 @@ pub fn merged(scene: &str, change: &str) -> Result<String, String> {
         let (place, decor) = (old.and_then(|old| old.position()), old.map(|old| old.decor().clone()));
         if let Some(table) = table.as_table_mut() {
             table.set_position(place);
-            if let Some(decor) = decor {
-                *table.decor_mut() = decor;
-            }
+            *table.decor_mut() = decor.unwrap_or_else(|| Decor::new("\n", ""));
         }
         scene.insert(name, table);
     }

@@ -1,0 +1,89 @@
+import { Color, Group, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial } from "three";
+import type { Shown } from "../document.ts";
+import type { Palette } from "../palette.ts";
+import type { Figure } from "./figure.ts";
+import type { Instant, Part } from "./part.ts";
+import { type Look, look, type Surface } from "./surface.ts";
+
+/** Tints of faces: plain, the other quadrants, and the sides across axes 1, 2 and 3. */
+const TINTS = 5;
+
+/** The body. Sides of a box and quadrants of what is round have tints of their own, so that one sees how it turns. */
+export class Body implements Part {
+  readonly inBody = new Group();
+  private readonly materials = Array.from(
+    { length: TINTS },
+    () =>
+      new MeshStandardMaterial({
+        roughness: 0.75,
+        metalness: 0,
+        // The edges lie in the faces and shall be seen.
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
+      }),
+  );
+  private readonly ink = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
+  private drawn: { surface: Surface; tinted: Figure["tinted"]; look: Look } | null = null;
+
+  follow({ surface, tinted }: Figure): void {
+    const drawn = this.drawn;
+    if (drawn?.tinted === tinted && same(drawn.surface, surface)) return;
+    this.clear();
+    const fresh = look(surface, tinted === "plain" ? undefined : tinted === "sides" ? side : quadrant);
+    this.drawn = { surface, tinted, look: fresh };
+    this.inBody.add(new Mesh(fresh.faces, this.materials), new LineSegments(fresh.edges, this.ink));
+  }
+
+  paint(palette: Palette): void {
+    const mixed = (color: string, part: number) => new Color(palette.body).lerp(new Color(color), part);
+    const colors = [
+      mixed(palette.body, 0),
+      mixed(palette.weight, 0.4),
+      ...palette.axes.map((axis) => mixed(axis, 0.3)),
+    ];
+    this.materials.forEach((material, k) => material.color.copy(colors[k]!));
+    this.ink.color.set(palette.text);
+  }
+
+  update(_: Instant, shown: Shown): void {
+    this.inBody.visible = shown.body;
+  }
+
+  dispose(): void {
+    this.clear();
+    for (const material of this.materials) material.dispose();
+    this.ink.dispose();
+  }
+
+  private clear(): void {
+    this.inBody.clear();
+    this.drawn?.look.faces.dispose();
+    this.drawn?.look.edges.dispose();
+    this.drawn = null;
+  }
+}
+
+function side(normal: readonly number[]): number {
+  const sizes = normal.map(Math.abs);
+  return 2 + sizes.indexOf(Math.max(...sizes));
+}
+
+function quadrant(_: readonly number[], [x, y]: readonly number[]): number {
+  return x! * y! > 0 ? 1 : 0;
+}
+
+/** While a slider moves, motions follow each other fast, mostly of the same body. */
+function same(a: Surface, b: Surface): boolean {
+  return (
+    a.vertices.length === b.vertices.length &&
+    a.faces.length === b.faces.length &&
+    every(a.vertices, b.vertices) &&
+    every(a.faces, b.faces)
+  );
+}
+
+function every(a: ArrayLike<number>, b: ArrayLike<number>): boolean {
+  for (let k = 0; k < a.length; k++) if (a[k] !== b[k]) return false;
+  return true;
+}

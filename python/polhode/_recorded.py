@@ -25,6 +25,8 @@ from polhode._trajectory import Trajectory, _Points
 # Between rows a body turns by less than this, in rad, as long as there are no more rows than a page bears.
 _TURN = 0.2
 _MOST_ROWS = 20_000
+# As many states tell how fast it turns.
+_SOME = 101
 
 _SOLIDS: dict[str, tuple[str, ...]] = {
     "box": ("lengths",),
@@ -73,10 +75,13 @@ def _points(trajectory: Trajectory) -> _Points:
     last = float(times[-1]) if len(times) else 0.0
     if last <= 0:
         raise ValueError("the viewer shows motions from time 0 on, and this one has no later time")
-    rate = float(trajectory.omega_body.norm().max())
-    wanted = min(_MOST_ROWS, max(len(times), math.ceil(rate * last / _TURN)))
-    if trajectory._motion is not None and (wanted > len(times) or times[0] != 0):
-        return _Points.of(trajectory._motion.at(np.linspace(0.0, last, max(wanted, 2))))
+    wanted = min(_MOST_ROWS, len(times))
+    if trajectory._motion is not None:
+        some = _Points.of(trajectory._motion.at(np.linspace(0.0, last, _SOME)))
+        rate = float(np.max([some.omega_body.norm().max(), trajectory.omega_body.norm().max()]))
+        wanted = min(_MOST_ROWS, max(len(times), math.ceil(rate * last / _TURN) + 1))
+        if wanted > len(times) or times[0] != 0:
+            return _Points.of(trajectory._motion.at(np.linspace(0.0, last, wanted)))
     if times[0] != 0:
         raise ValueError(f"the viewer shows motions from time 0 on, and this one begins at {times[0]:g} s")
     # Output times may stand twice.

@@ -80,11 +80,11 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
     with bar(path.name) as report:
         source.document(report)
     with Server(source, script, options.port) as server:
-        print(f"{path} is shown at {server.url}", "Ctrl-C ends it.", sep="\n", flush=True)
-        if options.browser:
-            # A browser that is a program of the terminal would keep us from serving it.
-            threading.Thread(target=webbrowser.open, args=(server.url,), daemon=True).start()
         try:
+            print(f"{path} is shown at {server.url}", "Ctrl-C ends it.", sep="\n", flush=True)
+            if options.browser:
+                # A browser that is a program of the terminal would keep us from serving it.
+                threading.Thread(target=webbrowser.open, args=(server.url,), daemon=True).start()
             server.serve_forever()
         except KeyboardInterrupt:
             raise KeyboardInterrupt("the viewer was closed") from None

@@ -4,6 +4,7 @@ import type { Controls } from "../vary/controls.ts";
 import { around, type Range, Slider } from "./slider.tsx";
 import { DENSITY, lengthUnit, massUnit, si } from "./units.ts";
 
+/** Not the rod: a body without any thickness has no definite rate about its axis. */
 const FORMS: [BodyChoice["form"], string][] = [
   ["box", "Box"],
   ["ellipsoid", "Ellipsoid"],
@@ -12,7 +13,6 @@ const FORMS: [BodyChoice["form"], string][] = [
   ["cone", "Cone"],
   ["capsule", "Capsule"],
   ["torus", "Ring"],
-  ["rod", "Rod, thin"],
   ["sphere", "Sphere"],
   ["hollow_sphere", "Hollow sphere"],
 ];

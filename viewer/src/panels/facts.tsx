@@ -61,7 +61,7 @@ export const LAWS: Record<string, string> = {
 function Times({ free }: { free: NonNullable<About["free"]> }) {
   return (
     <>
-      {free.period !== null && <Fact name="Period of Ω_B">{duration(free.period, 7)}</Fact>}
+      {free.period !== null && <Fact name="Period of Ω">{duration(free.period, 7)}</Fact>}
       {free.flip_time !== null && <Fact name="From flip to flip">{duration(free.flip_time, 7)}</Fact>}
       {free.precession_period !== null && (
         <Fact name="Precession">{duration(free.precession_period, 7)} for a turn about L</Fact>
@@ -92,7 +92,7 @@ function Conserved({ about }: { about: About }) {
       <tbody>
         {about.conserved.map(({ name, value, drift }) => (
           <tr key={name}>
-            <th scope="row">{name}</th>
+            <th scope="row">{name.replaceAll("_", " ")}</th>
             <td class="digits">{significant(value, 7)}</td>
             <td class="digits">{small(drift)}</td>
           </tr>

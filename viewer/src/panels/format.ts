@@ -40,6 +40,8 @@ export function small(number: number): string {
 export interface Scale {
   factor: number;
   decimals: number;
+  /** Places for all that is before and after the point. */
+  width: number;
   /** ` × 10⁻³`, or nothing. */
   power: string;
 }
@@ -48,15 +50,16 @@ export interface Scale {
 export function scaleFor(size: number): Scale {
   const exponent = exponentOf(size);
   if (exponent < -2 || exponent > 4) {
-    return { factor: 10 ** -exponent, decimals: 4, power: `${powerOfTen(exponent)} ` };
+    return { factor: 10 ** -exponent, decimals: 4, width: 6, power: `${powerOfTen(exponent)} ` };
   }
-  return { factor: 1, decimals: Math.min(Math.max(4 - exponent, 0), 5), power: "" };
+  const decimals = Math.min(Math.max(4 - exponent, 1), 5);
+  return { factor: 1, decimals, width: Math.max(exponent, 0) + 2 + decimals, power: "" };
 }
 
 /** Its sign and its digits apart; what rounds to nothing has no sign. */
 export function scaled(number: number, scale: Scale): { negative: boolean; digits: string } {
   const digits = (Math.abs(number) * scale.factor).toFixed(scale.decimals);
-  return { negative: number < 0 && /[1-9]/.test(digits), digits };
+  return { negative: number < 0 && /[1-9]/.test(digits), digits: digits.padStart(scale.width, "\u2007") };
 }
 
 function trimmed(digits: string): string {

@@ -18,9 +18,7 @@ export function LawsPanel({ controls }: { controls: Controls }) {
         <select
           id="laws"
           value={choice.from}
-          onChange={(event) =>
-            controls.setLaws({ ...choice, from: event.currentTarget.value as LawsChoice["from"] })
-          }
+          onChange={(event) => controls.chooseLaws(event.currentTarget.value as LawsChoice["from"])}
         >
           <option value="scene">{`As in the scene: ${own}`}</option>
           <option value="here">Chosen here</option>

@@ -14,16 +14,16 @@ export function Playback({ model }: { model: Model }) {
   const playing = model.playing.value;
   return (
     <section class="playback" aria-label="Playback">
+      <button
+        id="play"
+        class="primary"
+        aria-label={playing ? "Pause" : "Play"}
+        title={`${playing ? "Pause" : "Play"} (Space)`}
+        onClick={() => (model.playing.value = !playing)}
+      >
+        <Icon name={playing ? "pause" : "play"} />
+      </button>
       <div class="buttons">
-        <button
-          id="play"
-          class="primary"
-          aria-label={playing ? "Pause" : "Play"}
-          title={`${playing ? "Pause" : "Play"} (Space)`}
-          onClick={() => (model.playing.value = !playing)}
-        >
-          <Icon name={playing ? "pause" : "play"} />
-        </button>
         <button
           id="restart"
           aria-label="To the start"
@@ -41,6 +41,7 @@ export function Playback({ model }: { model: Model }) {
       </div>
       <TimeSlider model={model} about={about} />
       <TimeField model={model} about={about} />
+      <Trust about={about} />
       <Speed model={model} />
     </section>
   );
@@ -79,9 +80,9 @@ function TimeField({ model, about }: { model: Model; about: About }) {
     9,
   );
   return (
-    <div class="field">
+    <div class="field number">
       <label for="time-number">
-        <i>t</i>
+        <i>t</i> =
       </label>
       <input
         id="time-number"
@@ -97,16 +98,22 @@ function TimeField({ model, about }: { model: Model; about: About }) {
         }}
       />
       <span class="unit">{unit.label}</span>
-      <span class={about.exact ? "badge exact" : "badge"} title={trust(about)} id="method">
-        {about.exact ? "exact" : about.method}
-      </span>
     </div>
+  );
+}
+
+/** Whether what is seen is exact. */
+function Trust({ about }: { about: About }) {
+  return (
+    <span class={about.exact ? "badge exact" : "badge"} title={trust(about)} id="method">
+      {about.exact ? "exact" : about.method}
+    </span>
   );
 }
 
 function Speed({ model }: { model: Model }) {
   const speed = model.speed.value;
-  const shown = speed < 200 ? `${typed(speed, 3)}×` : `${duration(speed, 3)}/s`;
+  const shown = speed < 200 ? `${typed(speed, 3)}×` : `${duration(speed, 3, timeUnit(2 * speed))}/s`;
   return (
     <div class="field speed" role="group" aria-label="Speed">
       <button id="slower" aria-label="Slower" title="Slower ([)" onClick={() => faster(model, -1)}>

@@ -4,7 +4,7 @@ import type { Model } from "../model/model.ts";
 import { BLADES, Quantity, Symbol, Terms } from "./bivector.tsx";
 import { type Scale, scaleFor, significant, small } from "./format.ts";
 
-const ROTOR: Scale = { factor: 1, decimals: 4, power: "" };
+const ROTOR: Scale = { factor: 1, decimals: 4, width: 6, power: "" };
 
 /** What the state is at the time shown. */
 export function Readout({ model }: { model: Model }) {
@@ -50,9 +50,9 @@ export function Readout({ model }: { model: Model }) {
       <div class="pair">
         <Quantity
           symbol={
-            <>
+            <span>
               |<Symbol name="L" />|
-            </>
+            </span>
           }
           note=""
           unit="kg m²/s"

@@ -41,7 +41,7 @@ export function Slider(props: {
         step={1}
         value={position(value, range)}
         aria-valuetext={`${shown} ${unit.label}`}
-        onInput={(event) => onChange(at(event.currentTarget.valueAsNumber, range))}
+        onInput={(event) => onChange(at(event.currentTarget.valueAsNumber, range, unit))}
       />
       <input
         id={`${id}-number`}
@@ -68,17 +68,21 @@ function position(value: number, range: Range): number {
   return Math.round(first + (Math.log(value / min) / Math.log(max / min)) * (POSITIONS - first));
 }
 
-/** The value at a position, with four digits: a hand is not finer. */
-function at(position: number, range: Range): number {
+/** The value at a position, with four digits in its unit: a hand is not finer. */
+function at(position: number, range: Range, unit: Unit): number {
   const { min, max, scale, zero } = range;
-  if (scale === "linear") return rounded(min + (position / POSITIONS) * (max - min), max - min);
+  if (scale === "linear") {
+    const step = 10 ** (Math.floor(Math.log10((max - min) / unit.size)) - 3);
+    const value = min + (position / POSITIONS) * (max - min);
+    return clean(Math.round(value / unit.size / step) * step * unit.size);
+  }
   const first = zero ? 1 : 0;
   if (position < first) return 0;
   const value = min * (max / min) ** ((position - first) / (POSITIONS - first));
-  return Number(value.toPrecision(4));
+  return clean(Number((value / unit.size).toPrecision(4)) * unit.size);
 }
 
-function rounded(value: number, size: number): number {
-  const step = 10 ** (Math.floor(Math.log10(size)) - 3);
-  return Number((Math.round(value / step) * step).toPrecision(12));
+/** Without the last digits, which a product of short numbers may have. */
+function clean(number: number): number {
+  return Number(number.toPrecision(14));
 }

@@ -30,8 +30,7 @@ export function si(label: string, scene: string = label): Unit {
 }
 
 /** `3.2 d`, in the unit that fits. */
-export function duration(time: number, digits = 5): string {
-  const fit = timeUnit(time);
+export function duration(time: number, digits = 5, fit = timeUnit(time)): string {
   return `${significant(time / fit.size, digits)} ${fit.label}`;
 }
 

@@ -68,6 +68,13 @@ export class Controls {
     this.change("laws");
   }
 
+  /** The laws of the scene, or those chosen here, which begin with the weight that the scene has. */
+  chooseLaws(from: LawsChoice["from"]): void {
+    const laws = this.laws.value;
+    const first = this.about.value?.held ? [this.forms.value[0]!.name] : [];
+    this.setLaws({ ...laws, from, on: laws.on.size > 0 ? laws.on : new Set(first) });
+  }
+
   setDuration(duration: number): void {
     this.duration.value = duration;
     this.change("run");

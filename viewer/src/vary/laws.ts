@@ -51,11 +51,10 @@ export function lawsFor(about: About, momentum: number, size: number, byPivot: b
   const turn = (2 * Math.PI) / rate;
   const spin = momentum || moment * rate;
   const parameter = (name: string, label: string, unit: Unit, value: number, range?: Range): Parameter => {
-    const neat = Number(value.toPrecision(2));
-    return { name, label, unit, value: neat, range: range ?? around(neat, 50) };
+    return { name, label, unit, value, range: range ?? around(value, 50) };
   };
   const axis = parameter(AXIS, "Plane", si(""), 2, { min: 0, max: 2, scale: "linear" });
-  const held = about.heavy ? Math.hypot(...about.heavy) : (spin * rate) / 20;
+  const held = about.heavy ? Math.hypot(...about.heavy) : neat((spin * rate) / 20);
   const sides: Range = { min: -size, max: size, scale: "linear" };
   const pivot = pivotOf(about) ?? -size / 2;
   const gravity: LawForm = byPivot
@@ -66,7 +65,7 @@ export function lawsFor(about: About, momentum: number, size: number, byPivot: b
           parameter("acceleration", "Acceleration", si("m/s²", "m/s^2"), acceleration(about)),
           {
             name: "pivot",
-            label: "Pivot on the axis e₃",
+            label: "Pivot along e₃",
             unit: lengthUnit(size),
             value: pivot,
             range: sides,
@@ -80,36 +79,40 @@ export function lawsFor(about: About, momentum: number, size: number, byPivot: b
       };
   return [
     gravity,
-    { name: "damping", label: "Damping −g L", parameters: [parameter("rate", "g", si("1/s"), 0.02 / turn)] },
+    {
+      name: "damping",
+      label: "Damping −g L",
+      parameters: [parameter("rate", "g", si("1/s"), neat(0.02 / turn))],
+    },
     {
       name: "viscous_damping",
       label: "Viscous damping −d Ω",
-      parameters: [parameter("size", "d", si("N m s"), (0.02 * moment) / turn)],
+      parameters: [parameter("size", "d", si("N m s"), neat((0.02 * moment) / turn))],
     },
     {
       name: "constant_body",
       label: "Constant, in the body",
-      parameters: [axis, parameter("size", "Size", si("N m"), (0.02 * spin) / turn)],
+      parameters: [axis, parameter("size", "Size", si("N m"), neat((0.02 * spin) / turn))],
     },
     {
       name: "constant_space",
       label: "Constant, in space",
-      parameters: [axis, parameter("size", "Size", si("N m"), (0.02 * spin) / turn)],
+      parameters: [axis, parameter("size", "Size", si("N m"), neat((0.02 * spin) / turn))],
     },
     {
       name: "torsion_spring",
       label: "Torsion spring −k Θ",
-      parameters: [parameter("stiffness", "k", si("N m/rad"), moment / (2 * turn) ** 2)],
+      parameters: [parameter("stiffness", "k", si("N m/rad"), neat(moment * rate ** 2))],
     },
     {
       name: "gyrostat",
       label: "Wheel in the body",
-      parameters: [axis, parameter("momentum", "Its momentum", si("N m s"), spin / 2)],
+      parameters: [axis, parameter("momentum", "Its momentum", si("N m s"), neat(spin / 2))],
     },
     {
       name: "gravity_gradient",
       label: "Gravity gradient, on an orbit",
-      parameters: [parameter("period", "Period", timeUnit(10 * turn), 10 * turn)],
+      parameters: [parameter("period", "Period", timeUnit(10 * turn), neat(10 * turn))],
     },
   ];
 }
@@ -171,6 +174,11 @@ function pivotOf({ held, body }: About): number | null {
   const arm = Math.hypot(...body.center_of_mass);
   if (!held || arm === 0) return null;
   return body.solid ? -body.solid_at[2] : -arm;
+}
+
+/** A suggestion needs no more than two digits. */
+function neat(value: number): number {
+  return Number(value.toPrecision(2));
 }
 
 /** Of gravity, from the weight that the motion tells; that of the Earth where there is none. */

@@ -13,8 +13,9 @@ export interface StartChoice {
   path: { position: Triple; velocity: Triple } | null;
 }
 
-/** Ω_B: mostly in one of `PLANES`, and off it by an angle, toward the next plane or the one after. */
+/** Ω_B: mostly in one plane, and off it by an angle, toward the next plane or the one after. */
 export interface Spin {
+  /** 0, 1, 2 for e2∧e3, e3∧e1, e1∧e2; three more for the other sense. */
   plane: number;
   /** rad/s. */
   rate: number;
@@ -31,8 +32,7 @@ export interface Attitude {
   roll: number;
 }
 
-/** Planes and senses of a spin, as formulas. */
-export const PLANES = ["e2∧e3", "e3∧e1", "e1∧e2", "-e2∧e3", "-e3∧e1", "-e1∧e2"];
+const PLANES = ["e2∧e3", "e3∧e1", "e1∧e2"];
 
 export function startOf(about: About, path: StartChoice["path"]): StartChoice {
   return { spin: spinOf(about.start.omega_body), attitude: null, rotor: about.start.rotor, path };
@@ -71,26 +71,25 @@ export function startTable(start: StartChoice, rate: Unit): string {
 }
 
 function spinFormula({ plane, rate, off, toward }: Spin, unit: Unit): string {
-  const size = `${digits(rate / unit.size)} ${unit.scene}`;
-  const axis = PLANES[plane]!;
-  if (off === 0) return `${size} (${axis})`;
-  const sense = plane < 3 ? "" : "-";
-  const [next, after] = [1, 2].map((k) => `${sense}${PLANES[(plane + k) % 3]!}`);
-  const side = `cos(${angle(toward)}) (${next}) + sin(${angle(toward)}) (${after})`;
-  return `${size} (cos(${angle(off)}) (${axis}) + sin(${angle(off)}) (${side}))`;
+  const size = `${plane < 3 ? "" : "-"}${digits(rate / unit.size)} ${unit.scene}`;
+  const [axis, next, after] = [0, 1, 2].map((k) => PLANES[(plane + k) % 3]!);
+  if (off === 0) return `${size} ${axis}`;
+  const side = `cos(${angle(toward)}) ${next} + sin(${angle(toward)}) ${after}`;
+  return `${size} (cos(${angle(off)}) ${axis} + sin(${angle(off)}) (${side}))`;
 }
 
 function rotorFormula({ turn, tilt, roll }: Attitude): string {
-  const turned = (by: number, plane: string): string => `exp(-0.5 * ${angle(by)} * ${plane})`;
-  return `${turned(turn, "e1∧e2")} ${turned(tilt, "e2∧e3")} ${turned(roll, "e1∧e2")}`;
+  const turned = (by: number, plane: string): string => `exp(${angle(-by / 2)} ${plane})`;
+  return `${turned(turn, PLANES[2]!)} ${turned(tilt, PLANES[0]!)} ${turned(roll, PLANES[2]!)}`;
 }
 
 function angle(radians: number): string {
-  return `(${digits(radians / DEGREE.size)} deg)`;
+  return `${digits(radians / DEGREE.size)} deg`;
 }
 
+/** Without the last digits, which come from radians. */
 function digits(number: number): string {
-  return String(Number(number.toPrecision(15)));
+  return String(Number(number.toPrecision(12)));
 }
 
 /** Between −π and π. */

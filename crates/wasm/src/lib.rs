@@ -8,6 +8,7 @@
 pub mod about;
 pub mod crowd;
 mod exports;
+pub mod formulas;
 pub mod json;
 pub mod merged;
 pub mod opened;

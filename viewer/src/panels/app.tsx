@@ -7,7 +7,7 @@ import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
-import { Facts } from "./facts.tsx";
+import { Facts, regimeOf } from "./facts.tsx";
 import { Header } from "./header.tsx";
 import { LawsPanel } from "./laws.tsx";
 import { openFiles } from "./open.ts";
@@ -59,17 +59,22 @@ export function App({ model, palette, compact, wide }: Props) {
 function MotionPage({ model, palette, compact, wide }: Props) {
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
+  const known = model.about.value !== null;
   return (
     <main class="motion">
       <Picture model={model} palette={palette} />
       <Playback model={model} />
       <aside class="panels" aria-label="Read-outs and controls">
-        <Panel id="state" title="State" open={!compact || wide}>
-          <Readout model={model} />
-        </Panel>
-        <Panel id="motion" title="Motion" open={wide && !compact}>
-          <Facts model={model} />
-        </Panel>
+        {known && (
+          <>
+            <Panel id="state" title="State" open={!compact || wide}>
+              <Readout model={model} />
+            </Panel>
+            <Panel id="motion" title="Motion" open={wide && !compact}>
+              <Facts model={model} />
+            </Panel>
+          </>
+        )}
         {!compact && controls.about.value && (
           <>
             <Panel id="start" title="Spin and attitude" open={wide}>
@@ -87,7 +92,7 @@ function MotionPage({ model, palette, compact, wide }: Props) {
           <ViewPanel model={model} />
         </Panel>
         {!compact && (
-          <Panel id="text" title="Scene" open={false}>
+          <Panel id="text" title="Scene" open={!known}>
             <Editor model={model} />
           </Panel>
         )}
@@ -116,7 +121,7 @@ function Panel(props: { id: string; title: string; open: boolean; children: Comp
 
 /** Tells those who do not see the picture when the kind of motion changes. */
 function Announcement({ model }: { model: Model }) {
-  const regime = useComputed(() => model.about.value?.free?.regime ?? "");
+  const regime = useComputed(() => regimeOf(model.about.value));
   return (
     <p class="hidden" aria-live="polite">
       {regime}

@@ -39,9 +39,11 @@ function Trouble({ model }: { model: Model }) {
   return (
     <div class="trouble" role="alert" id="problem">
       <pre>{problem}</pre>
-      <button class="quiet" onClick={() => model.reset()}>
-        Reset
-      </button>
+      {model.motion.value && (
+        <button class="quiet" onClick={() => model.reset()}>
+          Reset
+        </button>
+      )}
     </div>
   );
 }

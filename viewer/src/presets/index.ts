@@ -48,7 +48,7 @@ export const PRESETS: Preset[] = [
     scene: symmetric,
     view: { speed: 0.1, shown: { polhode: true, herpolhode: true, omega: true, momentum: true } },
     caption:
-      "Two steady turns, one on either side of the rotor: R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t), handout eq. (4.35). " +
+      "Two steady turns, one on either side of the rotor: R(t) = exp(−½Ωₗ t) R(0) exp(−½Ωᵣ t), handout eq. (4.35). " +
       "The axis goes round L while the body turns about the axis.",
   },
   {

@@ -1,4 +1,4 @@
-"""A small scene, a small viewer; and property tests that are the same on every run, each by the test itself."""
+"""A small scene, a small viewer; and property tests that are the same on every run, each by itself."""
 
 import os
 import sys

@@ -11,7 +11,12 @@ ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "python" / "polhode"
 
 # Which crates of ours each crate may use.
-ARROWS = {"polhode-ga": set(), "polhode-rigid": {"polhode-ga"}, "polhode-py": {"polhode-ga", "polhode-rigid"}}
+ARROWS = {
+    "polhode-ga": set(),
+    "polhode-rigid": {"polhode-ga"},
+    "polhode-py": {"polhode-ga", "polhode-rigid"},
+    "polhode-wasm": {"polhode-ga", "polhode-rigid"},
+}
 
 
 def test_crates_know_each_other_in_one_direction():

@@ -4,6 +4,7 @@ use crate::json::Json;
 use crate::opened::Opened;
 use polhode_rigid::Solid;
 use polhode_rigid::free::FreeMotion;
+use polhode_rigid::lagrange::{LagrangeDescription, LagrangeTop};
 use polhode_rigid::regime::FreeDescription;
 use polhode_rigid::scene::{BodySpec, Law};
 use polhode_rigid::torque::{Argument, Torque};
@@ -54,6 +55,7 @@ pub fn about(of: &Opened) -> Json {
         ("conserved", Json::List(conserved.collect())),
         ("norm_drift", certificate.norm_drift.into()),
         ("free", Json::or_null(free(of).map(described))),
+        ("top", Json::or_null(top(of).map(top_described))),
         ("ensemble", Json::or_null(scene.ensemble.as_ref().map(|ensemble| count(ensemble.number)))),
     ])
 }
@@ -128,6 +130,24 @@ fn free(of: &Opened) -> Option<FreeDescription> {
     }
     let inertia = of.scene.ruling_inertia(&of.body);
     FreeMotion::new(&inertia, of.scene.attitude, of.scene.omega_body()).ok().map(|motion| motion.describe())
+}
+
+/// What the invariants of a symmetric top under its weight alone tell.
+fn top(of: &Opened) -> Option<LagrangeDescription> {
+    let [Law { torque: Torque::Heavy(c), .. }] = of.laws[..] else { return None };
+    let inertia = of.scene.ruling_inertia(&of.body);
+    LagrangeTop::new(&inertia, of.scene.attitude, of.scene.omega_body(), c).ok().map(|top| top.describe())
+}
+
+fn top_described(top: LagrangeDescription) -> Json {
+    Json::Object(vec![
+        ("regime", top.regime.to_string().into()),
+        ("tilt", numbers(&[top.tilt_min, top.tilt_max])),
+        ("nutation_period", Json::or_null(top.nutation_period)),
+        ("precession_rate", Json::or_null(top.precession_rate)),
+        ("critical_spin", top.critical_spin.into()),
+        ("sleeps", top.sleeps.into()),
+    ])
 }
 
 fn described(free: FreeDescription) -> Json {

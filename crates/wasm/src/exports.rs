@@ -8,6 +8,7 @@
 #![allow(unsafe_code)]
 
 use crate::about::about;
+use crate::formulas;
 use crate::merged::merged;
 use crate::opened::{Files, Opened, surface, vertices};
 use crate::recorded::Recorded;
@@ -229,5 +230,14 @@ pub extern "C" fn merge() -> i32 {
         let mut rooms = rooms.into_iter();
         let (scene, change) = (text(rooms.next())?, text(rooms.next())?);
         Ok((0, merged(&scene, &change)?.into_bytes()))
+    })
+}
+
+/// Takes lines of formulas, answers what each came to, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn evaluate() -> i32 {
+    answered(|_, rooms| {
+        let lines = text(rooms.into_iter().next())?;
+        Ok((0, formulas::evaluated(&lines).into_bytes()))
     })
 }

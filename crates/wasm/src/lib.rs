@@ -8,8 +8,11 @@
 pub mod about;
 pub mod crowd;
 mod exports;
+pub mod formulas;
 pub mod json;
 pub mod merged;
 pub mod opened;
 pub mod recorded;
 mod rows;
+#[cfg(test)]
+mod tests;

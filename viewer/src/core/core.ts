@@ -122,6 +122,18 @@ export interface About {
     precession_period: number | null;
     flip_time: number | null;
   } | null;
+  /** Of a symmetric top under its weight alone: the kind of motion in words, angles in rad, rates in rad/s, s. */
+  top: {
+    regime: string;
+    /** Smallest and largest angle of the axis from up. */
+    tilt: [number, number];
+    nutation_period: number | null;
+    /** Mean rate about e3. */
+    precession_rate: number | null;
+    /** The spin from which on an upright top sleeps. */
+    critical_spin: number;
+    sleeps: boolean;
+  } | null;
   /** How many bodies an ensemble has; null for one body. */
   ensemble: number | null;
 }

@@ -36,33 +36,37 @@ class Compiled implements Core {
 
   open(scene: string, { name = "scene.toml", files = new Map(), budget = BUDGET }: OpenOptions = {}): Motion {
     this.putScene(scene, name, files);
-    const handle = this.checked(this.exports.open(budget));
-    this.checked(this.exports.about_motion(handle));
+    const handle = this.checked(() => this.exports.open(budget));
+    this.checked(() => this.exports.about_motion(handle));
     return new Held(this, handle, JSON.parse(this.text()) as About);
   }
 
   recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion {
     this.put(new Uint8Array(rows.buffer, rows.byteOffset, rows.byteLength));
     if (of) this.putScene(of.scene, of.name, of.files);
-    return new Held(this, this.checked(this.exports.record()), JSON.parse(about) as About);
+    return new Held(
+      this,
+      this.checked(() => this.exports.record()),
+      JSON.parse(about) as About,
+    );
   }
 
   merged(scene: string, change: string): string {
     this.putText(scene);
     this.putText(change);
-    this.checked(this.exports.merge());
+    this.checked(() => this.exports.merge());
     return this.text();
   }
 
   evaluated(lines: string): Line[] {
     this.putText(lines);
-    this.checked(this.exports.evaluate());
+    this.checked(() => this.exports.evaluate());
     return JSON.parse(this.text()) as Line[];
   }
 
   /** Calls the core about a motion it holds; a Problem if it says so. */
   ask(call: (exports: Exports) => number): void {
-    this.checked(call(this.exports));
+    this.checked(() => call(this.exports));
   }
 
   put(bytes: Uint8Array): void {
@@ -97,7 +101,14 @@ class Compiled implements Core {
     return new Float64Array(this.bytes().buffer);
   }
 
-  private checked(code: number): number {
+  /** The code of a call; a Problem where it says so, or where the core itself failed, after which it is not usable. */
+  private checked(call: () => number): number {
+    let code: number;
+    try {
+      code = call();
+    } catch (error) {
+      throw new Problem(`the core failed (${String(error)}); reload the page`);
+    }
     if (code < 0) throw new Problem(this.text());
     return code;
   }

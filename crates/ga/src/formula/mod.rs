@@ -21,6 +21,7 @@
 //! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
 //! [`MAX_DEPTH`].
 
+mod agreement;
 mod beside;
 mod builder;
 mod compile;
@@ -48,6 +49,7 @@ mod steps;
 mod token;
 mod tree;
 
+pub use agreement::Agreement;
 pub use beside::Beside;
 pub use compile::{compile, types};
 pub use define::{define, heading};

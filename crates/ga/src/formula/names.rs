@@ -85,11 +85,16 @@ impl Names {
         self.meanings.insert(name, meaning)
     }
 
+    /// Takes its meaning from a name; what it stood for, if anything.
+    pub fn forget(&mut self, name: &str) -> Option<Meaning> {
+        self.meanings.remove(name)
+    }
+
     /// Gives a name back what it stood for, or nothing.
     pub(crate) fn restore(&mut self, name: &str, meaning: Option<Meaning>) {
         match meaning {
             Some(meaning) => self.meanings.insert(name.to_owned(), meaning),
-            None => self.meanings.remove(name),
+            None => self.forget(name),
         };
     }
 

@@ -12,7 +12,7 @@
 
 use super::reader::{Reader, Table, Value};
 use crate::torque::{Axes, FormulaTorque, given_names};
-use crate::units::{self, Quantity};
+use crate::units::{Quantity, Source};
 use polhode_ga::formula::{
     Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading,
     parse,
@@ -146,6 +146,11 @@ fn report(reader: &mut Reader, value: &Value, text: &str, wrong: Wrong) {
     reader.report(span, wrong.message);
 }
 
+/// The place in the text as it was written.
+fn placed(source: &Source, wrong: Wrong) -> Wrong {
+    Wrong { span: source.place(wrong.span), message: wrong.message }
+}
+
 impl Formulas {
     fn bind(&mut self, name: String, value: Graded) {
         self.names.bind(name.clone(), Meaning::Value(Type::of(value.grades())));
@@ -154,12 +159,13 @@ impl Formulas {
 
     fn define(&mut self, head: &str, body: &str) -> Result<(), Wrong> {
         let source = self.source(body, &heading(head)?.1)?;
-        define(head, &source.text, Space::g3(), &mut self.names).map_err(|error| source.place(error.into()))
+        define(head, &source.text, Space::g3(), &mut self.names)
+            .map_err(|error| placed(&source, error.into()))
     }
 
     fn value(&self, text: &str) -> Result<Graded, Wrong> {
         let source = self.source(text, &[])?;
-        self.evaluated(&source.text).map_err(|wrong| source.place(wrong))
+        self.evaluated(&source.text).map_err(|wrong| placed(&source, wrong))
     }
 
     fn torque(&self, text: &str, axes: Axes) -> Result<FormulaTorque, Wrong> {
@@ -167,7 +173,7 @@ impl Formulas {
         let source = self.source(text, &given)?;
         let value = |input: &Input| self.values.get(&input.name).map(|value| Given::Value(*value));
         FormulaTorque::new(&source.text, axes, self.names.clone(), value)
-            .map_err(|error| source.place(error.into()))
+            .map_err(|error| placed(&source, error.into()))
     }
 
     fn evaluated(&self, text: &str) -> Result<Graded, Wrong> {
@@ -202,51 +208,6 @@ impl Formulas {
     fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Wrong> {
         let known = |name: String| self.names.get(&name).is_some() || parameters.contains(&name);
         let is_name = |word: &str| canonical(word).is_some_and(known);
-        let found = units::quantities(text, is_name);
-        let found = found.map_err(|error| Wrong { message: error.message, span: error.span })?;
-        let mut source = Source { text: String::new(), pieces: Vec::new() };
-        let mut at = 0;
-        for quantity in found {
-            source.push(&text[at..quantity.span.start], at..quantity.span.start, false);
-            source.push(&format!("({:?})", quantity.value).replace('e', "E"), quantity.span.clone(), true);
-            at = quantity.span.end;
-        }
-        source.push(&text[at..], at..text.len(), false);
-        Ok(source)
-    }
-}
-
-/// A formula as it is read, and where its pieces come from.
-struct Source {
-    text: String,
-    /// Where a piece ends in the text that is read, where it stood, and whether it stood there in other words.
-    pieces: Vec<(usize, Range<usize>, bool)>,
-}
-
-impl Source {
-    fn push(&mut self, piece: &str, from: Range<usize>, reworded: bool) {
-        self.text.push_str(piece);
-        self.pieces.push((self.text.len(), from, reworded));
-    }
-
-    /// The place in the text as it was written.
-    fn place(&self, wrong: Wrong) -> Wrong {
-        let written = |at: usize, end: bool| {
-            let inside =
-                |piece: &&(usize, Range<usize>, bool)| if end { at <= piece.0 } else { at < piece.0 };
-            match self.pieces.iter().find(inside) {
-                Some((_, from, true)) => {
-                    if end {
-                        from.end
-                    } else {
-                        from.start
-                    }
-                }
-                Some((last, from, false)) => from.end.saturating_sub(last - at),
-                None => self.pieces.last().map_or(0, |(_, from, _)| from.end),
-            }
-        };
-        let start = written(wrong.span.start, false);
-        Wrong { span: start..written(wrong.span.end, true).max(start), message: wrong.message }
+        Source::read(text, is_name).map_err(|error| Wrong { message: error.message, span: error.span })
     }
 }

@@ -10,11 +10,13 @@
 //! exponent of the number's text, so that `7.85 g/cm^3` is exactly the `7850.0` of a source file.
 
 mod factor;
+mod source;
 mod table;
 #[cfg(test)]
 mod tests;
 mod within;
 
+pub use source::Source;
 pub use within::{Within, WithinError, quantities};
 
 use factor::{Factor, Problem};

@@ -1,0 +1,128 @@
+//! What the page asks of the core.
+
+use crate::about::about;
+use crate::opened::{Files, Opened};
+use crate::recorded::Recorded;
+use crate::rows::ROW;
+
+const FREE: &str =
+    "[body]\nmoments = [3, 2, 1]\n[initial]\nspin = { vector = [0.1, 1, 0.2] }\n[run]\nduration = 2\n";
+const HEAVY: &str = "[body]\nsolid = 'cone'\nradius = 0.1\nheight = 0.3\nmass = 1\n[initial]\n\
+                     attitude = { plane = 'e2e3', angle = '20 deg' }\nspin = { vector = [0, 0, '20 rev/s'] }\n\
+                     [gravity]\nacceleration = 9.81\npivot = [0, 0, -0.1]\n[run]\nduration = 1\n";
+const DAMPED: &str = "[body]\nmoments = [3, 2, 1]\n[initial]\nspin = { vector = [0.1, 1, 0.2] }\n[torque]\n\
+                      viscous_damping = 0.5\n[run]\nduration = 2\n";
+const SWARM: &str = "[ensemble]\nnumber = 20\nattitude = 'uniform'\nspin = { relative = 0.1 }\n";
+
+fn opened(text: &str) -> Opened {
+    Opened::new(text, "test.toml", &Files::new(), &mut || true).expect("a scene")
+}
+
+/// `R Ω_B ~R = Ω_S` and `L_S = R I(Ω_B) ~R` stand in each row, and exact motions know times beyond their run.
+#[test]
+fn rows_hold_what_they_say() {
+    for text in [FREE, HEAVY, DAMPED] {
+        let of = opened(text);
+        let times: &[f64] = if text == DAMPED { &[2.0, 0.0, 1.3] } else { &[2.0, 0.0, -7.0, 1e6] };
+        for (row, time) in of.states(times).unwrap().iter().zip(times) {
+            assert_eq!(row[0], *time);
+            let twice_kinetic: f64 = (0..3).map(|k| row[5 + k] * row[11 + k]).sum();
+            let in_space: f64 = (0..3).map(|k| row[8 + k] * row[14 + k]).sum();
+            assert!((twice_kinetic - in_space).abs() < 1e-13 * twice_kinetic, "{text}");
+            assert!((row[1..5].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-14);
+        }
+    }
+}
+
+#[test]
+fn stepped_motions_are_known_for_their_run() {
+    let error = opened(DAMPED).states(&[3.0]).unwrap_err();
+    assert!(error.contains("times[0] = 3 lies outside the motion"), "{error}");
+}
+
+#[test]
+fn a_motion_that_takes_too_long_is_given_up() {
+    let long = DAMPED.replace("duration = 2", "duration = 1e6");
+    let mut calls = 0;
+    let error = Opened::new(&long, "test.toml", &Files::new(), &mut || {
+        calls += 1;
+        calls < 3
+    });
+    assert!(error.err().unwrap().contains("too long"));
+}
+
+#[test]
+fn what_is_known_of_a_motion_is_told() {
+    let free = about(&opened(FREE)).to_string();
+    assert!(free.contains(r#""method":"exact""#) && free.contains(r#""regime":"long-axis mode""#), "{free}");
+    let heavy = about(&opened(HEAVY)).to_string();
+    assert!(
+        heavy.contains(r#""solid":{"kind":"cone","radius":0.1,"height":0.3},"solid_at":[-0.0,-0.0,0.1]"#),
+        "{heavy}"
+    );
+    assert!(heavy.contains(r#""regime":"nutating with cusps""#), "{heavy}");
+    assert!(about(&opened(DAMPED)).to_string().contains(r#""free":null,"top":null"#));
+}
+
+#[test]
+fn a_mesh_that_is_missing_is_told_at_its_place() {
+    let text = FREE.replace("moments = [3, 2, 1]", "mesh = 'part.stl'\nmass = 1");
+    let error = Opened::new(&text, "test.toml", &Files::new(), &mut || true).err().unwrap();
+    assert!(
+        error.starts_with("test.toml:2:8: error: part.stl: ") && error.contains("was not given"),
+        "{error}"
+    );
+}
+
+/// A mesh is in the axes of the body, whose origin is the pivot.
+#[test]
+fn a_surface_is_where_the_body_is() {
+    let stl = "solid t\n".to_owned()
+        + &[
+            [[0, 1, 0], [1, 0, 0], [0, 0, 0]],
+            [[1, 0, 0], [0, 0, 1], [0, 0, 0]],
+            [[0, 0, 1], [0, 1, 0], [0, 0, 0]],
+            [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        ]
+        .map(|corners| {
+            let rows = corners.map(|[x, y, z]| format!("vertex {x} {y} {z}\n")).concat();
+            format!("facet normal 0 0 0\nouter loop\n{rows}endloop\nendfacet\n")
+        })
+        .concat()
+        + "endsolid t\n";
+    let files = Files::from([("part.stl".to_owned(), stl.into_bytes())]);
+    let text = HEAVY.replace("solid = 'cone'\nradius = 0.1\nheight = 0.3", "mesh = 'part.stl'");
+    let of = Opened::new(&text, "test.toml", &files, &mut || true).expect("a scene");
+    let middle = of.mesh().unwrap().vertices().iter().map(|v| v.0[2]).fold(f64::INFINITY, f64::min);
+    assert_eq!(middle, 0.1);
+    assert!((of.body.center_of_mass.0[2] - 0.35).abs() < 1e-15);
+}
+
+#[test]
+fn a_recording_is_met_at_its_times_and_turns_evenly_between() {
+    let of = opened(FREE);
+    let rows = of.states(&[0.0, 0.01, 0.02]).unwrap();
+    let recorded = Recorded::new(&rows.concat()).unwrap();
+    assert_eq!(recorded.states(&[0.0, 0.01, 0.02]).unwrap(), rows);
+    let (found, exact) = (recorded.states(&[0.005]).unwrap()[0], of.states(&[0.005]).unwrap()[0]);
+    // Evenly turned to second order in the interval: some |Ω'| h²/8 = 1e-5.
+    assert!((0..ROW).all(|k| (found[k] - exact[k]).abs() < 1e-4));
+    assert!(recorded.states(&[0.03]).unwrap_err().contains("recorded from 0 s to 0.02 s"));
+    assert!(Recorded::new(&[0.0; 5]).is_err());
+    assert!(Recorded::new(&[rows[1], rows[0]].concat()).is_err());
+}
+
+/// Bodies of an exact ensemble are the scene's; stepped ones meet the single body's motion at the frames.
+#[test]
+fn the_bodies_of_an_ensemble_are_followed() {
+    let exact = opened(&format!("{FREE}{SWARM}"));
+    let rotors = exact.bodies(1.0, 5, &mut || true).unwrap();
+    assert_eq!(rotors.len(), 5);
+    let stepped =
+        opened(&format!("{DAMPED}{}", SWARM.replace("attitude = 'uniform'\n", "").replace("0.1", "1e-12")));
+    let alone = stepped.states(&[2.0]).unwrap()[0];
+    for rotor in stepped.bodies(2.0, 100, &mut || true).unwrap() {
+        assert!((0..4).all(|k| (rotor[k] - alone[1 + k]).abs() < 1e-8), "{rotor:?}");
+    }
+    assert!(opened(FREE).bodies(0.0, 5, &mut || true).unwrap_err().contains("one body"));
+}

@@ -1,0 +1,168 @@
+import { PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { CameraName } from "../document.ts";
+import { AXES } from "./rotor.ts";
+
+/** Degrees from bottom to top: a long lens, under which a figure looks as in a book. */
+const LENS = 24;
+/** The radius of a ball that is wholly in view, in drawn units. */
+const FIT = 1.82;
+/** How near and far one may go, in units of the distance at which that ball fits. */
+const NEAREST = 0.2;
+const FARTHEST = 4;
+/** Seconds that a camera takes to its place. */
+const MOVE = 0.6;
+/** What an arrow key turns. */
+const STEP = (5 * Math.PI) / 180;
+
+/** From where 'oblique' looks: e1 points to the left and towards the viewer, e2 to the right, e3 up. */
+const OBLIQUE = new Vector3(Math.cos(0.33) * Math.cos(0.6), Math.cos(0.33) * Math.sin(0.6), Math.sin(0.33));
+
+/** Three's spherical coordinates have their pole along y; here it is e3. */
+const TO_Y = new Quaternion().setFromUnitVectors(AXES[2], AXES[1]);
+const FROM_Y = TO_Y.clone().invert();
+
+interface Move {
+  from: Spherical;
+  to: Spherical;
+  withFrom: number;
+  withTo: number;
+  passed: number;
+}
+
+/** Where the viewer stands: looking at the middle of the figure from a place that pointer and keys change. */
+export class Viewpoint {
+  readonly camera = new PerspectiveCamera(LENS, 1, 0.1, 100);
+  /** How far space turns back so that the body stands still: from 0, not at all, to 1. */
+  withBody = 0;
+  private readonly controls: OrbitControls;
+  private fit = 1;
+  private move: Move | null = null;
+  private preset: { name: CameraName; momentum: Vector3 } = { name: "oblique", momentum: AXES[2] };
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly changed: () => void,
+  ) {
+    this.camera.up.copy(AXES[2]);
+    this.camera.position.copy(OBLIQUE);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enablePan = false;
+    this.controls.rotateSpeed = 0.8;
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", this.grabbed);
+    canvas.addEventListener("keydown", this.pressed);
+  }
+
+  /** Goes to a preset; `momentum` is the axial vector of L. */
+  go(name: CameraName, momentum: Vector3, atOnce: boolean): void {
+    this.preset = { name, momentum: momentum.clone() };
+    const to = this.spherical(this.direction().multiplyScalar(this.fit));
+    const from = this.spherical(this.camera.position.clone().sub(this.controls.target));
+    // The shorter way round.
+    to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI));
+    const withTo = name === "with the body" ? 1 : 0;
+    this.move = { from, to, withFrom: this.withBody, withTo, passed: atOnce ? MOVE : 0 };
+    this.step(0);
+    this.changed();
+  }
+
+  /** Moves on for some seconds; whether there is more to come. */
+  step(seconds: number): boolean {
+    const { move } = this;
+    if (!move) return false;
+    move.passed += seconds;
+    const part = Math.min(move.passed / MOVE, 1);
+    const eased = part * part * (3 - 2 * part);
+    const between = (a: number, b: number) => a + (b - a) * eased;
+    this.withBody = between(move.withFrom, move.withTo);
+    this.stand(
+      new Spherical(
+        between(move.from.radius, move.to.radius),
+        between(move.from.phi, move.to.phi),
+        between(move.from.theta, move.to.theta),
+      ),
+    );
+    if (part === 1) this.move = null;
+    return this.move !== null;
+  }
+
+  /** The canvas has another form: what was in view stays in view. */
+  resize(width: number, height: number): void {
+    const aspect = width / height;
+    this.camera.aspect = aspect;
+    const half = Math.tan((LENS * Math.PI) / 360) * Math.min(aspect, 1);
+    const fit = FIT / Math.sin(Math.atan(half));
+    const at = this.spherical(this.camera.position.clone().sub(this.controls.target));
+    at.radius *= fit / this.fit;
+    if (this.move) for (const end of [this.move.from, this.move.to]) end.radius *= fit / this.fit;
+    this.fit = fit;
+    this.controls.minDistance = NEAREST * fit;
+    this.controls.maxDistance = FARTHEST * fit;
+    this.camera.near = 0.02 * fit;
+    this.camera.far = 2 * FARTHEST * fit;
+    this.camera.updateProjectionMatrix();
+    this.stand(at);
+  }
+
+  /** Looks at a point of space. */
+  look(at: Vector3): void {
+    if (this.controls.target.equals(at)) return;
+    this.camera.position.add(at).sub(this.controls.target);
+    this.controls.target.copy(at);
+    this.controls.update();
+  }
+
+  dispose(): void {
+    this.canvas.removeEventListener("keydown", this.pressed);
+    this.controls.dispose();
+  }
+
+  private readonly grabbed = (): void => {
+    if (this.move) this.withBody = this.move.withTo;
+    this.move = null;
+  };
+
+  private readonly pressed = (event: KeyboardEvent): void => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const at = this.spherical(this.camera.position.clone().sub(this.controls.target));
+    if (event.key === "ArrowLeft") at.theta -= STEP;
+    else if (event.key === "ArrowRight") at.theta += STEP;
+    else if (event.key === "ArrowUp") at.phi -= STEP;
+    else if (event.key === "ArrowDown") at.phi += STEP;
+    else if (event.key === "+" || event.key === "=") at.radius /= 1.1;
+    else if (event.key === "-") at.radius *= 1.1;
+    else if (event.key === "Home") return this.go(this.preset.name, this.preset.momentum, false);
+    else return;
+    event.preventDefault();
+    this.grabbed();
+    this.stand(at);
+    this.changed();
+  };
+
+  private stand(at: Spherical): void {
+    at.makeSafe();
+    this.camera.position.setFromSpherical(at).applyQuaternion(FROM_Y).add(this.controls.target);
+    this.controls.update();
+  }
+
+  private spherical(from: Vector3): Spherical {
+    return new Spherical().setFromVector3(from.applyQuaternion(TO_Y)).makeSafe();
+  }
+
+  private direction(): Vector3 {
+    switch (this.preset.name) {
+      case "along e1":
+        return AXES[0].clone();
+      case "along e2":
+        return AXES[1].clone();
+      case "along e3":
+        return AXES[2].clone();
+      case "along L":
+        return this.preset.momentum.length() > 0 ? this.preset.momentum.clone().normalize() : AXES[2].clone();
+      case "oblique":
+      case "with the body":
+        return OBLIQUE.clone();
+    }
+  }
+}

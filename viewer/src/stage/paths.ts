@@ -1,0 +1,193 @@
+import { Group, Quaternion, Vector3 } from "three";
+import { ROW, State } from "../core/core.ts";
+import type { Shown } from "../document.ts";
+import { span } from "../model/model.ts";
+import type { Palette } from "../palette.ts";
+import { type Figure, REACH } from "./figure.ts";
+import type { Instant, Part } from "./part.ts";
+import { Ribbon, type Screen } from "./ribbon.ts";
+import { quaternion, vector } from "./rotor.ts";
+
+/** Points of a path at most. */
+const POINTS = 10_000;
+/** Turns of the body that a tail lasts. */
+const TURNS = 8;
+const MOST_TURNS = 60;
+/** What is to come is drawn so much fainter than what was. */
+const AHEAD = 0.22;
+/** The polhode lies on the ellipsoid; so much larger, it is seen on it. */
+export const LIFTED = 1.004;
+
+/**
+ * The path of an axis of the body in space, and those of ω: the herpolhode in space, the polhode in the body. States
+ * are asked for at equal times in a stretch around the present, three tails long, and anew when the present leaves
+ * its middle; between, the lines only fade elsewhere.
+ */
+export class Paths implements Part {
+  readonly inSpace = new Group();
+  readonly inBody = new Group();
+  private readonly trace: Ribbon;
+  private readonly herpolhode: Ribbon;
+  private readonly polhode: Ribbon;
+  private figure: Figure | null = null;
+  /** How long a tail is, in s, that of the paths of ω, and the middle of the stretch. */
+  private tail = 1;
+  private turns = 1;
+  private middle = Number.NaN;
+  private closed = false;
+
+  constructor(screen: Screen) {
+    this.trace = new Ribbon(screen, { width: 2.2, behind: 0.3 });
+    this.herpolhode = new Ribbon(screen, { width: 2, behind: 0.35 });
+    this.polhode = new Ribbon(screen, { width: 2.4, behind: 0.35 });
+    this.inSpace.add(this.trace.object, this.herpolhode.object);
+    this.inBody.add(this.polhode.object);
+  }
+
+  get points(): number {
+    return [this.trace, this.herpolhode, this.polhode].reduce(
+      (sum, path) => sum + (path.object.visible ? path.count : 0),
+      0,
+    );
+  }
+
+  follow(figure: Figure): void {
+    this.figure = figure;
+    this.middle = Number.NaN;
+    this.tail = tailOf(figure);
+    // ω goes the same ways again and again.
+    this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
+    const period = figure.about.free?.period ?? null;
+    this.closed = period !== null && within(figure, period);
+    if (this.closed) this.polhode.set(polhodeOf(figure, period!), { closed: true });
+  }
+
+  paint(palette: Palette): void {
+    this.trace.paint(palette.trace);
+    this.herpolhode.paint(palette.herpolhode);
+    this.polhode.paint(palette.polhode);
+  }
+
+  update({ time }: Instant, shown: Shown): void {
+    this.trace.object.visible = shown.trace;
+    this.herpolhode.object.visible = shown.herpolhode;
+    this.polhode.object.visible = shown.polhode;
+    const all = this.closed
+      ? [shown.trace, shown.herpolhode]
+      : [shown.trace, shown.herpolhode, shown.polhode];
+    if (!this.figure || !all.includes(true)) return;
+    if (!(Math.abs(time - this.middle) <= this.tail / 2)) this.ask(this.figure, time);
+    const since = time - this.middle;
+    this.trace.fade(since / this.tail, AHEAD);
+    this.herpolhode.fade(since / this.turns, AHEAD);
+    if (!this.closed) this.polhode.fade(since / this.turns, AHEAD);
+  }
+
+  dispose(): void {
+    this.trace.dispose();
+    this.herpolhode.dispose();
+    this.polhode.dispose();
+  }
+
+  private ask(figure: Figure, time: number): void {
+    // Times are whole multiples of one step, so that the next stretch goes through the same points.
+    const step = (3 * this.tail) / POINTS;
+    const [first, last] = span(figure.about);
+    const from = Math.ceil(Math.max(first, time - 1.5 * this.tail) / step);
+    const to = Math.floor(Math.min(last, time + 1.5 * this.tail) / step);
+    const times = Float64Array.from({ length: Math.max(to - from + 1, 1) }, (_, k) =>
+      Math.min(Math.max((from + k) * step, first), last),
+    );
+    const rows = figure.motion.states(times);
+    this.middle = time;
+    this.trace.set(traced(rows, figure.traced), { parameters: times.map((t) => (t - time) / this.tail) });
+    const parameters = times.map((t) => (t - time) / this.turns);
+    this.herpolhode.set(taken(rows, State.omegaSpace, figure.rate), { parameters });
+    if (!this.closed) this.polhode.set(taken(rows, State.omegaBody, LIFTED * figure.rate), { parameters });
+  }
+}
+
+/** How long a tail is: of a free body some turns and a whole period; of a top as long as its path is resolved. */
+function tailOf(figure: Figure): number {
+  const { about } = figure;
+  const turn = (2 * Math.PI) / figure.omega;
+  if (!about.held) {
+    const period = 1.1 * (about.free?.period ?? 0);
+    return Math.min(
+      Math.max(TURNS * turn, period),
+      MOST_TURNS * turn,
+      about.exact ? Infinity : about.duration,
+    );
+  }
+  let tail = about.duration;
+  for (let halved = 0; halved < 12 && !resolved(figure, tail); halved++) tail /= 2;
+  return tail;
+}
+
+/** Whether a path of points so far apart bends little from one to the next, but for a cusp now and then. */
+function resolved(figure: Figure, tail: number): boolean {
+  const count = 600;
+  const step = (3 * tail) / POINTS;
+  const times = Float64Array.from({ length: count }, (_, k) => Math.min(k * step, figure.about.duration));
+  const path = traced(figure.motion.states(times), figure.traced);
+  const [before, after] = [new Vector3(), new Vector3()];
+  let bent = 0;
+  for (let at = 3; at + 5 < path.length; at += 3) {
+    vector(path, at, before).sub(vector(path, at - 3, after));
+    vector(path, at + 3, after).sub(vector(path, at));
+    const seen = before.length() > 2e-3 && after.length() > 2e-3;
+    if (seen && before.angleTo(after) > 0.3) bent++;
+  }
+  return bent <= 0.02 * count;
+}
+
+/** Whether times from 0 on are known for so long. */
+function within(figure: Figure, duration: number): boolean {
+  const [first, last] = span(figure.about);
+  return first <= 0 && duration <= last;
+}
+
+/** The tips of a unit vector of the body in space. */
+function traced(rows: Float64Array, axis: Vector3): Float64Array {
+  const count = rows.length / ROW;
+  const points = new Float64Array(3 * count);
+  const [turn, point] = [new Quaternion(), new Vector3()];
+  for (let k = 0; k < count; k++) {
+    quaternion(rows, ROW * k + State.rotor, turn);
+    point
+      .copy(axis)
+      .applyQuaternion(turn)
+      .multiplyScalar(REACH)
+      .toArray(points, 3 * k);
+  }
+  return points;
+}
+
+function taken(rows: Float64Array, at: number, scale: number): Float64Array {
+  const count = rows.length / ROW;
+  const points = new Float64Array(3 * count);
+  for (let k = 0; k < count; k++) {
+    for (let i = 0; i < 3; i++) points[3 * k + i] = scale * rows[ROW * k + at + i]!;
+  }
+  return points;
+}
+
+/** A closed polhode: near a saddle ω lingers, then hurries, so times are halved until points lie near each other. */
+function polhodeOf(figure: Figure, period: number): Float64Array {
+  const near = 0.02;
+  let times = Float64Array.from({ length: 256 }, (_, k) => (period * k) / 256);
+  let points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+  for (let halved = 0; halved < 12 && times.length < POINTS / 4; halved++) {
+    const finer: number[] = [];
+    times.forEach((time, k) => {
+      const next = (k + 1) % times.length;
+      finer.push(time);
+      const gap = Math.hypot(...[0, 1, 2].map((i) => points[3 * next + i]! - points[3 * k + i]!));
+      if (gap > near) finer.push((time + (times[k + 1] ?? period)) / 2);
+    });
+    if (finer.length === times.length) break;
+    times = Float64Array.from(finer);
+    points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+  }
+  return points;
+}

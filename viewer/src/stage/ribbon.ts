@@ -1,0 +1,205 @@
+import {
+  Color,
+  DoubleSide,
+  GreaterDepth,
+  Group,
+  InterleavedBuffer,
+  InterleavedBufferAttribute,
+  BufferAttribute,
+  BufferGeometry,
+  LessEqualDepth,
+  Mesh,
+  ShaderMaterial,
+  Sphere,
+  Vector2,
+} from "three";
+
+/** The size of the canvas in CSS pixels, shared by all ribbons of a stage. */
+export interface Screen {
+  value: Vector2;
+}
+
+const VERTEX = /* glsl */ `
+  attribute vec3 before;
+  attribute vec3 after;
+  attribute vec2 along;
+  uniform vec2 screen;
+  uniform float width;
+  varying float parameter;
+
+  vec2 direction(vec2 to) {
+    return dot(to, to) > 1e-8 ? normalize(to) : vec2(0.0);
+  }
+
+  void main() {
+    mat4 onto = projectionMatrix * modelViewMatrix;
+    vec4 here = onto * vec4(position, 1.0);
+    vec4 from = onto * vec4(before, 1.0);
+    vec4 to = onto * vec4(after, 1.0);
+    vec2 middle = here.xy / here.w;
+    vec2 coming = direction((middle - from.xy / from.w) * screen);
+    vec2 going = direction((to.xy / to.w - middle) * screen);
+    vec2 along2 = coming + going;
+    vec2 tangent = dot(along2, along2) > 1e-3 ? normalize(along2) : direction(coming - going);
+    // At a bend the ribbon is wider along the bisector; at a cusp it would be without end.
+    float bend = max(dot(tangent, going), dot(tangent, coming));
+    float miter = 1.0 / max(bend, 0.6);
+    here.xy += vec2(-tangent.y, tangent.x) * along.x * miter * width / screen * here.w;
+    parameter = along.y;
+    gl_Position = here;
+  }
+`;
+
+const FRAGMENT = /* glsl */ `
+  uniform vec3 color;
+  uniform float opacity;
+  uniform float now;
+  uniform float ahead;
+  uniform bool fades;
+  uniform float dash;
+  varying float parameter;
+
+  void main() {
+    float alpha = opacity;
+    if (fades) {
+      float age = now - parameter;
+      float left = clamp(1.0 - abs(age), 0.0, 1.0);
+      alpha *= (age >= 0.0 ? left : ahead) * left;
+    }
+    if (dash > 0.0 && fract(parameter / dash) > 0.55) discard;
+    if (alpha < 0.004) discard;
+    gl_FragColor = vec4(color, alpha);
+    #include <colorspace_fragment>
+  }
+`;
+
+/** Numbers for each vertex: the point, the side (−1 or 1) and the parameter. */
+const STRIDE = 5;
+
+export interface RibbonStyle {
+  /** CSS pixels. */
+  width: number;
+  opacity?: number;
+  /** How much is seen of what lies behind other things, of `opacity`. */
+  behind?: number;
+  /** Length of a dash and its gap, in units of the parameter. */
+  dash?: number;
+  order?: number;
+}
+
+/**
+ * A line some pixels wide: one strip of triangles, joined at the bends, so that translucent lines have no dark dots
+ * where segments meet. Along the line runs a parameter, by which it can fade: from `now` back over one unit, and, as
+ * faint as `ahead` says, forward over one.
+ */
+export class Ribbon {
+  readonly object = new Group();
+  /** How many points it has. */
+  count = 0;
+  private readonly color = { value: new Color() };
+  private readonly now = { value: 0 };
+  private readonly ahead = { value: 0 };
+  private readonly fades = { value: false };
+  private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[] = [];
+
+  constructor(screen: Screen, style: RibbonStyle) {
+    const opacity = style.opacity ?? 1;
+    const passes: [number, typeof LessEqualDepth | typeof GreaterDepth][] = [[opacity, LessEqualDepth]];
+    if (style.behind) passes.push([opacity * style.behind, GreaterDepth]);
+    for (const [seen, depthFunc] of passes) {
+      const material = new ShaderMaterial({
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        uniforms: {
+          screen,
+          width: { value: style.width },
+          color: this.color,
+          opacity: { value: seen },
+          now: this.now,
+          ahead: this.ahead,
+          fades: this.fades,
+          dash: { value: style.dash ?? 0 },
+        },
+        transparent: true,
+        depthWrite: false,
+        depthFunc,
+        side: DoubleSide,
+      });
+      const mesh = new Mesh(new BufferGeometry(), material);
+      mesh.frustumCulled = false;
+      mesh.renderOrder = style.order ?? 2;
+      mesh.visible = false;
+      this.meshes.push(mesh);
+      this.object.add(mesh);
+    }
+  }
+
+  /** Goes through points (n × 3); `parameters` are their numbers, or else the length of the line up to them. */
+  set(points: ArrayLike<number>, options: { parameters?: ArrayLike<number>; closed?: boolean } = {}): void {
+    const closed = options.closed ?? false;
+    const points3 = points.length / 3;
+    const count = points3 + (closed && points3 > 0 ? 1 : 0);
+    const data = new Float32Array((count + 2) * 2 * STRIDE);
+    let length = 0;
+    // One more point before the first and after the last: the strip looks at the neighbours of each.
+    for (let row = 0; row < count + 2; row++) {
+      const k = closed ? (row - 1 + points3) % points3 : Math.min(Math.max(row - 1, 0), count - 1);
+      const last = closed ? (k + points3 - 1) % points3 : Math.max(k - 1, 0);
+      if (row > 1) {
+        length += Math.hypot(
+          points[3 * k]! - points[3 * last]!,
+          points[3 * k + 1]! - points[3 * last + 1]!,
+          points[3 * k + 2]! - points[3 * last + 2]!,
+        );
+      }
+      const parameter = options.parameters ? options.parameters[k]! : length;
+      for (let side = 0; side < 2; side++) {
+        const at = (2 * row + side) * STRIDE;
+        for (let i = 0; i < 3; i++) data[at + i] = points[3 * k + i]!;
+        data[at + 3] = 2 * side - 1;
+        data[at + 4] = parameter;
+      }
+    }
+    this.count = count;
+    const geometry = count > 1 ? strip(data, count) : new BufferGeometry();
+    this.meshes[0]!.geometry.dispose();
+    for (const mesh of this.meshes) {
+      mesh.geometry = geometry;
+      mesh.visible = count > 1;
+    }
+  }
+
+  paint(color: string | Color): void {
+    this.color.value.set(color);
+  }
+
+  /** The parameter at which the line is strongest. */
+  fade(now: number, ahead: number): void {
+    this.fades.value = true;
+    this.now.value = now;
+    this.ahead.value = ahead;
+  }
+
+  dispose(): void {
+    this.meshes[0]!.geometry.dispose();
+    for (const mesh of this.meshes) mesh.material.dispose();
+  }
+}
+
+/** Each vertex sees its neighbours in the same buffer, two vertices before and after it. */
+function strip(data: Float32Array, count: number): BufferGeometry {
+  const geometry = new BufferGeometry();
+  const vertices = new InterleavedBuffer(data, STRIDE);
+  const index = new Uint32Array(6 * (count - 1));
+  for (let k = 0; k < count - 1; k++) {
+    index.set([2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3], 6 * k);
+  }
+  geometry.setAttribute("before", new InterleavedBufferAttribute(vertices, 3, 0));
+  geometry.setAttribute("position", new InterleavedBufferAttribute(vertices, 3, 2 * STRIDE));
+  geometry.setAttribute("along", new InterleavedBufferAttribute(vertices, 2, 2 * STRIDE + 3));
+  geometry.setAttribute("after", new InterleavedBufferAttribute(vertices, 3, 4 * STRIDE));
+  geometry.setIndex(new BufferAttribute(index, 1));
+  // Three would find it from more vertices than there are, for its order of drawing; the place of the object does.
+  geometry.boundingSphere = new Sphere();
+  return geometry;
+}

@@ -1,0 +1,299 @@
+import { effect, type ReadonlySignal } from "@preact/signals";
+import {
+  Color,
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { type Motion, State } from "../core/core.ts";
+import type { CameraName, Shown } from "../document.ts";
+import type { Model } from "../model/model.ts";
+import type { Palette } from "../palette.ts";
+import { Body } from "./body.ts";
+import { Viewpoint } from "./camera.ts";
+import { Crowd } from "./crowd.ts";
+import { Disc, MOMENTUM, OMEGA } from "./disc.ts";
+import { figureOf } from "./figure.ts";
+import { BodyFrame, SpaceFrame } from "./frames.ts";
+import { Gravity } from "./gravity.ts";
+import { Labels } from "./labels.ts";
+import type { Instant, Part } from "./part.ts";
+import { Paths } from "./paths.ts";
+import { Poinsot } from "./poinsot.ts";
+import type { Screen } from "./ribbon.ts";
+import { quaternion, vector } from "./rotor.ts";
+
+/** This browser draws nothing in three dimensions. */
+export class NoWebGL extends Error {}
+
+/** The longest time that a frame lets pass: a page that was hidden goes on from where it was. */
+const LONGEST = 0.1;
+
+/**
+ * The motion of a model, drawn in an element that it fills and follows in size. It draws when something has changed,
+ * and lets the time of the model pass while it plays; a page at rest costs nothing.
+ */
+export class Stage {
+  private readonly canvas = document.createElement("canvas");
+  private readonly message = document.createElement("p");
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  /** Space, which turns back under a camera that turns with the body. */
+  private readonly space = new Group();
+  private readonly turning = new Group();
+  private readonly hemisphere = new HemisphereLight();
+  private readonly lamp = new DirectionalLight();
+  private readonly labels = new Labels();
+  private readonly screen: Screen = { value: new Vector2(1, 1) };
+  private readonly viewpoint: Viewpoint;
+  private readonly paths: Paths;
+  private readonly parts: Part[];
+  private readonly calm = matchMedia("(prefers-reduced-motion: reduce)");
+  private readonly observer: ResizeObserver;
+  private readonly unwatch: () => void;
+
+  private motion: Motion | null = null;
+  private painted: Palette | null = null;
+  private camera: CameraName | null = null;
+  private request = 0;
+  private last: number | null = null;
+  private played = 0;
+  private drawn = 0;
+  private spent = 0;
+  private lost = false;
+  /** What a frame itself changes is in its picture. */
+  private drawing = false;
+
+  constructor(
+    private readonly host: HTMLElement,
+    private readonly model: Model,
+    private readonly palette: ReadonlySignal<Palette>,
+  ) {
+    const context = this.canvas.getContext("webgl2", {
+      antialias: true,
+      powerPreference: "high-performance",
+    });
+    if (!context) throw new NoWebGL("this browser draws no WebGL 2");
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, context, antialias: true });
+    this.viewpoint = new Viewpoint(this.canvas, this.draw);
+    this.paths = new Paths(this.screen);
+    const calm = () => this.calm.matches;
+    this.parts = [
+      new Body(),
+      new BodyFrame(this.screen, this.labels),
+      new SpaceFrame(this.screen, this.labels),
+      new Disc(this.screen, this.labels, OMEGA, calm),
+      new Disc(this.screen, this.labels, MOMENTUM, calm),
+      new Poinsot(this.screen),
+      this.paths,
+      new Gravity(this.screen, this.labels),
+      new Crowd(),
+    ];
+    for (const { inSpace, inBody } of this.parts) {
+      if (inSpace) this.space.add(inSpace);
+      if (inBody) this.turning.add(inBody);
+    }
+    this.space.add(this.turning);
+    // The lamp goes with the viewer, over their left shoulder.
+    this.lamp.position.set(-3, 4, 6);
+    this.viewpoint.camera.add(this.lamp, this.lamp.target);
+    this.hemisphere.position.set(0, 0, 1);
+    this.scene.add(this.space, this.viewpoint.camera, this.hemisphere);
+    this.furnish();
+    this.observer = new ResizeObserver(this.resize);
+    this.observer.observe(host);
+    this.unwatch = effect(() => {
+      const { model } = this;
+      for (const watched of [model.motion, model.row, model.shown, model.camera, model.playing, palette]) {
+        void watched.value;
+      }
+      this.draw();
+    });
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.request);
+    this.request = 0;
+    this.lost = true;
+    this.unwatch();
+    this.observer.disconnect();
+    this.viewpoint.dispose();
+    for (const part of this.parts) part.dispose();
+    this.renderer.dispose();
+    this.canvas.remove();
+    this.labels.element.remove();
+    this.message.remove();
+  }
+
+  /** Puts canvas, labels and message into the host. */
+  private furnish(): void {
+    const { canvas, host, message } = this;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.style.cssText =
+      "position: absolute; inset: 0; width: 100%; height: 100%; outline-offset: -2px; cursor: grab";
+    canvas.addEventListener("webglcontextlost", (event) => {
+      // Without this it would not come back.
+      event.preventDefault();
+      this.lost = true;
+      message.hidden = false;
+    });
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.lost = false;
+      message.hidden = true;
+      this.draw();
+    });
+    message.hidden = true;
+    message.setAttribute("role", "status");
+    message.textContent =
+      "The graphics card has let go of the picture; it will be drawn again as soon as it can be.";
+    message.style.cssText = "position: absolute; inset: auto 1rem 1rem; margin: 0; text-align: center";
+    if (getComputedStyle(host).position === "static") host.style.position = "relative";
+    host.append(canvas, this.labels.element, message);
+  }
+
+  /** Asks for one frame. */
+  private readonly draw = (): void => {
+    if (this.request === 0 && !this.lost && !this.drawing) this.request = requestAnimationFrame(this.frame);
+  };
+
+  private readonly resize = (): void => {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.screen.value.set(width, height);
+    this.viewpoint.resize(width, height);
+    this.draw();
+  };
+
+  private readonly frame = (now: number): void => {
+    this.request = 0;
+    this.drawing = true;
+    const began = performance.now();
+    const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST);
+    const playing = this.model.playing.peek();
+    if (playing) {
+      this.model.tick(passed);
+      this.played += passed;
+    }
+    const moving = this.viewpoint.step(passed);
+    this.show();
+    this.drawing = false;
+    const going = playing || moving;
+    this.last = going ? now : null;
+    if (going) this.draw();
+    const took = performance.now() - began;
+    this.spent += (took - this.spent) * (this.drawn < 10 ? 0.5 : 0.1);
+    this.drawn += 1;
+    this.host.dataset.drawn = String(this.drawn);
+    this.host.dataset.frameMs = this.spent.toFixed(3);
+    this.host.dataset.points = String(this.paths.points);
+  };
+
+  /** Draws the present. */
+  private show(): void {
+    const { host, model, renderer, viewpoint } = this;
+    if (host.clientWidth === 0 || host.clientHeight === 0) return;
+    const shown = model.shown.peek();
+    this.follow();
+    this.paint();
+    const row = model.row.peek();
+    this.space.visible = row !== null;
+    if (row) {
+      const instant = this.instant(row);
+      this.stand(instant.momentum);
+      this.turning.quaternion.copy(instant.attitude);
+      for (const part of this.parts) part.update(instant, shown);
+      const description = this.description(shown);
+      if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
+    }
+    this.scene.updateMatrixWorld();
+    this.labels.place(
+      viewpoint.camera,
+      this.space.matrixWorld,
+      host.clientWidth,
+      host.clientHeight,
+      shown.labels && row !== null,
+    );
+    renderer.render(this.scene, viewpoint.camera);
+  }
+
+  private follow(): void {
+    const motion = this.model.motion.peek();
+    if (!motion || motion === this.motion) return;
+    const figure = figureOf(motion);
+    for (const part of this.parts) part.follow(figure);
+    // A top that stands is looked at above its tip.
+    const start = quaternion(figure.about.start.rotor);
+    const top = figure.traced.clone().applyQuaternion(start).z;
+    this.viewpoint.look(new Vector3(0, 0, figure.about.held ? Math.max(0.2 * top, 0) : 0));
+    this.motion = motion;
+  }
+
+  private paint(): void {
+    const palette = this.palette.peek();
+    if (palette === this.painted) return;
+    this.painted = palette;
+    const background = new Color(palette.background);
+    const dark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5;
+    this.renderer.setClearColor(background);
+    this.hemisphere.color.set("#ffffff");
+    this.hemisphere.groundColor.set(dark ? "#58606c" : "#c0c7d0");
+    this.hemisphere.intensity = dark ? 2.3 : 2.5;
+    this.lamp.intensity = dark ? 1.8 : 1.7;
+    this.message.style.color = palette.text;
+    this.labels.paint(palette.background);
+    for (const part of this.parts) part.paint(palette);
+  }
+
+  /** The camera of the model, when it is another than before. */
+  private stand(momentum: Vector3): void {
+    const name = this.model.camera.peek();
+    if (name === this.camera) return;
+    this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches);
+    this.camera = name;
+  }
+
+  private instant(row: Float64Array): Instant {
+    const attitude = quaternion(row, State.rotor);
+    const { camera, withBody } = this.viewpoint;
+    this.space.quaternion.identity().slerp(attitude.clone().invert(), withBody);
+    const toSpace = this.space.quaternion.clone().invert().multiply(camera.quaternion);
+    const omegaBody = vector(row, State.omegaBody);
+    return {
+      time: row[State.time]!,
+      attitude,
+      omega: vector(row, State.omegaSpace),
+      omegaBody,
+      momentum: vector(row, State.momentumSpace),
+      doubleKinetic: omegaBody.dot(vector(row, State.momentumBody)),
+      right: new Vector3(1, 0, 0).applyQuaternion(toSpace),
+      up: new Vector3(0, 1, 0).applyQuaternion(toSpace),
+      played: this.played,
+    };
+  }
+
+  private description(shown: Shown): string {
+    const about = this.motion?.about;
+    const things: [boolean, string][] = [
+      [shown.body, "the body"],
+      [shown.bodyFrame, "its axes f1, f2, f3"],
+      [shown.spaceFrame, "the axes e1, e2, e3 of space"],
+      [shown.omega, "the angular velocity Ω as an oriented disc"],
+      [shown.momentum, "the angular momentum L as an oriented disc"],
+      [shown.poinsot, "Poinsot's ellipsoid on the invariable plane"],
+      [shown.polhode, "the polhode"],
+      [shown.herpolhode, "the herpolhode"],
+      [shown.trace, "the path of an axis of the body"],
+      [shown.gravity && about?.held === true, "the pivot and the weight"],
+    ];
+    const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);
+    const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
+    return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}.`;
+  }
+}

@@ -11,9 +11,9 @@ EVERY = [*FILES, *PRESETS, *SCENES]
 
 
 @pytest.fixture(scope="module")
-def shared(_pages, tmp_path_factory, follow):
+def shared(pages, tmp_path_factory, follow):
     """One page, which is shown one scene after the other."""
-    page = _pages()
+    page = pages()
     path = tmp_path_factory.mktemp("page") / "page.html"
     path.write_text(_html.page(_document.of_scene(follow("asymmetric").scene)))
     page.open(path)

@@ -1,0 +1,111 @@
+"""The widget in JupyterLab: Python and the page follow each other."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from missing import left_out
+
+CELLS = (
+    "import polhode as ph\nviewer = ph.view('box.toml')\nviewer",
+    "viewer.time = 1.25",
+    "print('shown', viewer.time, viewer.state.omega_body.components.tolist())",
+)
+ADDRESS = r"http://127\.0\.0\.1:\d+"
+SCENE = """\
+[body]
+moments = [1, 2, 3]
+[initial]
+spin = { vector = [0.3, 1, 0.2] }
+[run]
+duration = "5 s"
+"""
+
+
+@pytest.fixture
+def notebook(tmp_path):
+    """Where JupyterLab shows a notebook with the cells."""
+    try:
+        import ipykernel  # noqa: F401
+        import jupyterlab  # noqa: F401
+    except ImportError:
+        left_out("JupyterLab was not found: pip install --group notebook-test")
+    (tmp_path / "box.toml").write_text(SCENE)
+    cells = [
+        {
+            "cell_type": "code",
+            "id": f"c{k}",
+            "execution_count": None,
+            "metadata": {},
+            "outputs": [],
+            "source": text,
+        }
+        for k, text in enumerate(CELLS)
+    ]
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    (tmp_path / "a.ipynb").write_text(
+        json.dumps({"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5})
+    )
+    server = subprocess.Popen(
+        [
+            *(
+                sys.executable,
+                "-m",
+                "jupyterlab",
+                "--no-browser",
+                "--allow-root",
+                "--ip=127.0.0.1",
+                "--port=0",
+            ),
+            *("--IdentityProvider.token=secret", "--LabApp.news_url=", f"--ServerApp.root_dir={tmp_path}"),
+            "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+        ],
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        env={
+            **os.environ,
+            "JUPYTER_CONFIG_DIR": str(tmp_path / "config"),
+            "JUPYTER_DATA_DIR": str(tmp_path / "data"),
+        },
+    )
+    address = next(found[0] for line in server.stderr if (found := re.search(ADDRESS, line)))
+    # What it tells from now on nobody reads, but it must be taken.
+    threading.Thread(target=server.stderr.read, daemon=True).start()
+    yield f"{address}/lab/tree/a.ipynb?token=secret"
+    server.terminate()
+    server.wait()
+
+
+def test_python_and_the_page_follow_each_other(notebook, pages):
+    page = pages()
+    lab, viewer = page.page, page.viewer
+    lab.context.set_offline(False)
+    lab.goto(notebook)
+
+    def run(cell):
+        lab.locator(".jp-CodeCell").nth(cell).locator(".cm-content").click()
+        lab.keyboard.press("Shift+Enter")
+
+    lab.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for(timeout=60_000)
+    run(0)
+    viewer.wait_for(timeout=60_000)
+    page.settled()
+    run(1)
+    page.until("model.time.value === 1.25")
+    # Now by hand, in the page.
+    lab.get_by_label("Time, s").fill("3.5")
+    lab.get_by_label("Time, s").press("Enter")
+    page.until("model.time.value === 3.5")
+    rates = page.data("omega-body").tolist()
+    run(2)
+    told = lab.locator(".jp-OutputArea-output", has_text="shown 3.5")
+    told.wait_for()
+    assert json.loads(told.inner_text().partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)
+    asked = {re.match(r"\w+://[^/]*", address)[0] for address in page.requests}
+    assert {re.sub(r":\d+$", "", address) for address in asked} <= {"http://127.0.0.1", "ws://127.0.0.1"}
+    lab.context.close()

@@ -26,7 +26,7 @@ const SIDES = [
 
 /** The colours of things, in their order. */
 export function colours(palette: Palette): string[] {
-  return [...palette.axes, palette.trace, palette.polhode, palette.weight];
+  return [...palette.axes, palette.trace, palette.polhode, palette.text];
 }
 
 /**
@@ -149,10 +149,18 @@ export class Drawing {
     this.viewpoint.look(this.middle);
   }
 
-  /** e1, e2, e3 in their length, or a round multiple or part of it, on a grid. */
+  /** The length of the drawn axes: that of e1 where it can be seen well, else a round multiple or part of it. */
+  private step(): number {
+    const { unit } = this;
+    if (unit > 0.3 && unit < 1.9) return unit;
+    const power = 10 ** Math.floor(Math.log10(1 / unit));
+    return [5, 2, 1].map((first) => first * power * unit).find((step) => step < 1.2)!;
+  }
+
+  /** e1, e2, e3 on a grid of the same step. */
   private axes(palette: Palette): Shapes {
     const shapes = new Shapes(this.screen, palette.faint);
-    const step = 10 ** Math.round(Math.log10(0.7 / this.unit)) * this.unit;
+    const step = this.step();
     for (const axis of AXES) {
       shapes.arrow(axis.clone().multiplyScalar(step), { width: 1.6, opacity: 0.9, behind: 0.5 });
     }
@@ -174,7 +182,7 @@ export class Drawing {
   /** Gives each thing and each axis its label. */
   private name(tones: string[], palette: Palette): void {
     for (const { label } of this.named) label.dispose();
-    const step = 10 ** Math.round(Math.log10(0.7 / this.unit)) * this.unit;
+    const step = this.step();
     const axes = AXES.map((axis, k) => {
       const label = this.labels.add("e", { index: k + 1, rank: 3 });
       label.paint(palette.faint);

@@ -33,7 +33,10 @@ export function drawnOf(
   let mark: Mark = { at: new Vector3(), says: "" };
   const scaled = (vector: Vector3) => vector.clone().multiplyScalar(unit);
   const [a, b, c] = thing.edges.map(scaled);
-  if (thing.rotor) mark = turn(shapes, thing.rotor, unit);
+  if (thing.rotor) {
+    const alone = !things.some((other) => other !== thing && other.rotor && other.rotor.turned.length > 0);
+    mark = turn(shapes, thing.rotor, unit, alone);
+  }
   if (thing.trivector !== null) {
     if (a && b && c) {
       const base = (other: Thing) =>
@@ -91,10 +94,18 @@ function discRadius(bivector: Vector3): number {
   return Math.sqrt(bivector.length() / Math.PI);
 }
 
-/** The plane of a rotor, the angle in it, and the way of what is turned. */
-function turn(shapes: Shapes, { axis, angle, turned }: NonNullable<Thing["rotor"]>, unit: number): Mark {
+/** The plane of a rotor, the angle in it, and the way of what is turned, if it is alone with what it leaves in the plane. */
+function turn(
+  shapes: Shapes,
+  { axis, angle, turned }: NonNullable<Thing["rotor"]>,
+  unit: number,
+  alone: boolean,
+): Mark {
   const ways = turned.map((vector) => vector.clone().multiplyScalar(unit));
-  for (const from of ways) way(shapes, axis, from, angle);
+  for (const from of ways) {
+    shapes.line(arc(axis, from, angle), DASHED);
+    if (alone) shadows(shapes, axis, from, angle);
+  }
   const inPlane = ways.map((way) => way.clone().projectOnPlane(axis)).find((way) => way.length() > 0.15);
   const radius = inPlane ? Math.min(TURN, 0.62 * inPlane.length()) : TURN;
   const start = (inPlane ?? across(axis)).clone().setLength(radius);
@@ -104,10 +115,9 @@ function turn(shapes: Shapes, { axis, angle, turned }: NonNullable<Thing["rotor"
   return { at: middle, says: `${Number(((angle * 180) / Math.PI).toFixed(1))}°` };
 }
 
-/** How a tip goes around, and what lies in the plane of the turn, before and after. */
-function way(shapes: Shapes, axis: Vector3, from: Vector3, angle: number): void {
+/** What of a vector lies in the plane of a turn, before and after. */
+function shadows(shapes: Shapes, axis: Vector3, from: Vector3, angle: number): void {
   const to = from.clone().applyAxisAngle(axis, angle);
-  shapes.line(arc(axis, from, angle), DASHED);
   for (const tip of [from, to]) {
     const inPlane = tip.clone().projectOnPlane(axis);
     const high = tip.distanceTo(inPlane) > 0.05;

@@ -33,9 +33,9 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
     "A rotor turns a vector",
     "R = exp(−B θ/2) turns every vector by the angle θ in the plane of the unit bivector B, in the sense of B. What a has " +
       "across the plane stays as it is. Turn on with the slider.",
-    "θ = 75 deg",
-    "B = 0.96 e1∧e2 + 0.28 e2∧e3",
-    "a = 1.1 e1 - 0.5 e2 + 0.9 e3",
+    "θ = 100 deg",
+    "B = 0.28 e2∧e3 + 0.96 e1∧e2",
+    "a = 1.2 e1 - 0.3 e2 + 0.7 e3",
     "R = exp(-B θ/2)",
     "a' = R a ~R",
     "R ~R = 1",
@@ -44,24 +44,24 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "inertia",
     "The inertia tensor, plane to plane",
-    "A body with principal moments i1, i2, i3 that turns in the plane of B has its angular momentum in the plane of I(B), " +
-      "in general another one. They are the same plane where all moments are equal, and in principal planes.",
+    "A body that turns in the plane of B has its angular momentum in the plane of I(B), in general another one. The " +
+      "principal planes I e_k, and all planes if the moments i1, i2, i3 are equal, are taken to themselves.",
     "i1 = 2.2",
     "i2 = 1.9",
     "i3 = 0.5",
-    "I(X) = -i1 X·(e2∧e3) e2∧e3 - i2 X·(e3∧e1) e3∧e1 - i3 X·(e1∧e2) e1∧e2",
+    "I(X) = -Σ_k i_k X·(I e_k) I e_k",
     "B = 0.4 e2∧e3 + 0.2 e3∧e1 + 1.6 e1∧e2",
     "L = I(B)",
-    "½ L·~B  # the energy",
-    "B×L == 0 e1∧e2  # only if the planes are the same",
+    "½ L·~B  # energy",
+    "B×L == 0 e1∧e2  # the same plane?",
   ),
   preset(
     "projection",
     "Projection and rejection",
     "A bivector has an inverse, so a = (a B) B⁻¹ falls into two parts: a·B gives what lies in the plane, a∧B what stands " +
       "across it.",
-    "a = 0.9 e1 + 0.6 e2 + 1.3 e3",
-    "B = 2 e1∧e2 - 1 e2∧e3",
+    "a = 0.3 e1 + 1 e2 + 1.2 e3",
+    "B = 0.5 e2∧e3 - 0.3 e3∧e1 + 2 e1∧e2",
     "a∥ = a·B B⁻¹",
     "a⊥ = a∧B B⁻¹",
     "a == a∥ + a⊥",
@@ -71,7 +71,7 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
     "reflection",
     "A reflection",
     "−n a n⁻¹ is the mirror image of a in the plane across n: what a has along n is turned over, the rest stays.",
-    "n = 0.5 e1 + 0.3 e2 + 1.2 e3",
+    "n = 0.8 e1 + 0.2 e2 + 1.1 e3",
     "a = -0.4 e1 + 1.3 e2 + 0.7 e3",
     "M = 3 I n/norm(n)  # the mirror",
     "b = -n a n⁻¹",
@@ -94,8 +94,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "dual",
     "Vectors and planes are dual",
-    "Multiplied by I = e1e2e3, a vector becomes the plane across it, and a plane its normal. I B turns with B as a vector " +
-      "does, but it is not of the same grade.",
+    "Multiplied by I = e1e2e3, a vector becomes the plane across it, and a plane its normal. It does not matter from " +
+      "which side, for I commutes with everything.",
     "B = 1.4 e2∧e3 + 0.6 e3∧e1 + 1.6 e1∧e2",
     "b = -I B",
     "I b == B",
@@ -133,9 +133,9 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
     "S goes on from P towards Q, by the shortest turn and at an even pace: at t = 0 it is 1, at t = 1 it takes p to q. The " +
       "logarithm of Q ~P is the bivector of that turn.",
     "t = 0.4",
-    "a = 1.3 e1 - 0.5 e2 + 0.3 e3",
+    "a = 0.9 e1 - 0.9 e2 + 0.4 e3",
     "P = exp(-10 deg e1∧e2)",
-    "Q = exp(-65 deg (0.8 e1∧e2 - 0.6 e3∧e1))",
+    "Q = exp(-65 deg (0.6 e2∧e3 + 0.8 e1∧e2))",
     "p = P a ~P",
     "q = Q a ~Q",
     "S = exp(t log(Q ~P))",

@@ -1,8 +1,11 @@
 import type { Line } from "../core/core.ts";
 import { heldGrades, kind, small, terms } from "./notation.ts";
 
-/** What a line comes to, as on paper; of an equation whether it holds; or what is wrong. */
-export function Result({ id, line, literal }: { id: string; line: Line; literal: boolean }) {
+/**
+ * What a line comes to, as on paper, unless that is `written` in it already; of an equation whether it holds; or what is
+ * wrong.
+ */
+export function Result({ id, line, written }: { id: string; line: Line; written: boolean }) {
   const { problem, equation, value } = line;
   if (problem) {
     return (
@@ -20,14 +23,14 @@ export function Result({ id, line, literal }: { id: string; line: Line; literal:
         class={holds ? "came holds" : "came fails"}
         title={`residual ${residual} of terms of size ${size}`}
       >
-        <span class="mark" aria-hidden="true">
+        <span class="tick" aria-hidden="true">
           {holds ? "✓" : "✗"}
         </span>
         {holds ? `holds, residual ${small(residual)}` : fails}
       </p>
     );
   }
-  if (value && !literal) {
+  if (value && !written && !line.text.includes(`= ${value.text}`)) {
     return (
       <p id={id} class="came" title={value.text}>
         <Value components={value.components} />

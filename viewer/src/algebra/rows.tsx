@@ -107,7 +107,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
                   onChange={(number) => change(row, (old) => withScalar(old, number))}
                 />
               )}
-              <Result id={`came-${row}`} line={line} literal={scalar !== null || (thing?.movable ?? false)} />
+              <Result id={`came-${row}`} line={line} written={scalar !== null || (thing?.movable ?? false)} />
             </li>
           );
         })}

@@ -35,7 +35,7 @@ export class Shapes {
     for (const made of this.made) made.dispose();
   }
 
-  arrow(to: Vector3, style: RibbonStyle = { width: 2.8, behind: 0.35 }, from?: Vector3): void {
+  arrow(to: Vector3, style: RibbonStyle = { width: 2.8, behind: 0.35, order: 4 }, from?: Vector3): void {
     const arrow = new Arrow(this.screen, style);
     arrow.point(to);
     arrow.paint(this.colour);

@@ -73,7 +73,13 @@ export class Disc implements Part {
   ) {
     this.fill = new Mesh(
       new CircleGeometry(1, 96),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.09, side: DoubleSide, depthWrite: false }),
+      new MeshBasicMaterial({
+        transparent: true,
+        opacity: 0.09,
+        side: DoubleSide,
+        depthWrite: false,
+        forceSinglePass: true,
+      }),
     );
     this.fill.renderOrder = 3;
     this.rim = new Ribbon(screen, { width: 2, behind: 0.18 });

@@ -37,7 +37,7 @@ export class Poinsot implements Part {
 
   constructor(screen: Screen) {
     this.skin = new Mesh(
-      new SphereGeometry(1, 96, 64).rotateX(Math.PI / 2),
+      new SphereGeometry(1, 64, 32).rotateX(Math.PI / 2),
       new MeshLambertMaterial({ transparent: true, opacity: 0.14, side: FrontSide, depthWrite: false }),
     );
     this.skin.renderOrder = 4;
@@ -50,7 +50,13 @@ export class Poinsot implements Part {
     this.ellipsoid.add(this.skin, ...this.circles.map(({ object }) => object));
     this.sheet = new Mesh(
       new CircleGeometry(PLANE, 96),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.08, side: DoubleSide, depthWrite: false }),
+      new MeshBasicMaterial({
+        transparent: true,
+        opacity: 0.08,
+        side: DoubleSide,
+        depthWrite: false,
+        forceSinglePass: true,
+      }),
     );
     this.sheet.renderOrder = 5;
     this.grid = gridOf(screen);

@@ -4,6 +4,8 @@ import {
   DirectionalLight,
   Group,
   HemisphereLight,
+  LineSegments,
+  Mesh,
   Scene,
   Vector2,
   Vector3,
@@ -141,6 +143,7 @@ export class Stage {
       event.preventDefault();
       this.lost = true;
       message.hidden = false;
+      this.forget();
     });
     canvas.addEventListener("webglcontextrestored", () => {
       this.lost = false;
@@ -154,6 +157,15 @@ export class Stage {
     message.style.cssText = "position: absolute; inset: auto 1rem 1rem; margin: 0; text-align: center";
     if (getComputedStyle(host).position === "static") host.style.position = "relative";
     host.append(canvas, this.labels.element, message);
+  }
+
+  /** Lets go of what the lost context held, of which the new one would not know. */
+  private forget(): void {
+    this.scene.traverse((object) => {
+      if (!(object instanceof Mesh || object instanceof LineSegments)) return;
+      object.geometry.dispose();
+      for (const material of [object.material].flat()) material.dispose();
+    });
   }
 
   /** Asks for one frame. */
@@ -181,10 +193,10 @@ export class Stage {
       this.model.tick(passed);
       this.played += passed;
     }
-    const moving = this.viewpoint.step(passed);
+    this.viewpoint.step(passed);
     this.show();
     this.drawing = false;
-    const going = playing || moving;
+    const going = playing || this.viewpoint.moving;
     this.last = going ? now : null;
     if (going) this.draw();
     const took = performance.now() - began;

@@ -142,21 +142,27 @@ export class Stage {
       // Without this it would not come back.
       event.preventDefault();
       this.lost = true;
-      message.hidden = false;
+      this.tell(true);
       this.forget();
     });
     canvas.addEventListener("webglcontextrestored", () => {
       this.lost = false;
-      message.hidden = true;
+      this.tell(false);
       this.draw();
     });
-    message.hidden = true;
     message.setAttribute("role", "status");
     message.textContent =
       "The graphics card has let go of the picture; it will be drawn again as soon as it can be.";
-    message.style.cssText = "position: absolute; inset: auto 1rem 1rem; margin: 0; text-align: center";
+    message.style.cssText = "position: absolute; inset: 45% 1rem auto; margin: 0; text-align: center";
     if (getComputedStyle(host).position === "static") host.style.position = "relative";
     host.append(canvas, this.labels.element, message);
+    this.tell(false);
+  }
+
+  /** Shows the message instead of the picture, or the picture. */
+  private tell(lost: boolean): void {
+    this.message.style.display = lost ? "" : "none";
+    for (const element of [this.canvas, this.labels.element]) element.style.visibility = lost ? "hidden" : "";
   }
 
   /** Lets go of what the lost context held, of which the new one would not know. */
@@ -254,6 +260,7 @@ export class Stage {
     const background = new Color(palette.background);
     const dark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5;
     this.renderer.setClearColor(background);
+    this.host.style.backgroundColor = palette.background;
     this.hemisphere.color.set("#ffffff");
     this.hemisphere.groundColor.set(dark ? "#58606c" : "#c0c7d0");
     this.hemisphere.intensity = dark ? 2.3 : 2.5;

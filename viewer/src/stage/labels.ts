@@ -128,7 +128,7 @@ export class Labels {
       if (label.hidden) continue;
       const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
       const box = free(around(point, centre, label.width(width < ROOMY), label.side), taken, width, height);
-      label.element.style.visibility = box ? "visible" : "hidden";
+      label.element.style.visibility = box ? "" : "hidden";
       if (!box) continue;
       taken.push(box);
       label.element.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;

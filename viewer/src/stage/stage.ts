@@ -131,6 +131,8 @@ export class Stage {
     this.viewpoint.dispose();
     for (const part of this.parts) part.dispose();
     this.renderer.dispose();
+    // Browsers keep but a few contexts; a notebook makes many stages.
+    this.renderer.forceContextLoss();
     this.canvas.remove();
     this.labels.element.remove();
     this.message.remove();

@@ -15,7 +15,7 @@ import type { Solid, Triple } from "../core/core.ts";
 import type { Surface } from "./surface.ts";
 
 /** Steps around an axis of revolution. A multiple of four, so that no face lies in two quadrants. */
-const ROUND = 72;
+const ROUND = 64;
 /** What has no thickness is drawn with this part of its size. */
 const THIN = 0.03;
 
@@ -79,7 +79,7 @@ const TOP: [number, number][] = [
 
 /** A spinning top of textbooks: its tip at the origin, its centre of mass at a height along e3, with a stem above. */
 export function spinningTop(height: number): Surface {
-  const section = new SplineCurve(TOP.map(([radius, along]) => new Vector2(radius, along))).getPoints(36);
+  const section = new SplineCurve(TOP.map(([radius, along]) => new Vector2(radius, along))).getPoints(24);
   for (const point of section) point.set(Math.max(point.x, 0), point.y).multiplyScalar(height);
   return upright(new LatheGeometry(section, ROUND));
 }

@@ -67,10 +67,14 @@ export class Viewpoint {
     this.changed();
   }
 
-  /** Moves on for some seconds; whether there is more to come. */
-  step(seconds: number): boolean {
+  get moving(): boolean {
+    return this.move !== null;
+  }
+
+  /** Moves on for some seconds. */
+  step(seconds: number): void {
     const { move } = this;
-    if (!move) return false;
+    if (!move) return;
     move.passed += seconds;
     const part = Math.min(move.passed / MOVE, 1);
     const eased = part * part * (3 - 2 * part);
@@ -84,7 +88,6 @@ export class Viewpoint {
       ),
     );
     if (part === 1) this.move = null;
-    return this.move !== null;
   }
 
   /** The canvas has another form: what was in view stays in view. */

@@ -5,6 +5,7 @@ import { AlgebraPage } from "../algebra/page.tsx";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
+import { Boundary } from "./boundary.tsx";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
 import { Facts, regimeOf } from "./facts.tsx";
@@ -46,11 +47,13 @@ export function App({ model, palette, compact, wide }: Props) {
     >
       <Header model={model} compact={compact} />
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
-        {motion ? (
-          <MotionPage model={model} palette={palette} compact={compact} wide={wide} />
-        ) : (
-          <AlgebraPage model={model} palette={palette} />
-        )}
+        <Boundary key={model.page.value}>
+          {motion ? (
+            <MotionPage model={model} palette={palette} compact={compact} wide={wide} />
+          ) : (
+            <AlgebraPage model={model} palette={palette} />
+          )}
+        </Boundary>
       </div>
     </div>
   );

@@ -67,6 +67,11 @@ export class Viewpoint {
     this.changed();
   }
 
+  /** Goes back to the preset, from where all is in view. */
+  home(): void {
+    this.go(this.preset.name, this.preset.momentum, false);
+  }
+
   /** Moves on for some seconds; whether there is more to come. */
   step(seconds: number): boolean {
     const { move } = this;
@@ -132,7 +137,7 @@ export class Viewpoint {
     else if (event.key === "ArrowDown") at.phi += STEP;
     else if (event.key === "+" || event.key === "=") at.radius /= 1.1;
     else if (event.key === "-") at.radius *= 1.1;
-    else if (event.key === "Home") return this.go(this.preset.name, this.preset.momentum, false);
+    else if (event.key === "Home") return this.home();
     else return;
     event.preventDefault();
     this.grabbed();

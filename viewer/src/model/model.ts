@@ -117,6 +117,13 @@ export class Model {
     });
   }
 
+  /** Tries the scene again with files that were missing. */
+  supply(files: Files): void {
+    const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
+    const scene = this.draft.value ?? this.scene.value;
+    if (scene !== null) this.open(scene, { name, files: new Map([...others, ...files]) });
+  }
+
   /** Shows the scene again as it was given. */
   reset(): void {
     if (this.original !== null) this.open(this.original, null);

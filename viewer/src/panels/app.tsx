@@ -29,6 +29,9 @@ interface Props {
 /** The page: a header, and the motion or the algebra below. */
 export function App({ model, palette, compact, wide }: Props) {
   const dragged = useSignal(false);
+  // They stay as they are while the algebra is shown.
+  const controls = useMemo(() => new Controls(model), [model]);
+  useEffect(() => () => controls.dispose(), [controls]);
   const motion = model.page.value === "motion";
   return (
     <div
@@ -49,7 +52,7 @@ export function App({ model, palette, compact, wide }: Props) {
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
-            <MotionPage model={model} palette={palette} compact={compact} wide={wide} />
+            <MotionPage model={model} palette={palette} compact={compact} wide={wide} controls={controls} />
           ) : (
             <AlgebraPage model={model} palette={palette} />
           )}
@@ -59,9 +62,7 @@ export function App({ model, palette, compact, wide }: Props) {
   );
 }
 
-function MotionPage({ model, palette, compact, wide }: Props) {
-  const controls = useMemo(() => new Controls(model), [model]);
-  useEffect(() => () => controls.dispose(), [controls]);
+function MotionPage({ model, palette, compact, wide, controls }: Props & { controls: Controls }) {
   const known = model.about.value !== null;
   return (
     <main class="motion">

@@ -138,6 +138,11 @@ export class Stage {
     this.message.remove();
   }
 
+  /** Goes back to the place of the model's camera, from where all is in view. */
+  fit(): void {
+    this.viewpoint.home();
+  }
+
   /** Puts canvas, labels and message into the host. */
   private furnish(): void {
     const { canvas, host, message } = this;

@@ -15,6 +15,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array
 from polhode._bodies import Body
+from polhode._closed_forms import LagrangeTop
 from polhode._free_motion import describe_free
 from polhode._kinds import kind_of, weight
 from polhode._packed import packed
@@ -144,6 +145,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
         ],
         "norm_drift": proof.norm_drift,
         "free": _free(trajectory, origin, points),
+        "top": _top(trajectory, origin, points),
         "ensemble": None,
     }
 
@@ -216,3 +218,17 @@ def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Point
     told = describe_free(trajectory.inertia, points.omega_body[0])
     names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
     return {name: told[name] for name in names}
+
+
+def _top(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
+    """Return what the invariants of a symmetric top under its weight alone tell."""
+    laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
+    if [law.name for law in laws] != ["heavy"]:
+        return None
+    try:
+        top = LagrangeTop(trajectory.inertia, points.rotor[0], points.omega_body[0], laws[0].arguments[0])
+    except ValueError:
+        return None
+    told = top.describe()
+    names = ("regime", "nutation_period", "precession_rate", "critical_spin", "sleeps")
+    return {"tilt": [told["tilt_min"], told["tilt_max"]], **{name: told[name] for name in names}}

@@ -145,7 +145,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
         ],
         "norm_drift": proof.norm_drift,
         "free": _free(trajectory, origin, points),
-        "top": _top(trajectory, origin, points),
+        "top": _top(trajectory, origin),
         "ensemble": None,
     }
 
@@ -220,13 +220,13 @@ def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Point
     return {name: told[name] for name in names}
 
 
-def _top(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
+def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any] | None:
     """Return what the invariants of a symmetric top under its weight alone tell."""
-    laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
-    if [law.name for law in laws] != ["heavy"]:
+    if origin is None or kind_of(origin) != "heavy":
         return None
+    start = origin.state
     try:
-        top = LagrangeTop(trajectory.inertia, points.rotor[0], points.omega_body[0], laws[0].arguments[0])
+        top = LagrangeTop(trajectory.inertia, start.rotor, start.omega_body, weight(origin.torque))
     except ValueError:
         return None
     told = top.describe()

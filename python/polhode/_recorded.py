@@ -119,7 +119,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
     start = None if origin is None else origin.state
     body = _body(origin)
     return {
-        "title": trajectory.attributes.get("title"),
+        "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),
         "body": {
             **body,
             "moments": inertia.principal_moments.tolist(),
@@ -133,7 +133,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             "omega_body": (start.omega_body if start else points.omega_body[0]).components.tolist(),
         },
         "duration": float(points.time[-1]),
-        "samples": len(points.time),
+        "samples": len(trajectory.time),
         "method": "recorded",
         "exact": False,
         "horizon": None,
@@ -193,15 +193,17 @@ def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
     """Return each law by the name of its field in a scene, and its formula or its numbers."""
     laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
     formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
+    gravity = isinstance(origin, Scene) and "gravity" in tomllib.loads(origin.text)
     told = []
-    for law, formula in zip(laws, formulas, strict=True):
+    for k, (law, formula) in enumerate(zip(laws, formulas, strict=True)):
         arguments = law.arguments
         if law.name == "formula":
             told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
         elif law.name in ("tabulated", "function"):
             told.append({"name": law.name, "text": ""})
         else:
-            told.append({"name": law.name, "text": ", ".join(map(_number, arguments))})
+            name = "gravity" if gravity and k == 0 else law.name
+            told.append({"name": name, "text": ", ".join(map(_number, arguments))})
     return told
 
 

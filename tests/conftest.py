@@ -1,4 +1,4 @@
-"""A small scene; and property tests that are the same on every run, each derived from the test itself."""
+"""A small scene, a small viewer; and property tests that are the same on every run, each by itself."""
 
 import os
 import sys
@@ -7,6 +7,7 @@ import pytest
 from hypothesis import settings
 
 from command_line import SCENE
+from viewers import SCRIPT
 
 # clifford compiles its products when it is first used, for seconds; interpreted they are the same.
 os.environ.setdefault("NUMBA_DISABLE_JIT", "1")
@@ -20,6 +21,17 @@ def scene(tmp_path):
     """The path of a scene that runs in no time."""
     path = tmp_path / "small.toml"
     path.write_text(SCENE)
+    return path
+
+
+@pytest.fixture
+def bundle(tmp_path_factory, monkeypatch):
+    """The path of a small script, which stands for the viewer's."""
+    from polhode import _html
+
+    path = tmp_path_factory.mktemp("viewer") / "viewer.js"
+    path.write_text(SCRIPT)
+    monkeypatch.setattr(_html, "_BUNDLE", path)
     return path
 
 

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 import polhode as ph
+from polhode import _cli
+from viewers import needs_bundle
 
 ROOT = Path(__file__).parent.parent
 SCENES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/scenes.md").read_text(), flags=re.DOTALL)
@@ -30,14 +32,18 @@ def test_scenes_run(text, tmp_path):
     assert trajectory.certificate.worst < 1e-10
 
 
-@pytest.mark.parametrize("name", ["algebra", "formulas", "motion", "jax"])
-def test_the_pages_run_and_print_what_they_say(name):
-    for needed in ("jax", "sympy"):
+@pytest.mark.parametrize(
+    "name", ["algebra", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
+)
+def test_the_pages_run_and_print_what_they_say(name, tmp_path):
+    for needed in ("jax", "sympy", "anywidget"):
         pytest.importorskip(needed)
+    # Pages read the examples, and write what they write here.
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
     blocks = blocks_of(ROOT / f"docs/{name}.md")
     code = "\n".join(text for language, text in blocks if language == "python")
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
+        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     told = []
@@ -62,6 +68,15 @@ def test_the_shell_answers_as_the_page_says():
         # Residuals of rounding differ between machines.
         got, expected = (re.sub(r"residual \S+", "residual …", x.strip()) for x in (done.stdout, answer))
         assert got == expected
+
+
+def test_the_commands_of_the_viewer_are_commands():
+    text = "".join(text for language, text in blocks_of(ROOT / "docs/viewer.md") if language == "console")
+    commands = re.findall(r"^\$ polhode (.*)$", text, flags=re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        options = _cli._parser().parse_args(command.split())
+        assert callable(options.command)
 
 
 def blocks_of(page):

@@ -8,9 +8,7 @@ import pytest
 
 from command_line import EXAMPLES, SCENE
 from polhode import _cli, _document, _html
-from viewers import SCRIPT, bundle, needs_bundle
-
-assert bundle  # a fixture
+from viewers import SCRIPT, needs_bundle
 
 NASTY = "</script><script>alert(1)</script><!-- & \" ' \u2028 <svg onload=x> Ω"
 

@@ -14,9 +14,7 @@ import pytest
 import polhode as ph
 from command_line import EXAMPLES, POLHODE, SCENE, polhode
 from polhode import _cli, _view
-from viewers import SCRIPT, bundle, needs_bundle
-
-assert bundle  # a fixture
+from viewers import SCRIPT, needs_bundle
 
 STEPPED = SCENE + 'method = "rk4"\nstep = "10 ms"\n'
 

@@ -1,20 +1,16 @@
-"""The viewer's bundle where it was built, and a small one in its place for tests of what goes around it."""
+"""Whether the viewer was built, and a small script that stands for it."""
+
+from pathlib import Path
 
 import pytest
 
-from polhode import _html
+import polhode
 
-BUILT = _html._BUNDLE.is_file() and _html._BUNDLE.stat().st_size > 0
+_BUNDLE = Path(polhode.__file__).with_name("_viewer") / "viewer.js"
 
-needs_bundle = pytest.mark.skipif(not BUILT, reason="the viewer was not built: make viewer")
+needs_bundle = pytest.mark.skipif(
+    not (_BUNDLE.is_file() and _BUNDLE.stat().st_size), reason="the viewer was not built: make viewer"
+)
 
+# Stands for the bundle where only what goes around it is tested.
 SCRIPT = 'const text = "</script><b>"; export default { render() {} };\n'
-
-
-@pytest.fixture
-def bundle(tmp_path_factory, monkeypatch):
-    """The path of a small bundle, which stands for the viewer's."""
-    path = tmp_path_factory.mktemp("viewer") / "viewer.js"
-    path.write_text(SCRIPT)
-    monkeypatch.setattr(_html, "_BUNDLE", path)
-    return path

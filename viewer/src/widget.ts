@@ -53,7 +53,11 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
     leave();
     leave = () => {};
   };
+  let away = false;
   anchor.entered = () => {
+    // The viewer begins anew, with what Python says by now.
+    if (away) viewer.document = present(traits);
+    away = false;
     const { ready } = viewer;
     void ready.then((model) => {
       if (viewer.ready !== ready || !viewer.isConnected) return;
@@ -63,9 +67,9 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
   };
   anchor.left = () => {
     disconnect();
-    // After the viewer has ended, if it was not only moved: what it shows when it comes back.
+    // What is back by then was only moved, and goes on.
     queueMicrotask(() => {
-      if (!viewer.isConnected) viewer.document = present(traits);
+      away = !viewer.isConnected;
     });
   };
   el.append(viewer, anchor);

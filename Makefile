@@ -1,5 +1,5 @@
 # make demo, make test, make bench, make docs, make lint: each sets up what it needs.
-# Prerequisites: Python >= 3.11, Rust stable, make.
+# Prerequisites: Python >= 3.11, Rust stable, make; for the viewer Node >= 20 and npm.
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -9,9 +9,16 @@ export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_QUIET := 1
 
-.PHONY: setup demo test lint bench docs viewer clean
+VIEWER := python/polhode/_viewer/viewer.js
+
+.PHONY: setup demo test lint bench docs viewer check-viewer clean
+
+# Where what the viewer needs is missing, this says so, and all else goes on.
+WITH_VIEWER = @missing=$$(viewer/missing.sh) && test -n "$$missing" && \
+	echo "$$missing: the viewer was left out; all else works without it." || $(MAKE) --no-print-directory
 
 setup: .venv/.built
+	$(WITH_VIEWER) viewer
 
 .venv/.tools: constraints.txt pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -27,24 +34,30 @@ setup: .venv/.built
 	@touch $@
 
 # The viewer: the core as WebAssembly, and one bundle that Python puts into pages and notebooks.
-VIEWER_SOURCES := $(shell find viewer/src -type f) viewer/package-lock.json viewer/vite.config.ts
+WASM_SOURCES := $(shell find crates/ga crates/rigid crates/wasm -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
+VIEWER_SOURCES := $(shell find viewer/src -type f) viewer/vite.config.ts $(wildcard examples/*.toml examples/*.stl)
 
-viewer: python/polhode/_viewer/viewer.js
+viewer: $(VIEWER)
 
 viewer/node_modules/.installed: viewer/package-lock.json
 	cd viewer && npm ci --silent
 	@touch $@
 
-python/polhode/_viewer/viewer.js: $(VIEWER_SOURCES) $(SOURCES) viewer/node_modules/.installed
-	rustup target add wasm32-unknown-unknown
+$(VIEWER): viewer/node_modules/.installed $(VIEWER_SOURCES) $(WASM_SOURCES)
+	@missing=$$(viewer/missing.sh); test -z "$$missing" || { echo "$$missing" >&2; exit 1; }
 	cargo build --quiet --locked --profile viewer --target wasm32-unknown-unknown -p polhode-wasm
 	cd viewer && npm run --silent build
 
+check-viewer: viewer/node_modules/.installed
+	cd viewer && npm run --silent check
+
 demo: setup
 	@mkdir -p build/demo
-	$(BIN)/polhode run examples/t-handle.toml -o build/demo/t-handle.nc
+	$(BIN)/polhode run examples/t-handle.toml -o build/demo/t-handle.nc \
+		$$(test ! -e $(VIEWER) || echo --html build/demo/t-handle.html)
 	@echo
 	@echo "The pictures are build/demo/t-handle-motion.png and build/demo/t-handle-polhode.png."
+	@test ! -e $(VIEWER) || echo "The motion to look at from all sides, in a browser: build/demo/t-handle.html."
 
 test: setup
 	cargo test --quiet --locked --workspace --exclude polhode-py
@@ -57,6 +70,7 @@ lint: setup
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest polhode._native --allowlist .stubtest-allowlist
+	$(WITH_VIEWER) check-viewer
 
 # The peers join the same environment, which holds polhode already: with constraints.txt all agree on one NumPy.
 # A peer that is missing is an empty column, so benchmarks/run.py also runs after make setup alone.
@@ -70,9 +84,16 @@ bench: .venv/.peers
 	cargo run --quiet --locked --release -p polhode-ga --example batch | tee build/bench-core.txt
 	cargo run --quiet --locked --release -p polhode-rigid --example ensemble | tee build/bench-ensembles.txt
 
-docs:
+# The guides as pages, with the viewer in them, and the documentation of the core.
+.venv/.docs: .venv/.tools
+	$(BIN)/python -m pip install -q --group docs
+	@touch $@
+
+docs: setup .venv/.docs
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --locked --no-deps --workspace --exclude polhode-py
+	$(BIN)/sphinx-build -q -W --keep-going -d build/doctrees docs build/docs
+	@echo "The guides are build/docs/index.html."
 	@echo "The documentation of the core is target/doc/polhode_ga/index.html and target/doc/polhode_rigid/index.html."
 
 clean:
-	rm -rf .venv build target
+	rm -rf .venv build target viewer/node_modules python/polhode/_viewer

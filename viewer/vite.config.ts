@@ -4,7 +4,8 @@ import { gzipSync } from "node:zlib";
 import { defineConfig, type Plugin } from "vite";
 
 const root = fileURLToPath(new URL("..", import.meta.url));
-const compiled = `${root}target/wasm32-unknown-unknown/viewer/polhode_wasm.wasm`;
+const target = process.env["CARGO_TARGET_DIR"] ?? `${root}target`;
+const compiled = `${target}/wasm32-unknown-unknown/viewer/polhode_wasm.wasm`;
 
 /** The compiled core as a module: compressed, in base64, so that the bundle is one file. */
 function core(): Plugin {
@@ -44,6 +45,8 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "viewer.js" },
+    // A library is left readable unless this is said.
+    rolldownOptions: { output: { minify: true } },
     chunkSizeWarningLimit: 2000,
   },
 });

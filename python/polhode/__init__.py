@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from polhode._interpolation import slerp as slerp
     from polhode._linear import LinearMap as LinearMap
     from polhode._moments import Moments as Moments
+    from polhode._notebook import view as view
     from polhode._scene import Scene as Scene
     from polhode._simulate import simulate as simulate
     from polhode._simulate import simulate_blocks as simulate_blocks
@@ -92,6 +93,7 @@ _LATER = {
     "Failure": "_trajectory",
     "Trajectory": "_trajectory",
     "Moments": "_moments",
+    "view": "_notebook",
     "simulate": "_simulate",
     "simulate_blocks": "_simulate",
     "Scene": "_scene",

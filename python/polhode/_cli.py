@@ -83,6 +83,12 @@ def _parser() -> argparse.ArgumentParser:
         help="write the motion, or all those of an ensemble, to this netCDF file, and figures beside it "
         "(FILE-motion.png …)",
     )
+    run.add_argument(
+        "--html",
+        metavar="FILE.html",
+        type=_page_name,
+        help="write a page that shows the motion in any browser, without anything from outside",
+    )
     run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
     run.add_argument(
         "--threads",
@@ -96,8 +102,26 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
     check.set_defaults(command=_check)
+    _add_view(commands)
     _add_formulas(commands)
     return parser
+
+
+def _add_view(commands: Any) -> None:
+    view = commands.add_parser(
+        "view",
+        help="show a motion in the browser",
+        description="Show a scene, or a motion that was written, in the browser of this machine. The file is "
+        "read again whenever the page is loaded, so that a scene can be edited beside it.",
+    )
+    view.add_argument("file", metavar="FILE", help="a scene, or the netCDF file of one body's motion")
+    view.add_argument(
+        "--port", metavar="N", type=_port, default=0, help="serve at this port; a free one if left out"
+    )
+    view.add_argument(
+        "--no-browser", dest="browser", action="store_false", help="only print where the page is"
+    )
+    view.set_defaults(command=_view)
 
 
 def _add_formulas(commands: Any) -> None:
@@ -152,6 +176,15 @@ def _eval(options: argparse.Namespace) -> int:
         return _complain(str(error), BAD_INPUT)
 
 
+def _view(options: argparse.Namespace) -> int:
+    from polhode import _view
+
+    try:
+        return _view.run(options, _progress)
+    except _view.UnreadableError as error:
+        return _complain(str(error), BAD_INPUT)
+
+
 def _repl(_: argparse.Namespace) -> int:
     from polhode import _repl
 
@@ -165,28 +198,38 @@ def _thread_count(text: str) -> int:
     return int(text)
 
 
+def _port(text: str) -> int:
+    """Return a port; anything else is wrong usage."""
+    if not (text.isascii() and text.isdigit() and int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"expected a port, a whole number up to 65535, found {text!r}")
+    return int(text)
+
+
 def _run(options: argparse.Namespace) -> int:
     from polhode._scene import Scene
 
     output = None if options.output is None else Path(options.output)
     scene = Scene.read(options.scene)
     targets = _checked_targets(output, scene)
+    html = _checked_page(options.html)
     run = _run_one if scene.ensemble is None else _run_many
-    result = run(scene, targets, options)
-    result["files"] = [str(path) for path in targets]
+    result = run(scene, targets, html, options)
+    written = result["files"] = [str(path) for path in (*targets, *([html] if html else []))]
     if options.json:
         print(json.dumps(result, indent=2, allow_nan=False))
-    elif targets:
+    elif written:
         print("Written")
-        print("\n".join(f"  {path}" for path in targets))
+        print("\n".join(f"  {path}" for path in written))
     else:
-        print("Nothing was written; add -o FILE.nc for the data and the figures.")
+        print("Nothing was written; add -o FILE.nc for data and figures, --html FILE.html for a page.")
     if result["run"]["drift_within_bound"] is None:
         return _complain("polhode: error: no body could be followed to the end", FAILED)
     return OK if result["run"]["drift_within_bound"] else DRIFTED
 
 
-def _run_one(scene: Scene, targets: list[Path], options: argparse.Namespace) -> dict[str, Any]:
+def _run_one(
+    scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
+) -> dict[str, Any]:
     """Run one body, print its page and write its files; return its summary."""
     from polhode._page import as_text
     from polhode._summary import summary
@@ -196,18 +239,24 @@ def _run_one(scene: Scene, targets: list[Path], options: argparse.Namespace) -> 
     result = summary(scene, trajectory)
     if not options.json:
         print(as_text(result))
-    if targets:
-        _write(targets, scene, trajectory)
+    _write(targets, html, scene, trajectory)
     return result
 
 
-def _run_many(scene: Scene, targets: list[Path], options: argparse.Namespace) -> dict[str, Any]:
+def _run_many(
+    scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
+) -> dict[str, Any]:
     """The same for the bodies of an ensemble."""
     from polhode import _ensemble_run
     from polhode._ensemble_page import as_text
     from polhode._ensemble_summary import summary
 
-    result = summary(_ensemble_run.run(scene, targets, options.threads))
+    pages = {}
+    if html:
+        from polhode._view import scene_page
+
+        pages[html] = scene_page(scene)
+    result = summary(_ensemble_run.run(scene, targets, options.threads, pages))
     if not options.json:
         print(as_text(result))
     return result
@@ -257,6 +306,13 @@ def _netcdf_name(name: str) -> str:
     return name
 
 
+def _page_name(name: str) -> str:
+    """Return the name of the page; anything but an HTML file is wrong usage."""
+    if Path(name).suffix.lower() not in (".html", ".htm"):
+        raise argparse.ArgumentTypeError(f"the page is an HTML file, name it FILE.html, not {name!r}")
+    return name
+
+
 def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     """Return the paths of the data and two figures; what cannot be written is refused before the work."""
     if output is None:
@@ -277,15 +333,33 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     return targets
 
 
-def _write(targets: list[Path], scene: Scene, trajectory: Trajectory) -> None:
-    """Write the data and the figures, all of them or none."""
-    from polhode._files import write_atomically
-    from polhode._io import netcdf
-    from polhode._plot import as_png, motion_figure
+def _checked_page(name: str | None) -> Path | None:
+    """Return the path of the page; what cannot be made or written is refused before the work."""
+    if name is None:
+        return None
+    from polhode._view import check_page
 
-    second = _second_figure(scene, trajectory)
-    contents = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
-    write_atomically(dict(zip(targets, contents, strict=True)))
+    check_page(Path(name))
+    return Path(name)
+
+
+def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Trajectory) -> None:
+    """Write the data, the figures and the page, all of them or none."""
+    from polhode._files import write_atomically
+
+    contents: dict[Path, bytes] = {}
+    if targets:
+        from polhode._io import netcdf
+        from polhode._plot import as_png, motion_figure
+
+        second = _second_figure(scene, trajectory)
+        made = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
+        contents |= dict(zip(targets, made, strict=True))
+    if html:
+        from polhode._view import motion_page
+
+        contents[html] = motion_page(trajectory)
+    write_atomically(contents)
 
 
 # The kinds of motion whose angular velocity stays on an ellipsoid in the body.

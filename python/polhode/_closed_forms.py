@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State
 from polhode._values import as_point, bivector
+
+if TYPE_CHECKING:
+    from polhode._widget import Viewer
 
 
 class _Solution(Protocol):
@@ -33,6 +36,12 @@ class _ClosedForm:
             Rotor._from_rows(rotors.reshape(*times.shape, 4)),
             bivector(omegas.reshape(*times.shape, 3), copy=False),
         )
+
+    def view(self, duration: float | None = None) -> Viewer:
+        """Show the motion in a notebook, as `polhode.view` does, for so many s."""
+        from polhode._notebook import view
+
+        return view(self, duration=duration)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), self._given

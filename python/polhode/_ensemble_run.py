@@ -6,7 +6,7 @@ import contextlib
 import shutil
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -24,8 +24,10 @@ class InterruptedRunError(KeyboardInterrupt):
     """A run was stopped, and its file has the bodies that were complete; the message says so."""
 
 
-def run(scene: Scene, targets: list[Path], threads: int | None) -> Gathered:
-    """Run all bodies and write them and the figures to the targets, if there are any.
+def run(
+    scene: Scene, targets: list[Path], threads: int | None, pages: Mapping[Path, bytes] | None = None
+) -> Gathered:
+    """Run all bodies and write them and the figures to the targets, if there are any, and pages beside them.
 
     Raises
     ------
@@ -52,7 +54,9 @@ def run(scene: Scene, targets: list[Path], threads: int | None) -> Gathered:
                     file.end()
         if part is not None:
             with _uninterrupted():
-                _write(targets, part, gathered, stopped)
+                _write(targets, part, gathered, stopped, pages or {})
+        elif pages:
+            write_atomically(pages)
     return gathered
 
 
@@ -74,7 +78,9 @@ def _run_bodies(gathered: Gathered, file: EnsembleFile | None, threads: int | No
                 gathered.add(rows, trajectory)
 
 
-def _write(targets: list[Path], part: Path, gathered: Gathered, stopped: bool) -> None:
+def _write(
+    targets: list[Path], part: Path, gathered: Gathered, stopped: bool, pages: Mapping[Path, bytes]
+) -> None:
     """Let the files take their names; of a run that was stopped the data alone."""
     assert gathered.scene.ensemble is not None
     if stopped:
@@ -87,7 +93,7 @@ def _write(targets: list[Path], part: Path, gathered: Gathered, stopped: bool) -
     from polhode._plot import as_png
 
     figures = (as_png(fan_figure(gathered)), as_png(directions_figure(gathered)))
-    write_atomically(dict(zip(targets, (part, *figures), strict=True)))
+    write_atomically({**dict(zip(targets, (part, *figures), strict=True)), **pages})
 
 
 def require_room(scene: Scene, targets: list[Path]) -> None:

@@ -6,7 +6,7 @@ import math
 import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State, angular_velocity
 from polhode._values import bivector
+
+if TYPE_CHECKING:
+    from polhode._widget import Viewer
 
 _STATE = 7 * 8  # bytes
 _DERIVATIVES = 2 * 64 * 8  # bytes, as they are found and as they are told
@@ -199,6 +202,12 @@ class FreeMotion:
         if not (length > 0 and np.isfinite(length)):
             raise ValueError(f"periods is {length}; it must be positive and finite")
         return _bivectors(self._core.herpolhode(_count(n), length), (*self.shape, n))
+
+    def view(self, duration: float | None = None) -> Viewer:
+        """Show the motion in a notebook, as `polhode.view` does for one body, for so many s."""
+        from polhode._notebook import view
+
+        return view(self, duration=duration)
 
     def derivatives(self, t: Any) -> FlowDerivatives:
         """Return how the state at time t changes with the start and the body, exact at any time.

@@ -1,10 +1,11 @@
-"""Trajectories as labelled data, and as netCDF files."""
+"""Trajectories as labelled data, and to and from netCDF files."""
 
 from __future__ import annotations
 
 import io
 import json
 import math
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -166,9 +167,109 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
         attributes |= {
             "step_s": proof.step,
             "steps": proof.steps,
+            "evaluations": proof.evaluations,
             "conserved": json.dumps(proof.conserved),
             "drift": json.dumps({**proof.drift, "rotor_norm": proof.norm_drift}),
         }
         if proof.error_estimate is not None:
             attributes["error_estimate"] = proof.error_estimate
     return {**attributes, **trajectory.attributes}
+
+
+# --- back again
+
+_OWN = {
+    *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
+    "error_estimate",
+}
+
+
+def read(path: str | os.PathLike[str]) -> Trajectory:
+    """Return the motion in a netCDF file, as `Trajectory.read`."""
+    from polhode._bodies import Inertia
+    from polhode._trajectory import Trajectory
+    from polhode._values import bivector, vector
+
+    fields, attributes = _content(path)
+    try:
+        return Trajectory(
+            fields["time"],
+            _rotors(fields["attitude"]),
+            bivector(fields["omega_body"]),
+            bivector(fields["momentum_space"]),
+            fields["energy"],
+            vector(fields["position"]),
+            vector(fields["velocity"]),
+            Inertia.from_matrix(fields["inertia"]),
+            _certificate(attributes),
+            _crossings(fields),
+            attributes={name: x for name, x in attributes.items() if name not in _OWN},
+        )
+    except KeyError as error:
+        raise ValueError(f"{path} is no motion that polhode wrote: it has no {error}") from None
+
+
+def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the arrays and the attributes of a file."""
+    library = optional("h5netcdf", "io", "a netCDF file")
+    if not os.path.isfile(path):
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        with library.File(path, "r") as file:
+            attributes = {name: getattr(x, "item", lambda x=x: x)() for name, x in file.attrs.items()}
+            many = "batch_shape" in attributes or "body" in file.dimensions
+            fields = {} if many else {name: variable[...] for name, variable in file.variables.items()}
+    except OSError as error:
+        raise OSError(f"{path} is no netCDF file that can be read: {error}") from error
+    if many:
+        raise ValueError(f"{path} holds a batch of bodies; xarray.open_dataset reads it")
+    return fields, attributes
+
+
+def _rotors(quaternions: Any) -> Any:
+    """Return the rotors whose components became these quaternions: another sign of some, no rounding."""
+    from polhode._rotor import Rotor
+
+    return Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))
+
+
+def _certificate(attributes: dict[str, Any]) -> Any:
+    from polhode._trajectory import Certificate
+
+    drift = json.loads(attributes["drift"])
+    norm_drift = drift.pop("rotor_norm")
+    return Certificate(
+        attributes["method"],
+        attributes["step_s"],
+        attributes["steps"],
+        attributes.get("evaluations"),
+        attributes.get("error_estimate"),
+        json.loads(attributes["conserved"]),
+        drift,
+        norm_drift,
+    )
+
+
+def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:
+    """Return the events that happened, by their names."""
+    from polhode._trajectory import Crossings
+    from polhode._values import bivector, vector
+
+    if "event_name" not in fields:
+        return ()
+    names = [name.decode() if isinstance(name, bytes) else name for name in fields["event_name"]]
+    found = []
+    for name in dict.fromkeys(names):
+        at = np.array([one == name for one in names])
+        found.append(
+            Crossings(
+                name,
+                fields["event_time"][at],
+                fields["event_rising"][at].astype(bool),
+                _rotors(fields["event_attitude"][at]),
+                bivector(fields["event_omega_body"][at]),
+                vector(fields["event_position"][at]),
+                vector(fields["event_velocity"][at]),
+            )
+        )
+    return tuple(found)

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from polhode import _native
 from polhode import force as forces
@@ -19,6 +19,9 @@ from polhode._state import State
 from polhode._trajectory import Trajectory
 from polhode.force import Force
 from polhode.torque import Torque
+
+if TYPE_CHECKING:
+    from polhode._widget import Viewer
 
 DRIFT_BOUND = 1e-8
 
@@ -139,6 +142,12 @@ class Scene:
             return self._moved(self.body, self.state, self.torque, progress, threads)
         return self._drawn(slice(0, self.ensemble.number), progress, threads)
 
+    def view(self) -> Viewer:
+        """Show the motion in a notebook, as `polhode.view` does."""
+        from polhode._notebook import view
+
+        return view(self)
+
     def run_blocks(
         self,
         block: int | None = None,
@@ -219,6 +228,8 @@ class Scene:
             progress=progress,
         )
         trajectory.attributes.update({"title": self.name, "scene": self.text})
+        if not trajectory.shape:
+            object.__setattr__(trajectory, "_origin", self)
         return trajectory
 
 

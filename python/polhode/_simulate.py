@@ -15,6 +15,7 @@ from polhode._bodies import Body, Inertia
 from polhode._coefficients import as_coefficients
 from polhode._ensemble import Ensemble, bodies_of, check_state, mapped_objects, shape_of
 from polhode._multivector import Multivector
+from polhode._scene_text import Problem
 from polhode._state import State
 from polhode._trajectory import Certificate, Trajectory
 from polhode._values import as_point, vector
@@ -126,7 +127,17 @@ def simulate(
         progress,
     )
     certificate = Certificate(**motion.certificate())
-    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for])
+    problem = Problem(
+        bodies_of(body)[()],
+        state,
+        as_torque(torque),
+        None if force is None else as_force(force),
+        given.times,
+        given.method,
+        given.step,
+        given.rtol,
+    )
+    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for], problem)
 
 
 def simulate_blocks(
@@ -204,7 +215,7 @@ def _given(
     step: float | None,
 ) -> Ensemble:
     """Return what is to be simulated, checked."""
-    torque = _torque(torque)
+    torque = as_torque(torque)
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     check_state(state)
@@ -247,7 +258,7 @@ def _threads(threads: Any) -> int | None:
     return None if threads is None else min(as_count(threads, "threads"), 1024)
 
 
-def _torque(torque: Any) -> Torque | None:
+def as_torque(torque: Any) -> Torque | None:
     if torque is None or isinstance(torque, Torque):
         return torque
     # A maker of laws, given without its arguments, is callable too.
@@ -278,7 +289,7 @@ def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None
         return [], None
     if Inertia in {*map(type, bodies.flat)}:
         raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
-    law = _force(force)
+    law = as_force(force)
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
     if not thrusts:
         return list(law.laws), None
@@ -288,7 +299,7 @@ def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None
     return list(law.laws), sum(torques[1:], torques[0])
 
 
-def _force(force: Any) -> Force:
+def as_force(force: Any) -> Force:
     if isinstance(force, Force):
         return force
     # A maker of forces, given without its arguments, is callable too.

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
+    from polhode._scene import Scene
+    from polhode._scene_text import Problem
+    from polhode._widget import Viewer
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
@@ -72,6 +76,8 @@ class Trajectory:
     _motion: _native.Motion | None = field(default=None, repr=False)
     # Of a batch that no force moves: places and velocities are found when they are asked for.
     _drift: Drift | None = field(default=None, repr=False)
+    # Of one body: what was run, or asked for.
+    _origin: Scene | Problem | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if self._drift is not None:
@@ -87,7 +93,11 @@ class Trajectory:
 
     @staticmethod
     def _of(
-        motion: _native.Motion, inertia: Inertia, certificate: Certificate, names: Sequence[str]
+        motion: _native.Motion,
+        inertia: Inertia,
+        certificate: Certificate,
+        names: Sequence[str],
+        origin: Problem,
     ) -> Trajectory:
         which, rising, points = motion.events()
         happened = _Points.of(points)
@@ -109,6 +119,7 @@ class Trajectory:
             certificate,
             tuple(events),
             _motion=motion,
+            _origin=origin,
         )
 
     @property
@@ -214,8 +225,8 @@ class Trajectory:
         return dict(self._motion.drifts()) if self._motion is not None else {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: all but the motion between the output times."""
-        return self.__dict__ | {"_motion": None}
+        """What is pickled: all but the motion between the output times, and what was asked for."""
+        return self.__dict__ | {"_motion": None, "_origin": None}
 
     def to_xarray(self) -> xarray.Dataset:
         """Return an `xarray.Dataset` with labelled dimensions, units and the conventions.
@@ -226,6 +237,18 @@ class Trajectory:
         from polhode._io import to_xarray
 
         return to_xarray(self)
+
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> Trajectory:
+        """Read the motion of one body from a netCDF file that `save` or ``polhode run -o`` wrote.
+
+        All numbers are those that were written, to the last bit; between its times it is no longer known. A
+        ValueError for the file of a batch, which xarray reads, and for one that is not ours; an OSError for
+        one that cannot be read.
+        """
+        from polhode._io import read
+
+        return read(path)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a netCDF file, whole or not at all: an older file stays until the new one is complete."""
@@ -243,6 +266,15 @@ class Trajectory:
         from polhode._plot import motion_figure
 
         return motion_figure(self)
+
+    def view(self) -> Viewer:
+        """Show the motion in a notebook, as `polhode.view` does.
+
+        Of one body; a ValueError for a batch.
+        """
+        from polhode._notebook import view
+
+        return view(self)
 
     def __repr__(self) -> str:
         n = len(self.time)

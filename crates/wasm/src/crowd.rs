@@ -2,9 +2,9 @@
 
 use crate::opened::{GoOn, Opened};
 use crate::recorded::between;
-use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
+use polhode_rigid::SimulateError;
+use polhode_rigid::ensemble::{Ensemble, Rows, Start};
 use polhode_rigid::force::Center;
 use polhode_rigid::simulate::Motion;
 
@@ -53,18 +53,23 @@ impl Crowd {
             let motions: Result<Vec<Motion>, _> = (0..count).map(follow).collect();
             return motions.map(Crowd::Exact).map_err(|error| error.to_string());
         }
-        Crowd::stepped(&bodies, of, go_on)
+        Ok(Crowd::stepped(&bodies, of, go_on))
     }
 
-    fn stepped(bodies: &Ensemble, of: &Opened, go_on: GoOn) -> Result<Crowd, String> {
-        let (count, duration) = (bodies.starts.len(), of.scene.run.duration);
+    /// One by one: a browser has no lanes in which many would be quicker. Those for which there is no time left are not
+    /// shown.
+    fn stepped(bodies: &Ensemble, of: &Opened, go_on: GoOn) -> Crowd {
+        let duration = of.scene.run.duration;
         let times: Vec<f64> = (0..FRAMES).map(|k| duration * k as f64 / (FRAMES - 1) as f64).collect();
-        let mut room = [4, 3, 3, 1].map(|size| vec![f64::NAN; count * FRAMES * size]);
-        let [rotors, omegas, momenta, energies] = &mut room;
-        let outputs = Outputs { rotors, omegas, momenta, energies, centers: None };
-        let run = bodies.run(&times, &of.scene.options(), Threads::ONE, outputs, &mut |_| go_on());
-        run.map_err(|error| error.to_string())?;
-        Ok(Crowd::Stepped { duration, rotors: room[0].as_chunks().0.to_vec() })
+        let mut rotors = Vec::new();
+        for body in 0..bodies.starts.len() {
+            match bodies.problem(body).simulate(&times, of.scene.options(), &mut |_| go_on()) {
+                Ok(motion) => rotors.extend(motion.states().rotors.iter().map(|rotor| rotor.components())),
+                Err(SimulateError::Interrupted) => break,
+                Err(_) => rotors.extend([[f64::NAN; 4]; FRAMES]),
+            }
+        }
+        Crowd::Stepped { duration, rotors }
     }
 
     /// The rotors at a time. Those of stepped bodies turn evenly between frames, which is for looking only.

@@ -7,7 +7,7 @@ import { unpacked } from "../packed.ts";
 const BUDGET = 4;
 
 /** What is drawn at first. */
-const SHOWN: Shown = {
+export const SHOWN: Shown = {
   body: true,
   bodyFrame: true,
   spaceFrame: true,
@@ -42,6 +42,10 @@ export class Model {
   readonly shown = signal<Shown>(SHOWN);
   /** The lines of the page of algebra. */
   readonly lines = signal("");
+  /** What the motion was when its scene was last written or chosen, not varied: sliders take their ranges from it. */
+  readonly opened = signal<About | null>(null);
+  /** What to look at, in a sentence or two. */
+  readonly caption = signal<string | null>(null);
 
   readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
   /** The row of the state at the time shown. */
@@ -49,6 +53,9 @@ export class Model {
 
   private name = "scene.toml";
   private files: Files = new Map();
+  /** The scene as it was given, and as it was last opened. */
+  private original: string | null = null;
+  private base: string | null = null;
 
   constructor(readonly core: Core) {}
 
@@ -82,19 +89,28 @@ export class Model {
       if (options) {
         this.name = options.name;
         this.files = options.files;
+        this.original = scene;
       }
+      this.base = scene;
       batch(() => {
+        this.opened.value = this.about.value;
+        if (options) this.caption.value = null;
         this.time.value = 0;
         this.speed.value = usualSpeed(this.motion.value);
       });
     }
   }
 
-  /** Replaces tables of the scene by those of a TOML text; time goes on. */
+  /** Shows the scene again as it was given. */
+  reset(): void {
+    if (this.original !== null) this.open(this.original);
+  }
+
+  /** Replaces tables of the scene, as it was opened, by those of a TOML text; time goes on. */
   change(tables: string): void {
-    if (this.scene.value === null) return;
+    if (this.base === null) return;
     try {
-      this.follow(this.core.merged(this.scene.value, tables), this.name, this.files);
+      this.follow(this.core.merged(this.base, tables), this.name, this.files);
     } catch (error) {
       this.problem.value = words(error);
     }
@@ -153,6 +169,10 @@ export class Model {
     const of = scene === undefined ? undefined : { scene, name, files };
     const motion = this.core.recorded(recorded?.about ?? "", rows, of);
     this.become(motion, scene ?? null);
+    this.opened.value = motion.about;
+    this.caption.value = null;
+    this.original = scene ?? null;
+    this.base = scene ?? null;
     this.time.value = rows[State.time] ?? 0;
     this.speed.value = usualSpeed(motion);
   }

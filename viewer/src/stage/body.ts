@@ -13,17 +13,9 @@ export class Body implements Part {
   readonly inBody = new Group();
   private readonly materials = Array.from(
     { length: TINTS },
-    () =>
-      new MeshStandardMaterial({
-        roughness: 0.75,
-        metalness: 0,
-        // The edges lie in the faces and shall be seen.
-        polygonOffset: true,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
-      }),
+    () => new MeshStandardMaterial({ roughness: 0.75, metalness: 0 }),
   );
-  private readonly ink = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
+  private readonly ink = inkOfEdges();
   private drawn: { surface: Surface; tinted: Figure["tinted"]; look: Look } | null = null;
 
   follow({ surface, tinted }: Figure): void {
@@ -40,7 +32,7 @@ export class Body implements Part {
     const colors = [
       mixed(palette.body, 0),
       mixed(palette.weight, 0.4),
-      ...palette.axes.map((axis) => mixed(axis, 0.3)),
+      ...palette.axes.map((axis) => mixed(axis, 0.22)),
     ];
     this.materials.forEach((material, k) => material.color.copy(colors[k]!));
     this.ink.color.set(palette.text);
@@ -48,6 +40,13 @@ export class Body implements Part {
 
   update(_: Instant, shown: Shown): void {
     this.inBody.visible = shown.body;
+    for (const material of this.materials) {
+      // What is inside and behind shall be seen with Poinsot's construction.
+      if (material.transparent === shown.poinsot) continue;
+      material.transparent = shown.poinsot;
+      material.opacity = shown.poinsot ? 0.55 : 1;
+      material.needsUpdate = true;
+    }
   }
 
   dispose(): void {
@@ -62,6 +61,18 @@ export class Body implements Part {
     this.drawn?.look.edges.dispose();
     this.drawn = null;
   }
+}
+
+/** Edges lie in the faces: they are seen a little nearer, in the same place of the picture. */
+function inkOfEdges(): LineBasicMaterial {
+  const ink = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
+  ink.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader.replace(
+      "#include <project_vertex>",
+      "#include <project_vertex>\n gl_Position = projectionMatrix * vec4(mvPosition.xyz * 0.999, 1.0);",
+    );
+  };
+  return ink;
 }
 
 function side(normal: readonly number[]): number {

@@ -144,11 +144,13 @@ export class Disc implements Part {
   /** At the point of the rim that is farthest towards its place on the screen; at the arrow where there is no disc. */
   private placeLabel({ right, up }: Instant, normal: Vector3, radius: number, disc: boolean): void {
     if (!disc) {
+      this.label.side = null;
       this.label.at.copy(this.arrow.object.children[1]!.position);
       return;
     }
     const [across, high] = this.style.label;
     const towards = right.clone().multiplyScalar(across).addScaledVector(up, high).projectOnPlane(normal);
+    this.label.side = { x: across, y: high };
     this.label.at.copy(towards.setLength(radius));
   }
 }

@@ -36,21 +36,26 @@ export function figureOf(motion: Motion): Figure {
   const rows = Math.hypot(...start.subarray(State.omegaBody, State.omegaBody + 3)) > 0 ? start : some(motion);
   const omega = largest(rows, State.omegaSpace);
   const momentum = largest(rows, State.momentumSpace);
-  const centre = about.held ? vector(about.body.center_of_mass) : new Vector3();
-  const arm = centre.length() > 0 ? centre.clone() : vector(about.heavy ?? [0, 0, 0]);
+  const arm = about.held ? armOf(about) : new Vector3();
   const body = shape(motion, arm);
-  const size = Math.max(farthest(body.surface), centre.length()) || 1;
+  const size = Math.max(farthest(body.surface), arm.length()) || 1;
   return {
     motion,
     about,
     surface: scaled(body.surface, 1 / size),
     tinted: body.tinted,
-    centre: centre.divideScalar(size),
-    traced: arm.length() > 0 ? arm.normalize() : nearestAxis(vector(rows, State.omegaBody)),
+    centre: arm.clone().divideScalar(size),
+    traced: arm.length() > 0 ? arm.clone().normalize() : nearestAxis(vector(rows, State.omegaBody)),
     rate: REACH / (longestSemiAxis(about, rows) || omega || 1),
     omega: omega || 1,
     momentum: momentum || 1,
   };
+}
+
+/** From the fixed point to the centre of mass. Where the law of the weight alone is said, its direction counts. */
+function armOf({ body, heavy }: About): Vector3 {
+  const centre = vector(body.center_of_mass);
+  return centre.length() > 0 || !heavy ? centre : vector(heavy);
 }
 
 /** The body's surface from the drawn origin, in m; `arm` points from there to the centre of mass of a top. */

@@ -3,6 +3,8 @@ import { type Camera, type Matrix4, Vector3 } from "three";
 /** CSS pixels. */
 const HEIGHT = 19;
 const GAP = 5;
+/** Labels have values on a canvas at least so wide. */
+const ROOMY = 520;
 const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
 const SIZES = { letter: 17, small: 13 };
 /** Measures texts; to ask the page for their width in each frame would lay it out anew. */
@@ -17,7 +19,9 @@ export class Label {
   readonly element = document.createElement("div");
   private readonly value = document.createElement("span");
   private readonly symbolWidth: number;
-  width: number;
+  private valueWidth = 0;
+  /** On which side of its point it stands, right and up; null for that away from the centre. */
+  side: Point | null = null;
 
   constructor(
     symbol: string,
@@ -30,7 +34,6 @@ export class Label {
     this.symbolWidth =
       measured(symbol, `italic ${SIZES.letter}px`) +
       (style.index === undefined ? 0 : measured(String(style.index), `${SIZES.small}px`));
-    this.width = this.symbolWidth;
     if (style.index !== undefined) {
       const index = document.createElement("sub");
       index.textContent = String(style.index);
@@ -50,7 +53,13 @@ export class Label {
   say(value: string): void {
     if (this.value.textContent === value) return;
     this.value.textContent = value;
-    this.width = this.symbolWidth + (value ? GAP + measured(value, `${SIZES.small}px`) : 0);
+    this.valueWidth = value ? GAP + measured(value, `${SIZES.small}px`) : 0;
+  }
+
+  /** The width; without its value where there is little room. */
+  width(short: boolean): number {
+    this.value.style.display = short ? "none" : "";
+    return this.symbolWidth + (short ? 0 : this.valueWidth);
   }
 
   hide(hidden: boolean): void {
@@ -65,6 +74,11 @@ export class Label {
     this.element.remove();
     this.gone(this);
   }
+}
+
+interface Point {
+  x: number;
+  y: number;
 }
 
 interface Box {
@@ -112,7 +126,7 @@ export class Labels {
     for (const label of this.labels) {
       if (label.hidden) continue;
       const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
-      const box = free(around(point, centre, label.width), taken, width, height);
+      const box = free(around(point, centre, label.width(width < ROOMY), label.side), taken, width, height);
       label.element.style.visibility = box ? "visible" : "hidden";
       if (!box) continue;
       taken.push(box);
@@ -126,15 +140,23 @@ function measured(text: string, font: string): number {
   return ruler.measureText(text).width;
 }
 
-function onScreen(point: Vector3, camera: Camera, width: number, height: number): { x: number; y: number } {
+function onScreen(point: Vector3, camera: Camera, width: number, height: number): Point {
   point.project(camera);
   return { x: ((1 + point.x) * width) / 2, y: ((1 - point.y) * height) / 2 };
 }
 
-/** The box of a label beside a point, on the side away from the centre, so far that the point is not in it. */
-function around(point: { x: number; y: number }, centre: { x: number; y: number }, width: number): Box {
-  const [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];
-  const away = Math.min((width / 2 + GAP) / Math.abs(dx), (HEIGHT / 2 + GAP) / Math.abs(dy));
+/**
+ * The box of a label beside a point. Without a side of its own it goes away from the centre, so far that the point is
+ * not in it; else beyond the line through the point across that side.
+ */
+function around(point: Point, centre: Point, width: number, side: Point | null): Box {
+  let [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];
+  let away = Math.min((width / 2 + GAP) / Math.abs(dx), (HEIGHT / 2 + GAP) / Math.abs(dy));
+  if (side) {
+    const length = Math.hypot(side.x, side.y);
+    [dx, dy] = [side.x / length, -side.y / length];
+    away = (width / 2) * Math.abs(dx) + (HEIGHT / 2) * Math.abs(dy) + GAP;
+  }
   const [x, y] = [point.x + dx * away, point.y + dy * away];
   return { left: x - width / 2, right: x + width / 2, top: y - HEIGHT / 2, bottom: y + HEIGHT / 2 };
 }

@@ -16,7 +16,7 @@ import type { Instant, Part } from "./part.ts";
 import { Ribbon, type Screen } from "./ribbon.ts";
 import { AXES, quaternion } from "./rotor.ts";
 
-const PLANE = 1.6;
+const PLANE = 1.35;
 
 /**
  * Poinsot's construction. The ellipsoid x·I(x) = 2T of the body touches the plane with normal L at the distance 2T/|L|,
@@ -50,7 +50,7 @@ export class Poinsot implements Part {
     this.ellipsoid.add(this.skin, ...this.circles.map(({ object }) => object));
     this.sheet = new Mesh(
       new CircleGeometry(PLANE, 96),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.1, side: DoubleSide, depthWrite: false }),
+      new MeshBasicMaterial({ transparent: true, opacity: 0.08, side: DoubleSide, depthWrite: false }),
     );
     this.sheet.renderOrder = 5;
     this.grid = gridOf(screen);
@@ -104,10 +104,10 @@ export class Poinsot implements Part {
 
 /** Circles and a cross on the plane. */
 function gridOf(screen: Screen): Ribbon[] {
-  const lines = [0.4, 0.8, 1.2, 1.6].map((radius) => {
+  const lines = [0.25, 0.5, 0.75, 1].map((radius) => {
     const ribbon = new Ribbon(screen, { width: 1, opacity: 0.45 });
     ribbon.set(
-      circle(128).map((x) => x * radius),
+      circle(128).map((x) => x * radius * PLANE),
       { closed: true },
     );
     return ribbon;

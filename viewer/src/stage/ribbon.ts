@@ -64,7 +64,7 @@ const FRAGMENT = /* glsl */ `
     if (fades) {
       float age = now - parameter;
       float left = clamp(1.0 - abs(age), 0.0, 1.0);
-      alpha *= age >= 0.0 ? left : ahead * left;
+      alpha *= (age >= 0.0 ? left : ahead) * left;
     }
     if (dash > 0.0 && fract(parameter / dash) > 0.55) discard;
     if (alpha < 0.004) discard;

@@ -209,7 +209,8 @@ export class Stage {
       this.stand(instant.momentum);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
-      this.canvas.setAttribute("aria-label", this.description(shown));
+      const description = this.description(shown);
+      if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
     this.scene.updateMatrixWorld();
     this.labels.place(
@@ -230,7 +231,7 @@ export class Stage {
     // A top that stands is looked at above its tip.
     const start = quaternion(figure.about.start.rotor);
     const top = figure.traced.clone().applyQuaternion(start).z;
-    this.viewpoint.look(new Vector3(0, 0, figure.about.held ? 0.35 * top : 0));
+    this.viewpoint.look(new Vector3(0, 0, figure.about.held ? Math.max(0.2 * top, 0) : 0));
     this.motion = motion;
   }
 
@@ -242,7 +243,7 @@ export class Stage {
     const dark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5;
     this.renderer.setClearColor(background);
     this.hemisphere.color.set("#ffffff");
-    this.hemisphere.groundColor.set(dark ? "#58606c" : "#9aa3af");
+    this.hemisphere.groundColor.set(dark ? "#58606c" : "#c0c7d0");
     this.hemisphere.intensity = dark ? 2.3 : 2.5;
     this.lamp.intensity = dark ? 1.8 : 1.7;
     this.message.style.color = palette.text;

@@ -1,0 +1,71 @@
+"""How Sphinx makes the pages of build/docs from the guides, with the viewer in them."""
+
+import json
+import os
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.util.docutils import SphinxDirective
+
+from polhode import Scene, _document
+from polhode._html import bundle_path
+
+project = "Polhode"
+copyright = "the authors of Polhode"
+extensions = ["myst_parser"]
+exclude_patterns = ["_build"]
+myst_heading_anchors = 3
+html_theme = "furo"
+html_title = "Polhode"
+html_show_sourcelink = False
+html_copy_source = False
+
+ROOT = Path(__file__).parents[1]
+
+
+class Viewer(SphinxDirective):
+    """A scene to look at: its path from the root of the repository."""
+
+    required_arguments = 1
+
+    def run(self):
+        path = ROOT / self.arguments[0]
+        self.env.note_dependency(str(path))
+        if not viewer_is_there():
+            return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were made without the viewer.")]
+        data = json.dumps(_document.of_scene(Scene.read(path))).replace("<", "\\u003c")
+        script = os.path.relpath("_static/polhode-viewer.js", Path(self.env.docname).parent)
+        html = (
+            f'<script src="{script}"></script>'
+            f'<polhode-viewer compact style="display: block; height: 34rem; margin: 1rem 0">'
+            f'<script type="application/json">{data}</script></polhode-viewer>'
+        )
+        return [nodes.raw("", html, format="html")]
+
+
+def viewer_is_there():
+    try:
+        return bundle_path().is_file()
+    except FileNotFoundError:
+        return False
+
+
+def with_links_inside(app, docname, source):
+    """Let links to files beside docs/ point at the pages that hold them here."""
+    source[0] = source[0].replace("(../CONVENTIONS.md)", "(conventions.md)")
+
+
+def write_viewer(app, exception):
+    """Put the viewer beside the pages, as text: from disk a page may load a module by its text alone."""
+    if exception is None and viewer_is_there():
+        text = json.dumps(bundle_path().read_text())
+        (Path(app.outdir) / "_static/polhode-viewer.js").write_text(
+            "window.polhodeViewer ??= import(URL.createObjectURL(\n"
+            f'  new Blob([{text}], {{ type: "text/javascript" }}),\n));\n'
+        )
+
+
+def setup(app):
+    app.add_directive("viewer", Viewer)
+    app.connect("source-read", with_links_inside)
+    app.connect("build-finished", write_viewer)

@@ -1,0 +1,218 @@
+"""A motion that was followed here, for the viewer: rows of states, and what is known besides them.
+
+Their form is that of `State` and `About` in `viewer/src/core/core.ts`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._arrays import Array
+from polhode._bodies import Body
+from polhode._free_motion import describe_free
+from polhode._kinds import kind_of, weight
+from polhode._packed import packed
+from polhode._scene import Scene
+from polhode._scene_text import Problem
+from polhode._trajectory import Trajectory, _Points
+
+# Between rows a body turns by less than this, in rad, as long as there are no more rows than a page bears.
+_TURN = 0.2
+_MOST_ROWS = 20_000
+# As many states tell how fast it turns.
+_SOME = 101
+
+_SOLIDS: dict[str, tuple[str, ...]] = {
+    "box": ("lengths",),
+    "ellipsoid": ("semi_axes",),
+    "sphere": ("radius",),
+    "hollow_sphere": ("outer_radius", "inner_radius"),
+    "cylinder": ("radius", "height"),
+    "cone": ("radius", "height"),
+    "capsule": ("radius", "height"),
+    "rod": ("length",),
+    "disc": ("radius",),
+    "torus": ("major_radius", "minor_radius"),
+}
+
+
+def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool) -> dict[str, str]:
+    """Return what a page needs to show the motion of one body without following it again.
+
+    At most 20,000 rows, evenly chosen among the output times. Where the motion is known between these, and
+    the body turns far from one to the next, they are closer.
+
+    Parameters
+    ----------
+    trajectory
+        The motion.
+    origin
+        What was run, or asked for; None where that is not known.
+    mesh
+        Whether the document brings the mesh of its scene.
+
+    Raises
+    ------
+    ValueError
+        If the motion does not begin at time 0, or ends there.
+    """
+    points = _points(trajectory)
+    about = _about(trajectory, origin, points)
+    about["body"]["mesh"] = mesh
+    rows = _rows(points).astype("<f8").tobytes()
+    return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows)}
+
+
+def _points(trajectory: Trajectory) -> _Points:
+    """Return the states that are kept."""
+    times = trajectory.time
+    last = float(times[-1]) if len(times) else 0.0
+    if last <= 0:
+        raise ValueError("the viewer shows motions from time 0 on, and this one has no later time")
+    wanted = min(_MOST_ROWS, len(times))
+    if trajectory._motion is not None:
+        some = _Points.of(trajectory._motion.at(np.linspace(0.0, last, _SOME)))
+        rate = float(np.max([some.omega_body.norm().max(), trajectory.omega_body.norm().max()]))
+        wanted = min(_MOST_ROWS, max(len(times), math.ceil(rate * last / _TURN) + 1))
+        if wanted > len(times) or times[0] != 0:
+            return _Points.of(trajectory._motion.at(np.linspace(0.0, last, wanted)))
+    if times[0] != 0:
+        raise ValueError(f"the viewer shows motions from time 0 on, and this one begins at {times[0]:g} s")
+    # Output times may stand twice.
+    rising = np.flatnonzero(np.diff(times, prepend=-1.0) > 0)
+    kept = rising[np.linspace(0, len(rising) - 1, min(wanted, len(rising))).round().astype(int)]
+    return _Points(
+        times[kept],
+        *(getattr(trajectory, name)[kept] for name in ("rotor", "omega_body", "momentum_space", "energy")),
+        *(getattr(trajectory, name)[kept] for name in ("position", "velocity")),
+    )
+
+
+def _rows(points: _Points) -> Array:
+    """Return the numbers of `State`, (n, 24)."""
+    rotor = points.rotor
+    columns = [
+        points.time[:, np.newaxis],
+        rotor.components,
+        points.omega_body.components,
+        rotor(points.omega_body).components,
+        (~rotor)(points.momentum_space).components,
+        points.momentum_space.components,
+        points.energy[:, np.newaxis],
+        points.position.components,
+        points.velocity.components,
+    ]
+    return np.concatenate(columns, axis=1)
+
+
+def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any]:
+    proof, inertia = trajectory.certificate, trajectory.inertia
+    torque = None if origin is None else origin.torque
+    held = torque is not None and torque.holds
+    start = None if origin is None else origin.state
+    body = _body(origin)
+    return {
+        "title": trajectory.attributes.get("title"),
+        "body": {
+            **body,
+            "moments": inertia.principal_moments.tolist(),
+            "frame": inertia.principal_frame.components.tolist(),
+        },
+        "held": held,
+        "heavy": weight(torque).tolist() if held else None,
+        "laws": _laws(origin),
+        "start": {
+            "rotor": (start.rotor if start else points.rotor[0]).components.tolist(),
+            "omega_body": (start.omega_body if start else points.omega_body[0]).components.tolist(),
+        },
+        "duration": float(points.time[-1]),
+        "samples": len(points.time),
+        "method": "recorded",
+        "exact": False,
+        "horizon": None,
+        "steps": int(proof.steps),
+        "error_estimate": proof.error_estimate,
+        "conserved": [
+            {"name": name, "value": value, "drift": proof.drift[name]}
+            for name, value in proof.conserved.items()
+        ],
+        "norm_drift": proof.norm_drift,
+        "free": _free(trajectory, origin, points),
+        "ensemble": None,
+    }
+
+
+def _body(origin: Scene | Problem | None) -> dict[str, Any]:
+    """Return mass, centre of mass and solid, as far as they are known."""
+    whole = origin.body if origin is not None and isinstance(origin.body, Body) else None
+    if whole is None:
+        return {"mass": None, "center_of_mass": [0.0] * 3, "solid": None, "solid_at": [0.0] * 3}
+    center = whole.center_of_mass.components
+    solid = _solid(origin.text) if isinstance(origin, Scene) else None
+    told = not isinstance(origin, Scene) or origin.tells_mass
+    return {
+        "mass": whole.mass if told else None,
+        "center_of_mass": center.tolist(),
+        "solid": solid,
+        "solid_at": (center - _own_center(solid)).tolist(),
+    }
+
+
+def _solid(scene: str) -> dict[str, Any] | None:
+    """Return the solid that a scene says, its sizes in m."""
+    body = tomllib.loads(scene)["body"]
+    kind = body.get("solid")
+    if kind is None:
+        return None
+    return {"kind": kind, **{name: _metres(body[name]) for name in _SOLIDS[kind]}}
+
+
+def _metres(size: Any) -> Any:
+    if isinstance(size, list):
+        return [_metres(one) for one in size]
+    if isinstance(size, str):
+        ((_, _, size),) = _native.quantities(size, set())
+    return float(size)
+
+
+def _own_center(solid: dict[str, Any] | None) -> Array:
+    """Return the centre of mass of a solid in its own axes: a cone stands on its base."""
+    height = solid["height"] / 4 if solid and solid["kind"] == "cone" else 0.0
+    return np.array([0.0, 0.0, height])
+
+
+def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
+    """Return each law by the name of its field in a scene, and its formula or its numbers."""
+    laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
+    formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
+    told = []
+    for law, formula in zip(laws, formulas, strict=True):
+        arguments = law.arguments
+        if law.name == "formula":
+            told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
+        elif law.name in ("tabulated", "function"):
+            told.append({"name": law.name, "text": ""})
+        else:
+            told.append({"name": law.name, "text": ", ".join(map(_number, arguments))})
+    return told
+
+
+def _number(argument: Any) -> str:
+    if isinstance(argument, tuple):
+        return f"({', '.join(map(_number, argument))})"
+    return repr(argument).removesuffix(".0")
+
+
+def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
+    """Return what the invariants of a free body tell."""
+    if origin is None or kind_of(origin) != "free":
+        return None
+    told = describe_free(trajectory.inertia, points.omega_body[0])
+    names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
+    return {name: told[name] for name in names}

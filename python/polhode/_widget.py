@@ -1,0 +1,129 @@
+"""The viewer as a widget: what is changed in the page is changed in Python, and the other way round."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polhode._document import Document, document, scene_of
+from polhode._extras import optional
+from polhode._files import write_atomically
+from polhode._html import bundle_path, page
+from polhode._rotor import Rotor
+from polhode._scene import Scene
+from polhode._state import State
+from polhode._trajectory import Trajectory
+from polhode._values import bivector, vector
+
+if TYPE_CHECKING:
+    import anywidget
+    import traitlets
+else:
+    anywidget = optional("anywidget", "notebook", "a viewer in a notebook")
+    traitlets = optional("traitlets", "notebook", "a viewer in a notebook")
+
+# As in viewer/src/document.ts.
+CAMERAS = ("oblique", "along e1", "along e2", "along e3", "along L", "with the body")
+THEMES = ("auto", "light", "dark")
+
+_VIEW = ("time", "playing", "speed", "camera", "theme", "shown")
+
+
+def _state_of(numbers: dict[str, list[float]] | None, _: Any) -> State | None:
+    """Return the state that the page sent."""
+    if numbers is None:
+        return None
+    rotor = Rotor.from_components(numbers["rotor"])
+    place, velocity = vector(numbers["position"]), vector(numbers["velocity"])
+    return State(rotor, bivector(numbers["omega_body"]), place, velocity)
+
+
+class Viewer(anywidget.AnyWidget):
+    """A motion in a notebook; made by `polhode.view`. Works wherever anywidget does.
+
+    Attributes but `state` and `problem` can be set, and all can be observed as those of other widgets. Until
+    a page shows the widget, those of the view that were not set are None; then they are what the page shows.
+    While the motion plays, the page tells of time and state ten times a second, and exactly when it stops.
+
+    Attributes
+    ----------
+    scene
+        The scene in TOML, as it was edited in the page; None where the motion is a recording alone. A scene
+        that is wrong is not taken: `problem` says why.
+    time
+        Time shown, in s.
+    playing
+        Whether time passes.
+    speed
+        Seconds of motion in a second of the clock.
+    camera
+        Whence one looks: "oblique", "along e1", "along e2", "along e3", "along L" or "with the body".
+    theme
+        "auto", "light" or "dark".
+    shown
+        What is drawn, by name: body, bodyFrame, spaceFrame, omega, momentum, axial, poinsot, polhode,
+        herpolhode, trace, gravity, labels. Names that are left out stay as they are.
+    state
+        The `State` at the time shown, which the page tells; None before.
+    problem
+        What is wrong with the scene, with its places; None if nothing is.
+    document
+        What the page was given first.
+    """
+
+    _esm = bundle_path()
+
+    document = traitlets.Dict().tag(sync=True)
+    scene = traitlets.Unicode(None, allow_none=True).tag(sync=True)
+    time = traitlets.CFloat(None, allow_none=True).tag(sync=True)
+    playing = traitlets.Bool(None, allow_none=True).tag(sync=True)
+    speed = traitlets.CFloat(None, allow_none=True).tag(sync=True)
+    camera = traitlets.Enum(CAMERAS, None, allow_none=True).tag(sync=True)
+    theme = traitlets.Enum(THEMES, None, allow_none=True).tag(sync=True)
+    shown = traitlets.Dict(value_trait=traitlets.Bool()).tag(sync=True)
+    state = traitlets.Instance(State, allow_none=True).tag(
+        sync=True, from_json=_state_of, to_json=lambda state, _: None
+    )
+    problem = traitlets.Unicode(None, allow_none=True).tag(sync=True)
+
+    def __init__(self, shown: Document) -> None:
+        super().__init__(document=shown, scene=shown.get("scene"))
+
+    def show(self, x: Any, *arguments: Any, **named: Any) -> None:
+        """Show something else, from its start; the arguments are those of `polhode.view`."""
+        shown = document(x, *arguments, **named)
+        with self.hold_sync():
+            self.document, self.scene = shown, shown.get("scene")
+            self.time = self.speed = self.problem = None
+
+    def run(self) -> Trajectory:
+        """Return the motion of the scene as it is now in the page, computed here.
+
+        A ValueError where there is no scene; a SceneError for one that is wrong.
+        """
+        return self.to_scene().run()
+
+    def to_scene(self) -> Scene:
+        """Return the scene as it is now in the page. Errors as in `run`."""
+        if self.scene is None:
+            raise ValueError("this motion was recorded: no scene says it, and so it cannot be run again")
+        return scene_of({**self.document, "scene": self.scene})
+
+    def html(self) -> str:
+        """Return a page of its own that shows the same, as it is now: one file that needs nothing else."""
+        return page(self._now())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write that page to a file, whole or not at all."""
+        write_atomically({Path(path): self.html().encode()})
+
+    def _now(self) -> Document:
+        """Return the document that shows what is shown now."""
+        now: Document = dict(self.document)
+        if self.scene != now.get("scene"):
+            now["scene"] = self.scene
+            now.pop("recorded", None)
+        view = {name: getattr(self, name) for name in _VIEW}
+        now["view"] = {name: x for name, x in view.items() if x not in (None, {})}
+        return now

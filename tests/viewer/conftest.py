@@ -1,0 +1,112 @@
+"""What is needed to try the viewer. Where it is missing, tests are left out and say what; in CI they fail."""
+
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from node_core import NodeCore
+from polhode import _document, _html
+from viewer_page import CHROMIUM, ViewerPage
+from viewer_scenes import ROOT, followed
+
+BUNDLE = ROOT / "python/polhode/_viewer/viewer.js"
+
+
+def left_out(reason):
+    """Skip what needs something that is missing, unless every test must run."""
+    (pytest.fail if os.environ.get("POLHODE_EVERY_TEST") else pytest.skip)(reason)
+
+
+@pytest.fixture(scope="package")
+def node():
+    """The path of Node, with the packages of the viewer."""
+    found = shutil.which("node")
+    version = (
+        subprocess.run([found, "--version"], capture_output=True, text=True, check=True).stdout
+        if found
+        else "v0"
+    )
+    if int(version.strip().lstrip("v").split(".")[0]) < 20:
+        left_out("Node >= 20 was not found")
+    if not (ROOT / "viewer/node_modules").exists():
+        left_out("viewer/node_modules is missing: make viewer")
+    return found
+
+
+@pytest.fixture(scope="package")
+def core(node):
+    """The core under Node."""
+    core = NodeCore(node)
+    yield core
+    core.close()
+
+
+@pytest.fixture(scope="package")
+def follow(tmp_path_factory):
+    """The scene of a name, followed by Python."""
+    folder = tmp_path_factory.mktemp("scenes")
+    return lambda name: followed(name, folder)
+
+
+@pytest.fixture(scope="package")
+def browser():
+    """Chromium, one for all tests. Its driver must end with this directory: it holds an event loop."""
+    if not BUNDLE.exists():
+        left_out("the viewer was not built: make viewer")
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        left_out("playwright was not found")
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        left_out("Chromium was not found")
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=list(CHROMIUM), chromium_sandbox=False)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="package")
+def _pages(browser):
+    """What opens a page without a network, in a profile of its own; all are closed with the browser."""
+
+    def opened(**options):
+        context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
+        context.set_offline(True)
+        return ViewerPage(context.new_page())
+
+    return opened
+
+
+@pytest.fixture
+def new_page(_pages):
+    """Opens pages; whatever a test does there, no page asks the network for anything, nor complains."""
+    opened = []
+
+    def new(**options):
+        opened.append(_pages(**options))
+        return opened[-1]
+
+    yield new
+    for page in opened:
+        page.page.context.close()
+    for page in opened:
+        assert page.requests == []
+        assert page.complaints == []
+
+
+@pytest.fixture
+def opened(new_page, follow, tmp_path):
+    """Opens the page of a document, or of the scene of a name, from disk."""
+
+    def opened(given, **options):
+        document = given if isinstance(given, dict) else _document.of_scene(follow(given).scene)
+        page = new_page(**options)
+        path = tmp_path / f"{id(page)}.html"
+        path.write_text(_html.page(document))
+        page.open(path)
+        return page
+
+    return opened

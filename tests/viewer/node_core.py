@@ -1,0 +1,73 @@
+"""The core as the page has it, compiled to WebAssembly, asked through Node without a page."""
+
+import base64
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parents[2]
+
+# Where things are in a row of states: viewer/src/core/core.ts.
+ROW = 24
+PARTS = {
+    "time": slice(0, 1),
+    "rotor": slice(1, 5),
+    "omega_body": slice(5, 8),
+    "omega_space": slice(8, 11),
+    "momentum_body": slice(11, 14),
+    "momentum_space": slice(14, 17),
+    "energy": slice(17, 18),
+    "position": slice(18, 21),
+    "velocity": slice(21, 24),
+}
+
+
+class Problem(Exception):  # noqa: N818, as in core.ts
+    """What the core told of a scene or of a question."""
+
+
+class NodeCore:
+    """One process of Node, which answers questions in turn."""
+
+    def __init__(self, node):
+        self._process = subprocess.Popen(
+            [node, ROOT / "viewer/tests/core.mjs"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+        )
+
+    def ask(self, question, **rest):
+        print(json.dumps({"question": question, **rest}), file=self._process.stdin, flush=True)
+        line = self._process.stdout.readline()
+        if not line:
+            raise RuntimeError(f"Node ended: {self._process.communicate()[1]}")
+        answer = json.loads(line)
+        if "problem" in answer:
+            raise Problem(answer["problem"])
+        return answer["value"]
+
+    def motion(self, scene, times, **options):
+        """Return what is known of a motion, and its states at the times by name."""
+        answer = self.ask("motion", scene=scene, times=list(times), **options)
+        return answer["about"], states(answer["rows"])
+
+    def close(self):
+        self._process.communicate()
+
+
+def states(rows):
+    """Return numbers of states as arrays by name."""
+    rows = np.array(rows, dtype=float).reshape(-1, ROW)
+    return {
+        name: rows[:, part].squeeze(-1) if name in ("time", "energy") else rows[:, part]
+        for name, part in PARTS.items()
+    }
+
+
+def packed(path):
+    """Return the bytes of a file as a question takes them."""
+    return base64.b64encode(path.read_bytes()).decode()

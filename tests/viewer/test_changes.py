@@ -1,0 +1,118 @@
+"""What is changed on a page changes its scene, and the motion is that of the scene as Python follows it."""
+
+import pytest
+
+import polhode as ph
+from polhode import _document
+from viewer_scenes import followed_text
+
+BOX = """\
+title = "Box"
+[body]
+solid = "box"
+lengths = ["10 cm", "5 cm", "2 cm"]
+mass = "1 kg"
+[initial]
+spin = { vector = ["0.1 rev/s", "2 rev/s", 0] }
+[run]
+duration = "4 s"
+samples = 401
+"""
+
+
+@pytest.fixture
+def box(opened):
+    """A page with a box that turns, its panels open."""
+    page = opened({"format": 1, "scene": BOX, "name": "box.toml"})
+    for panel in ("start", "body", "laws"):
+        details = page.page.locator(f"#panel-{panel}")
+        if details.get_attribute("open") is None:
+            details.locator("summary").click()
+    return page
+
+
+def type_in(page, field, text):
+    page.page.locator(f"#{field}-number").fill(text)
+    page.page.locator(f"#{field}-number").press("Enter")
+
+
+def choose_law(page, law):
+    page.page.get_by_label("Torques", exact=True).select_option("here")
+    page.page.locator(f"#law-{law}").check()
+
+
+CHANGES = {
+    "a side, typed": lambda page: type_in(page, "size-lengths-0", "30"),
+    "a side, by keys": lambda page: page.page.locator("#size-lengths-1").press("ArrowRight"),
+    "the mass": lambda page: type_in(page, "mass", "2.5"),
+    "the rate, typed": lambda page: type_in(page, "rate", "3"),
+    "the rate, by keys": lambda page: page.page.locator("#rate").press("PageDown"),
+    "the spin's angle": lambda page: type_in(page, "off", "1"),
+    "the attitude": lambda page: type_in(page, "tilt", "40"),
+    "the duration": lambda page: type_in(page, "duration", "7"),
+    "another form": lambda page: page.page.get_by_label("Form").select_option("cone"),
+    "damping": lambda page: choose_law(page, "viscous_damping"),
+    "a constant torque": lambda page: choose_law(page, "constant_body"),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_the_motion_is_that_of_the_changed_scene(change, box, tmp_path):
+    before = box.scene()
+    CHANGES[change](box)
+    assert box.viewer.get_attribute("data-state") == "ready"
+    assert box.scene() != before
+    followed = followed_text(box.scene(), tmp_path / "changed.toml")
+    assert box.viewer.get_attribute("data-method") == followed.motion.certificate.method
+    box.compare(followed)
+
+
+def test_what_was_typed_is_in_the_scene(box, tmp_path):
+    type_in(box, "size-lengths-0", "30")
+    type_in(box, "mass", "2.5")
+    path = tmp_path / "changed.toml"
+    path.write_text(box.scene())
+    body = ph.Scene.read(path).body
+    expected = ph.Body.box([0.3, 0.05, 0.02], mass=2.5)
+    assert body.mass == 2.5
+    assert body.inertia.principal_moments == pytest.approx(expected.inertia.principal_moments, rel=1e-12)
+
+
+def test_time_goes_on_through_a_change(box):
+    box.seek(1.5)
+    box.page.locator("#rate").press("ArrowRight")
+    assert box.data("time") == 1.5
+
+
+def test_the_text_of_a_scene_can_be_edited(box, tmp_path):
+    box.page.locator("#panel-text summary").click()
+    area = box.page.get_by_label("Scene, in TOML")
+    area.fill(area.input_value().replace("5 cm", "6 cm"))
+    box.page.get_by_role("button", name="Apply").click()
+    box.compare(followed_text(BOX.replace("5 cm", "6 cm"), tmp_path / "box.toml"))
+    box.page.get_by_role("button", name="Reset").click()
+    box.compare(followed_text(BOX, tmp_path / "box.toml"))
+
+
+def test_a_scene_of_this_machine_is_opened(box, follow):
+    followed = follow("t-handle")
+    box.page.locator("#file").set_input_files([followed.path, followed.mesh])
+    box.page.get_by_role("heading", name="T-handle in free flight").wait_for()
+    box.compare(followed)
+
+
+def test_presets_are_opened(opened):
+    page = opened("asymmetric")
+    select = page.page.get_by_label("Scene", exact=True)
+    names = select.locator("option:not([disabled])").evaluate_all("options => options.map(o => o.value)")
+    assert len(names) >= 10
+    for name in names:
+        select.select_option(name)
+        assert page.viewer.get_attribute("data-state") == "ready"
+        assert page.data("time") == 0
+
+
+def test_recorded_motions_are_shown_at_their_times(opened, follow):
+    followed = follow("magnetic")
+    page = opened(_document.of_trajectory(followed.motion))
+    page.compare(followed)

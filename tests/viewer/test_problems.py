@@ -1,0 +1,121 @@
+"""What a page says when something is wrong."""
+
+import pytest
+
+import polhode as ph
+from viewer_scenes import RUN, TUMBLING
+
+WRONG = (TUMBLING + RUN).replace("duration", "durration")
+
+
+def told(page):
+    """Return the message that the page gives as an alert."""
+    alert = page.page.get_by_role("alert")
+    alert.wait_for()
+    return alert.inner_text()
+
+
+def as_python_tells(text, path):
+    path.write_text(text)
+    with pytest.raises(ph.SceneError) as error:
+        ph.Scene.read(path)
+    return str(error.value).replace(str(path), path.name)
+
+
+def test_a_wrong_scene_is_told_with_its_place(opened, tmp_path):
+    page = opened({"format": 1, "scene": WRONG, "name": "wrong.toml"})
+    expected = as_python_tells(WRONG, tmp_path / "wrong.toml")
+    assert "wrong.toml:6:1: error" in expected
+    assert "^^^^" in expected
+    assert expected in told(page)
+    assert page.viewer.get_attribute("data-state") == "problem"
+
+
+def test_a_wrong_file_leaves_the_motion_and_a_right_one_ends_the_message(opened, tmp_path):
+    page = opened("asymmetric")
+    page.seek(2.0)
+    before = page.state()
+    (tmp_path / "wrong.toml").write_text(WRONG)
+    page.page.locator("#file").set_input_files(tmp_path / "wrong.toml")
+    assert as_python_tells(WRONG, tmp_path / "wrong.toml") in told(page)
+    after = page.state()
+    assert all((before[name] == after[name]).all() for name in ("rotor", "omega_body"))
+    (tmp_path / "right.toml").write_text(TUMBLING + RUN)
+    page.page.locator("#file").set_input_files(tmp_path / "right.toml")
+    page.page.get_by_role("alert").wait_for(state="detached")
+    assert page.viewer.get_attribute("data-state") == "ready"
+
+
+def test_files_are_dropped(opened):
+    page = opened("asymmetric")
+    page.page.evaluate(
+        """text => {
+            const files = new DataTransfer();
+            files.items.add(new File([text], "dropped.toml"));
+            const place = document.querySelector("polhode-viewer").shadowRoot.querySelector(".app");
+            const options = { dataTransfer: files, bubbles: true, cancelable: true };
+            place.dispatchEvent(new DragEvent("drop", options));
+        }""",
+        WRONG,
+    )
+    assert "dropped.toml:6:1: error" in told(page)
+
+
+@pytest.mark.parametrize(
+    ("document", "message"),
+    [
+        ({"format": 2, "scene": TUMBLING + RUN}, "format 1, not 2"),
+        (
+            {
+                "format": 1,
+                "scene": TUMBLING.replace("moments = [1, 2, 3]", 'mesh = "a.stl"\ndensity = 1') + RUN,
+            },
+            "a.stl",
+        ),
+        ({"format": 1, "scene": "[body", "name": "half.toml"}, "half.toml:1:6: error"),
+    ],
+    ids=["format", "mesh", "toml"],
+)
+def test_documents_that_cannot_be_shown(document, message, opened):
+    assert message in told(opened(document))
+
+
+def test_text_that_is_no_document(new_page, opened, tmp_path):
+    opened("asymmetric")
+    path = next(tmp_path.glob("*.html"))
+    head, _, tail = path.read_text().partition('{"format"')
+    path.write_text(head + '{"formt' + tail)
+    page = new_page()
+    page.open(path)
+    assert "not JSON" in told(page)
+
+
+def test_a_motion_that_takes_too_long_is_given_up(opened):
+    slow = (
+        TUMBLING
+        + '[torque]\nquadratic_damping = 0.1\n[run]\nduration = "9 d"\n[method]\nname = "rk4"\nstep = "1 ms"'
+    )
+    page = opened({"format": 1, "scene": slow})
+    assert "takes too long" in told(page)
+
+
+@pytest.mark.parametrize("how", ["refused", "lost"])
+def test_without_webgl_the_numbers_are_there(how, new_page, opened, follow, tmp_path):
+    opened("t-handle")
+    page = new_page()
+    if how == "refused":
+        page.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+        # three.js tells the console of what the page tells its reader.
+        page.allowed = ("THREE.WebGLRenderer",)
+    page.open(next(tmp_path.glob("*.html")))
+    if how == "refused":
+        page.page.get_by_text("WebGL 2 is missing or switched off").wait_for()
+    else:
+        page.page.evaluate(
+            """() => document.querySelector("polhode-viewer").shadowRoot.querySelector("canvas")
+                .getContext("webgl2").getExtension("WEBGL_lose_context").loseContext()"""
+        )
+        page.allowed = ("THREE.WebGLRenderer: Context Lost",)
+    page.compare(follow("t-handle"))
+    page.page.keyboard.press("Space")
+    page.page.wait_for_function("Number(document.querySelector('polhode-viewer').dataset.time) !== 12")

@@ -1,0 +1,56 @@
+"""What a page tells of a motion is what Python computes."""
+
+import numpy as np
+import pytest
+
+from command_line import polhode
+from polhode import _document, _html
+from viewer_scenes import FILES, PRESETS, SCENES
+
+EVERY = [*FILES, *PRESETS, *SCENES]
+
+
+@pytest.fixture(scope="module")
+def shared(_pages, tmp_path_factory, follow):
+    """One page, which is shown one scene after the other."""
+    page = _pages()
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    path.write_text(_html.page(_document.of_scene(follow("asymmetric").scene)))
+    page.open(path)
+    yield page
+    assert page.requests == []
+    assert page.complaints == []
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_scenes_are_followed_as_by_python(name, shared, follow):
+    followed = follow(name)
+    shared.show(_document.of_scene(followed.scene))
+    assert shared.viewer.get_attribute("data-method") == followed.motion.certificate.method
+    shared.compare(followed)
+
+
+def written_page(followed, page, folder):
+    """Open the page that `polhode run --html` writes of a scene."""
+    path = folder / "written.html"
+    done = polhode("run", followed.path, "--html", path)
+    assert (done.returncode, done.stderr) == (0, "")
+    # Without the motion a page is the viewer and little else.
+    assert path.stat().st_size < 1.5e6 or "recorded" in path.read_text()
+    page.open(path)
+    return page
+
+
+@pytest.mark.parametrize("name", ["t-handle", "nutating-top", "gravity-gradient", "dual-spin"])
+def test_pages_that_run_writes(name, new_page, follow, tmp_path):
+    followed = follow(name)
+    written_page(followed, new_page(), tmp_path).compare(followed)
+
+
+def test_a_long_run_is_kept_thinner_than_it_turns(new_page, follow, tmp_path):
+    """Between rows all is interpolated; they are at most 0.2 rad apart, so that it is off by 0.2²/8 at most."""
+    followed = follow("detumbling")
+    page = written_page(followed, new_page(), tmp_path)
+    page.compare(followed, 0.2**2 / 8)
+    page.seek(followed.motion.time[-1])
+    np.testing.assert_allclose(page.data("rotor"), followed.motion.rotor[-1].components, rtol=0, atol=1e-12)

@@ -1,0 +1,119 @@
+"""Time on a page: slider, number field, keys and the clock."""
+
+import numpy as np
+import pytest
+
+
+def test_a_page_begins_at_the_start_and_stands_still(opened, follow):
+    page = opened("t-handle")
+    assert page.data("time") == 0
+    np.testing.assert_array_equal(
+        page.data("omega-body"), follow("t-handle").scene.state.omega_body.components
+    )
+    assert page.page.get_by_role("button", name="Play").is_visible()
+
+
+def test_the_number_field_goes_to_a_time(opened):
+    page = opened("t-handle")
+    field = page.page.get_by_label("Time, s")
+    field.fill("3.25")
+    field.press("Enter")
+    assert page.data("time") == 3.25
+    assert page.page.get_by_role("slider", name="Time").input_value() == "3.25"
+
+
+def test_the_slider_covers_the_motion(opened):
+    page = opened("t-handle")
+    slider = page.page.get_by_role("slider", name="Time", exact=True)
+    assert (slider.get_attribute("min"), slider.get_attribute("max")) == ("0", "12")
+    slider.fill("7.5")
+    assert page.data("time") == 7.5
+    box = slider.bounding_box()
+    page.page.mouse.click(box["x"] + box["width"] / 3, box["y"] + box["height"] / 2)
+    # A third of twelve seconds, up to the half width of the handle.
+    assert abs(page.data("time") - 4) < 0.5
+
+
+def test_exact_motions_go_on_after_their_end_and_others_stop_there(opened):
+    page = opened("t-handle")
+    page.seek(1e6)
+    assert page.data("time") == 1e6
+    page = opened("magnetic")
+    page.seek(1e6)
+    assert page.data("time") == 5
+    page.seek(-1)
+    assert page.data("time") == 0
+
+
+def test_space_plays_and_arrows_step(opened):
+    page = opened("t-handle")
+    page.page.keyboard.press("Space")
+    page.page.wait_for_function("Number(document.querySelector('polhode-viewer').dataset.time) > 0")
+    assert page.page.get_by_role("button", name="Pause").is_visible()
+    page.page.keyboard.press("Space")
+    stopped = page.data("time")
+    page.drawn()
+    assert page.data("time") == stopped
+    page.page.keyboard.press("ArrowRight")
+    one = page.data("time") - stopped
+    assert one > 0
+    page.page.keyboard.press("Shift+ArrowRight")
+    assert page.data("time") - stopped == pytest.approx(11 * one, rel=1e-9)
+    for _ in range(11):
+        page.page.keyboard.press("ArrowLeft")
+    assert page.data("time") == pytest.approx(stopped, rel=1e-9)
+    page.page.keyboard.press("Home")
+    assert page.data("time") == 0
+
+
+def test_it_plays_at_the_speed_it_says(opened):
+    page = opened("t-handle")
+    page.page.get_by_role("button", name="Faster").click()
+    speed = float(page.page.locator("#speed").inner_text().rstrip("×"))
+    # The page's own clock says how much time passed between two of its frames.
+    clocks = page.page.evaluate(
+        """async () => {
+            const viewer = document.querySelector("polhode-viewer");
+            const model = await viewer.ready;
+            const frame = () => new Promise(requestAnimationFrame);
+            model.playing.value = true;
+            await frame(); await frame();
+            const first = [await frame(), model.time.value];
+            for (let k = 0; k < 10; k++) await frame();
+            const last = [await frame(), model.time.value];
+            model.playing.value = false;
+            return [(last[0] - first[0]) / 1000, last[1] - first[1]];
+        }"""
+    )
+    assert clocks[1] == pytest.approx(speed * clocks[0], rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["t-handle", "magnetic"])
+def test_the_controls_are_reached_by_tab_alone(name, opened):
+    page = opened(name)
+    page.page.evaluate("document.activeElement.blur()")
+    reached, focused = [], None
+    while focused not in reached[:1]:
+        page.page.keyboard.press("Tab")
+        focused = page.page.evaluate(FOCUSED)
+        assert focused not in reached[1:], "Tab goes in a circle that leaves controls out"
+        reached.append(focused)
+        assert len(reached) < 200
+    controls = page.page.evaluate(CONTROLS)
+    # One button of a group of radio buttons stands for it.
+    assert set(controls) <= set(reached)
+
+
+# The element with the focus, through shadow roots: its tag, name and id; the page itself is null.
+FOCUSED = """() => {
+    let element = document.activeElement;
+    while (element?.shadowRoot?.activeElement) element = element.shadowRoot.activeElement;
+    return element === document.body ? null : `${element.localName}#${element.id}`;
+}"""
+CONTROLS = """() => {
+    const root = document.querySelector("polhode-viewer").shadowRoot;
+    const wanted = "button, input, select, textarea, summary, a[href]";
+    return [...root.querySelectorAll(wanted)]
+        .filter((control) => !control.disabled && control.checkVisibility() && control.tabIndex >= 0)
+        .map((control) => `${control.localName}#${control.id}`);
+}"""

@@ -1,0 +1,222 @@
+import { effect, type ReadonlySignal } from "@preact/signals";
+import { render } from "preact";
+import { Problem, State } from "./core/core.ts";
+import { loadCore } from "./core/wasm.ts";
+import type { PageDocument, ViewState } from "./document.ts";
+import { Model, words } from "./model/model.ts";
+import { paletteOf, variables } from "./model/theme.ts";
+import type { Palette } from "./palette.ts";
+import { App } from "./panels/app.tsx";
+import { bindKeys } from "./panels/keys.ts";
+import { openPreset, PRESETS } from "./presets/index.ts";
+import styles from "./theme.css?inline";
+
+/** From this width on, in px, panels stand beside the picture: the same as in theme.css. */
+const WIDE = 900;
+
+/**
+ * `<polhode-viewer>`: a motion, its read-outs and its controls. It shows the document that it is given by its property
+ * `document`, by a child `<script type="application/json">` or by the address in `src`; else the first preset.
+ *
+ * Attributes: `theme` is auto, light or dark; `compact` leaves out what a small place has no room for. What is shown
+ * can be read off the attributes `data-…`, with all digits.
+ */
+export class PolhodeViewer extends HTMLElement {
+  static readonly observedAttributes = ["theme", "compact", "src"];
+
+  /** The state of the page, once the core is there. */
+  ready: Promise<Model>;
+
+  private resolve!: (model: Model) => void;
+  private given: PageDocument | null = null;
+  private model: Model | null = null;
+  private palette: ReadonlySignal<Palette> | null = null;
+  private leave: (() => void)[] = [];
+  private readonly place: HTMLElement;
+
+  constructor() {
+    super();
+    this.ready = new Promise((resolve) => (this.resolve = resolve));
+    const root = this.attachShadow({ mode: "open" });
+    const style = document.createElement("style");
+    style.textContent = styles;
+    this.place = document.createElement("div");
+    this.place.className = "place";
+    root.append(style, this.place);
+  }
+
+  get document(): PageDocument | null {
+    return this.given;
+  }
+
+  set document(given: PageDocument | null) {
+    this.given = given;
+    if (this.model && given) void this.show(this.model, given);
+  }
+
+  connectedCallback(): void {
+    // A property that was set before the element was defined hides the accessor.
+    if (Object.hasOwn(this, "document")) {
+      const early = (this as { document: PageDocument | null }).document;
+      Reflect.deleteProperty(this, "document");
+      this.given = early;
+    }
+    if (this.model) return;
+    this.dataset["state"] = "loading";
+    render(<p class="notice">Loading…</p>, this.place);
+    void this.start();
+  }
+
+  disconnectedCallback(): void {
+    // Notebooks move what they show: an element that is back by then was only moved.
+    queueMicrotask(() => {
+      if (!this.isConnected) this.stop();
+    });
+  }
+
+  attributeChangedCallback(name: string, _old: string | null, value: string | null): void {
+    if (!this.model) return;
+    if (name === "theme") this.model.look({ theme: themeOf(value) });
+    else if (name === "src")
+      void this.source().then((given) => given && this.show(this.model!, given), this.tell);
+    else this.draw(this.model);
+  }
+
+  private async start(): Promise<void> {
+    try {
+      const model = new Model(await loadCore());
+      if (!this.isConnected || this.model) return;
+      this.model = model;
+      if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
+      await this.first(model);
+      this.watch(model);
+      this.draw(model);
+      this.resolve(model);
+    } catch (error) {
+      this.tell(error);
+    }
+  }
+
+  /** Shows what the element was given; what is wrong with it is told by the page. */
+  private async first(model: Model): Promise<void> {
+    try {
+      const given = this.given ?? (await this.child()) ?? (await this.source());
+      this.given ??= given;
+      if (given) await model.show(given);
+      else openPreset(model, PRESETS[0]!);
+    } catch (error) {
+      model.problem.value = words(error);
+    }
+  }
+
+  private async show(model: Model, given: PageDocument): Promise<void> {
+    try {
+      await model.show(given);
+    } catch (error) {
+      model.problem.value = words(error);
+    }
+  }
+
+  /** The document inside the element, once the parser has passed it. */
+  private async child(): Promise<PageDocument | null> {
+    if (this.ownerDocument.readyState === "loading") {
+      await new Promise((done) =>
+        this.ownerDocument.addEventListener("DOMContentLoaded", done, { once: true }),
+      );
+    }
+    const script = this.querySelector('script[type="application/json"]');
+    return script ? parsed(script.textContent ?? "", "the document inside <polhode-viewer>") : null;
+  }
+
+  private async source(): Promise<PageDocument | null> {
+    const address = this.getAttribute("src");
+    if (address === null) return null;
+    const url = new URL(address, this.ownerDocument.baseURI);
+    if (url.origin !== new URL(this.ownerDocument.baseURI).origin) {
+      throw new Problem(`${address} is on another server; src must name a document beside the page`);
+    }
+    const answer = await fetch(url);
+    if (!answer.ok) throw new Problem(`${address} cannot be read: ${answer.status} ${answer.statusText}`);
+    return parsed(await answer.text(), address);
+  }
+
+  /** Before there is a page: a message in its place. */
+  private readonly tell = (error: unknown): void => {
+    if (this.model) {
+      this.model.problem.value = words(error);
+      return;
+    }
+    this.dataset["state"] = "problem";
+    render(
+      <div class="notice" role="alert">
+        <p>The viewer cannot start.</p>
+        <pre>{words(error)}</pre>
+      </div>,
+      this.place,
+    );
+  };
+
+  private draw(model: Model): void {
+    if (!this.palette) return;
+    const compact = this.hasAttribute("compact");
+    const wide = this.clientWidth >= WIDE;
+    render(<App model={model} palette={this.palette} compact={compact} wide={wide} />, this.place);
+  }
+
+  /** Lets time pass, and keeps colours and `data-…` as the state is. */
+  private watch(model: Model): void {
+    const { palette, dispose } = paletteOf(model);
+    this.palette = palette;
+    this.leave = [
+      dispose,
+      effect(() => {
+        for (const [name, colour] of variables(palette.value)) this.style.setProperty(name, colour);
+      }),
+      effect(() => this.publish(model)),
+      bindKeys(this, model),
+    ];
+  }
+
+  private publish(model: Model): void {
+    const about = model.about.value;
+    const row = model.row.value;
+    const data = this.dataset;
+    data["state"] = model.problem.value === null ? "ready" : "problem";
+    data["method"] = about?.method ?? "";
+    data["regime"] = about?.free?.regime ?? "";
+    const of = (first: number, count: number) =>
+      row ? Array.from(row.subarray(first, first + count), String).join(" ") : "";
+    data["time"] = of(State.time, 1);
+    data["rotor"] = of(State.rotor, 4);
+    data["omegaBody"] = of(State.omegaBody, 3);
+    data["omegaSpace"] = of(State.omegaSpace, 3);
+    data["momentumSpace"] = of(State.momentumSpace, 3);
+    data["energy"] = of(State.energy, 1);
+  }
+
+  private stop(): void {
+    for (const leave of this.leave) leave();
+    this.leave = [];
+    render(null, this.place);
+    this.model?.dispose();
+    if (this.model) this.ready = new Promise((resolve) => (this.resolve = resolve));
+    this.model = null;
+  }
+}
+
+function themeOf(value: string | null): ViewState["theme"] {
+  return value === "light" || value === "dark" ? value : "auto";
+}
+
+function parsed(text: string, where: string): PageDocument {
+  try {
+    return JSON.parse(text) as PageDocument;
+  } catch (error) {
+    throw new Problem(`${where} is not JSON: ${words(error)}`);
+  }
+}
+
+/** Defines the element, once. */
+export function define(): void {
+  if (!customElements.get("polhode-viewer")) customElements.define("polhode-viewer", PolhodeViewer);
+}

@@ -1,0 +1,38 @@
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { DARK, LIGHT, type Palette } from "../palette.ts";
+import type { Model } from "./model.ts";
+
+/** The colours that the model's theme asks for, which may be those of the machine; `dispose` stops to listen to it. */
+export function paletteOf(model: Model): { palette: ReadonlySignal<Palette>; dispose: () => void } {
+  const query = matchMedia("(prefers-color-scheme: dark)");
+  const machine = signal(query.matches);
+  const listen = (): void => {
+    machine.value = query.matches;
+  };
+  query.addEventListener("change", listen);
+  const palette = computed(() => {
+    const theme = model.theme.value;
+    return theme === "dark" || (theme === "auto" && machine.value) ? DARK : LIGHT;
+  });
+  return { palette, dispose: () => query.removeEventListener("change", listen) };
+}
+
+/** A palette as variables of CSS. */
+export function variables(palette: Palette): [string, string][] {
+  return [
+    ["color-scheme", palette === DARK ? "dark" : "light"],
+    ["--background", palette.background],
+    ["--surface", palette.surface],
+    ["--text", palette.text],
+    ["--faint", palette.faint],
+    ["--axis-1", palette.axes[0]],
+    ["--axis-2", palette.axes[1]],
+    ["--axis-3", palette.axes[2]],
+    ["--omega", palette.omega],
+    ["--momentum", palette.momentum],
+    ["--trace", palette.trace],
+    ["--polhode", palette.polhode],
+    ["--herpolhode", palette.herpolhode],
+    ["--on-accent", palette === DARK ? palette.background : palette.surface],
+  ];
+}

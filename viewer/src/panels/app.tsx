@@ -1,0 +1,125 @@
+import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
+import type { ComponentChildren } from "preact";
+import { useEffect, useMemo } from "preact/hooks";
+import { AlgebraPage } from "../algebra/page.tsx";
+import type { Model } from "../model/model.ts";
+import type { Palette } from "../palette.ts";
+import { Controls } from "../vary/controls.ts";
+import { BodyPanel } from "./body.tsx";
+import { Editor } from "./editor.tsx";
+import { Facts } from "./facts.tsx";
+import { Header } from "./header.tsx";
+import { LawsPanel } from "./laws.tsx";
+import { openFiles } from "./open.ts";
+import { Playback } from "./playback.tsx";
+import { Readout } from "./readout.tsx";
+import { Picture } from "./picture.tsx";
+import { StartPanel } from "./start.tsx";
+import { ViewPanel } from "./view.tsx";
+
+interface Props {
+  model: Model;
+  palette: ReadonlySignal<Palette>;
+  compact: boolean;
+  /** Whether there is room beside the picture, so that panels may stand open. */
+  wide: boolean;
+}
+
+/** The page: a header, and the motion or the algebra below. */
+export function App({ model, palette, compact, wide }: Props) {
+  const dragged = useSignal(false);
+  const motion = model.page.value === "motion";
+  return (
+    <div
+      class={`app${compact ? " compact" : ""}${dragged.value ? " dragged" : ""}`}
+      onDragOver={(event) => {
+        event.preventDefault();
+        dragged.value = true;
+      }}
+      onDragLeave={() => (dragged.value = false)}
+      onDrop={(event) => {
+        event.preventDefault();
+        dragged.value = false;
+        const files = [...(event.dataTransfer?.files ?? [])];
+        if (files.length > 0) void openFiles(model, files);
+      }}
+    >
+      <Header model={model} compact={compact} />
+      <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
+        {motion ? (
+          <MotionPage model={model} palette={palette} compact={compact} wide={wide} />
+        ) : (
+          <AlgebraPage model={model} palette={palette} />
+        )}
+      </div>
+    </div>
+  );
+}
+
+function MotionPage({ model, palette, compact, wide }: Props) {
+  const controls = useMemo(() => new Controls(model), [model]);
+  useEffect(() => () => controls.dispose(), [controls]);
+  return (
+    <main class="motion">
+      <Picture model={model} palette={palette} />
+      <Playback model={model} />
+      <aside class="panels" aria-label="Read-outs and controls">
+        <Panel id="state" title="State" open={!compact || wide}>
+          <Readout model={model} />
+        </Panel>
+        <Panel id="motion" title="Motion" open={wide && !compact}>
+          <Facts model={model} />
+        </Panel>
+        {!compact && controls.about.value && (
+          <>
+            <Panel id="start" title="Spin and attitude" open={wide}>
+              <StartPanel controls={controls} />
+            </Panel>
+            <Panel id="body" title="Body" open={false}>
+              <BodyPanel controls={controls} />
+            </Panel>
+            <Panel id="laws" title="Torques" open={false}>
+              <LawsPanel controls={controls} />
+            </Panel>
+          </>
+        )}
+        <Panel id="view" title="View" open={false}>
+          <ViewPanel model={model} />
+        </Panel>
+        {!compact && (
+          <Panel id="text" title="Scene" open={false}>
+            <Editor model={model} />
+          </Panel>
+        )}
+      </aside>
+      <Announcement model={model} />
+    </main>
+  );
+}
+
+function Panel(props: { id: string; title: string; open: boolean; children: ComponentChildren }) {
+  // What is folded is not drawn: read-outs change with each frame.
+  const open = useSignal(props.open);
+  return (
+    <details
+      id={`panel-${props.id}`}
+      open={open.value}
+      onToggle={(event) => (open.value = event.currentTarget.open)}
+    >
+      <summary>
+        <h2>{props.title}</h2>
+      </summary>
+      {open.value && <div class="inside">{props.children}</div>}
+    </details>
+  );
+}
+
+/** Tells those who do not see the picture when the kind of motion changes. */
+function Announcement({ model }: { model: Model }) {
+  const regime = useComputed(() => model.about.value?.free?.regime ?? "");
+  return (
+    <p class="hidden" aria-live="polite">
+      {regime}
+    </p>
+  );
+}

@@ -1,0 +1,72 @@
+import { useSignal } from "@preact/signals";
+import { useRef } from "preact/hooks";
+import type { Model } from "../model/model.ts";
+
+/** The text of the scene, to be changed by hand. */
+export function Editor({ model }: { model: Model }) {
+  /** What is written here and not yet applied. */
+  const draft = useSignal<string | null>(null);
+  const copied = useSignal(false);
+  const area = useRef<HTMLTextAreaElement>(null);
+  const scene = model.scene.value;
+  if (scene === null) return <p class="note">A recorded motion has no scene to edit here.</p>;
+  const apply = (): void => {
+    model.open(draft.value ?? scene);
+    if (model.problem.value === null) draft.value = null;
+  };
+  const copy = async (): Promise<void> => {
+    area.current?.select();
+    // Where a page may not reach the clipboard, what is selected can be copied by hand.
+    await navigator.clipboard?.writeText(area.current?.value ?? "").catch(() => undefined);
+    copied.value = true;
+    setTimeout(() => (copied.value = false), 1500);
+  };
+  const reset = (): void => {
+    draft.value = null;
+    model.reset();
+  };
+  const problem = model.problem.value;
+  return (
+    <form
+      class="editor"
+      onSubmit={(event) => {
+        event.preventDefault();
+        apply();
+      }}
+    >
+      <label for="scene" class="hidden">
+        Scene, in TOML
+      </label>
+      <textarea
+        id="scene"
+        ref={area}
+        rows={16}
+        spellcheck={false}
+        autocomplete="off"
+        aria-invalid={problem !== null}
+        aria-describedby="scene-problem"
+        value={draft.value ?? scene}
+        onInput={(event) => (draft.value = event.currentTarget.value)}
+        onKeyDown={(event) => {
+          if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) apply();
+        }}
+      />
+      {problem !== null && (
+        <pre id="scene-problem" class="problem-text">
+          {problem}
+        </pre>
+      )}
+      <div class="buttons">
+        <button id="apply" class="primary" type="submit" title="Apply (Ctrl+Enter)">
+          Apply
+        </button>
+        <button id="copy" type="button" onClick={() => void copy()}>
+          {copied.value ? "Copied" : "Copy"}
+        </button>
+        <button id="reset" type="button" onClick={reset}>
+          Reset
+        </button>
+      </div>
+    </form>
+  );
+}

@@ -1,0 +1,117 @@
+import type { ComponentChildren } from "preact";
+import type { About } from "../core/core.ts";
+import type { Model } from "../model/model.ts";
+import { significant, small } from "./format.ts";
+import { duration } from "./units.ts";
+
+/** What is known of the motion as a whole: its kind, its times, and how far to trust it. */
+export function Facts({ model }: { model: Model }) {
+  const about = model.about.value;
+  if (!about) return null;
+  const { free } = about;
+  return (
+    <>
+      <dl class="facts">
+        {free && (
+          <Fact name="Regime" id="regime">
+            {free.regime}
+            {free.period !== null && `, about axis ${free.axis}`}
+          </Fact>
+        )}
+        {about.laws.map((law) => (
+          <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
+            <code>{law.text}</code>
+          </Fact>
+        ))}
+        {free && <Times free={free} />}
+        <Fact name="Moments">
+          <span class="digits">{about.body.moments.map((moment) => significant(moment, 5)).join(", ")}</span>{" "}
+          kg m²
+          {about.held && " about the fixed point"}
+        </Fact>
+        {about.body.mass !== null && <Fact name="Mass">{significant(about.body.mass, 5)} kg</Fact>}
+        {about.ensemble !== null && <Fact name="Bodies">{about.ensemble.toLocaleString("en")}</Fact>}
+        <Fact name="Method">{trust(about)}</Fact>
+      </dl>
+      <Conserved about={about} />
+    </>
+  );
+}
+
+/** The laws by the names of the scene, as people call them. */
+export const LAWS: Record<string, string> = {
+  gravity: "Gravity",
+  heavy: "Gravity",
+  damping: "Damping",
+  viscous_damping: "Viscous damping",
+  quadratic_damping: "Quadratic damping",
+  gravity_gradient: "Gravity gradient",
+  magnetic: "Magnetic dipole",
+  torsion_spring: "Torsion spring",
+  pd_control: "PD control",
+  gyrostat: "Wheel",
+  larmor: "Larmor",
+  constant_body: "Constant in the body",
+  constant_space: "Constant in space",
+  tabulated: "Table",
+  torque_body: "Torque, in the body",
+  torque_space: "Torque, in space",
+};
+
+function Times({ free }: { free: NonNullable<About["free"]> }) {
+  return (
+    <>
+      {free.period !== null && <Fact name="Period of Ω">{duration(free.period, 7)}</Fact>}
+      {free.flip_time !== null && <Fact name="From flip to flip">{duration(free.flip_time, 7)}</Fact>}
+      {free.precession_period !== null && (
+        <Fact name="Precession">{duration(free.precession_period, 7)} for a turn about L</Fact>
+      )}
+      {free.modulus > 0 && <Fact name="Modulus k">{significant(free.modulus, 7)}</Fact>}
+    </>
+  );
+}
+
+/** How the motion was found, and how far it may be off. */
+export function trust(about: About): string {
+  if (about.exact) return "exact, in closed form";
+  if (about.method === "recorded") return "recorded, interpolated for the picture";
+  const steps = `${about.method}, ${about.steps.toLocaleString("en")} steps`;
+  return about.error_estimate === null ? steps : `${steps}, error about ${small(about.error_estimate)}`;
+}
+
+function Conserved({ about }: { about: About }) {
+  return (
+    <table class="conserved">
+      <thead>
+        <tr>
+          <th scope="col">Conserved</th>
+          <th scope="col">at the start, SI</th>
+          <th scope="col">drift</th>
+        </tr>
+      </thead>
+      <tbody>
+        {about.conserved.map(({ name, value, drift }) => (
+          <tr key={name}>
+            <th scope="row">{name.replaceAll("_", " ")}</th>
+            <td class="digits">{significant(value, 7)}</td>
+            <td class="digits">{small(drift)}</td>
+          </tr>
+        ))}
+        <tr>
+          <th scope="row">|R| − 1</th>
+          <td class="digits">0</td>
+          <td class="digits">{small(about.norm_drift)}</td>
+        </tr>
+      </tbody>
+    </table>
+  );
+}
+
+function Fact({ name, id, children }: { name: string; id?: string; children: ComponentChildren }) {
+  return (
+    <div class="fact">
+      <dt>{name}</dt>
+      <dd {...(id ? { id } : {})}>{children}</dd>
+    </div>
+  );
+}

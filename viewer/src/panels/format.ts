@@ -1,0 +1,71 @@
+/** Numbers as the page writes them: a true minus, powers of ten with raised digits, digits that keep their places. */
+
+const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** `10⁻³`. */
+export function powerOfTen(exponent: number): string {
+  const digits = String(Math.abs(exponent)).replace(/\d/g, (digit) => RAISED[Number(digit)]!);
+  return `10${exponent < 0 ? "⁻" : ""}${digits}`;
+}
+
+/** The power of ten of a number's first digit; 0 of zero. */
+export function exponentOf(number: number): number {
+  return number === 0 || !Number.isFinite(number) ? 0 : Math.floor(Math.log10(Math.abs(number)));
+}
+
+/** With so many significant digits: `0.06283`, `1.2 × 10⁻⁷`. */
+export function significant(number: number, digits = 6): string {
+  if (!Number.isFinite(number)) return number > 0 ? "∞" : number < 0 ? "−∞" : "no number";
+  const exponent = exponentOf(number);
+  if (exponent < -4 || exponent > 7) {
+    const [mantissa, power] = number.toExponential(digits - 1).split("e");
+    return `${minus(trimmed(mantissa!))} × ${powerOfTen(Number(power))}`;
+  }
+  return minus(trimmed(number.toPrecision(digits)));
+}
+
+/** As people type it, in a field for numbers. */
+export function typed(number: number, digits = 6): string {
+  return String(Number(number.toPrecision(digits)));
+}
+
+/** An error or a drift: `3 × 10⁻¹⁶`, `0`. */
+export function small(number: number): string {
+  if (number === 0) return "0";
+  const [mantissa, power] = number.toExponential(0).split("e");
+  return `${minus(mantissa!)} × ${powerOfTen(Number(power))}`;
+}
+
+/** How numbers of one size are written: with so many decimals, after a power of ten is taken out. */
+export interface Scale {
+  factor: number;
+  decimals: number;
+  /** Places for all that is before and after the point. */
+  width: number;
+  /** ` × 10⁻³`, or nothing. */
+  power: string;
+}
+
+/** The scale for numbers up to `size`, with five digits for the largest. */
+export function scaleFor(size: number): Scale {
+  const exponent = exponentOf(size);
+  if (exponent < -2 || exponent > 4) {
+    return { factor: 10 ** -exponent, decimals: 4, width: 6, power: `${powerOfTen(exponent)} ` };
+  }
+  const decimals = Math.min(Math.max(4 - exponent, 1), 5);
+  return { factor: 1, decimals, width: Math.max(exponent, 0) + 2 + decimals, power: "" };
+}
+
+/** Its sign and its digits apart; what rounds to nothing has no sign. */
+export function scaled(number: number, scale: Scale): { negative: boolean; digits: string } {
+  const digits = (Math.abs(number) * scale.factor).toFixed(scale.decimals);
+  return { negative: number < 0 && /[1-9]/.test(digits), digits: digits.padStart(scale.width, "\u2007") };
+}
+
+function trimmed(digits: string): string {
+  return digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits;
+}
+
+function minus(text: string): string {
+  return text.replace("-", "−");
+}

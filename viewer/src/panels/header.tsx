@@ -1,0 +1,92 @@
+import { useRef } from "preact/hooks";
+import type { Model } from "../model/model.ts";
+import { openPreset, PRESETS } from "../presets/index.ts";
+import { Help } from "./help.tsx";
+import { Icon } from "./icons.tsx";
+import { OPENED, openFiles } from "./open.ts";
+
+const PAGES = ["motion", "algebra"] as const;
+
+/** What is shown, what else there is, and help. */
+export function Header({ model, compact }: { model: Model; compact: boolean }) {
+  const motion = model.page.value === "motion";
+  return (
+    <header>
+      <h1>{motion ? (model.about.value?.title ?? "Polhode") : "Algebra"}</h1>
+      {!compact && motion && <Scenes model={model} />}
+      <nav aria-label="Pages">
+        <div role="tablist" class="tabs">
+          {PAGES.map((page) => (
+            <button
+              key={page}
+              id={`tab-${page}`}
+              role="tab"
+              aria-selected={model.page.value === page}
+              aria-controls="page"
+              onClick={() => (model.page.value = page)}
+            >
+              {page === "motion" ? "Motion" : "Algebra"}
+            </button>
+          ))}
+        </div>
+      </nav>
+      <Help />
+    </header>
+  );
+}
+
+/** Scenes that the page knows, and those of this machine. */
+function Scenes({ model }: { model: Model }) {
+  const input = useRef<HTMLInputElement>(null);
+  const chosen = PRESETS.find(({ caption }) => caption === model.caption.value);
+  return (
+    <div class="scenes">
+      <label for="preset" class="hidden">
+        Scene
+      </label>
+      <select
+        id="preset"
+        value={chosen?.name ?? ""}
+        onChange={(event) => {
+          const preset = PRESETS.find(({ name }) => name === event.currentTarget.value);
+          if (preset) openPreset(model, preset);
+        }}
+      >
+        {!chosen && (
+          <option value="" disabled>
+            Scenes…
+          </option>
+        )}
+        {PRESETS.map(({ name, title }) => (
+          <option value={name} key={name}>
+            {title}
+          </option>
+        ))}
+      </select>
+      <button
+        id="open"
+        class="quiet"
+        aria-label="Open a scene"
+        title="Open a scene"
+        onClick={() => input.current?.click()}
+      >
+        <Icon name="open" />
+      </button>
+      <input
+        id="file"
+        ref={input}
+        class="hidden"
+        type="file"
+        multiple
+        accept={OPENED}
+        tabIndex={-1}
+        aria-label="Scene and mesh files"
+        onChange={(event) => {
+          const files = [...(event.currentTarget.files ?? [])];
+          event.currentTarget.value = "";
+          if (files.length > 0) void openFiles(model, files);
+        }}
+      />
+    </div>
+  );
+}

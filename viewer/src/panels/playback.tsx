@@ -1,0 +1,130 @@
+import { useRef } from "preact/hooks";
+import type { About } from "../core/core.ts";
+import type { Model } from "../model/model.ts";
+import { typed } from "./format.ts";
+import { Icon } from "./icons.tsx";
+import { faster, step } from "./keys.ts";
+import { trust } from "./facts.tsx";
+import { duration, timeUnit } from "./units.ts";
+
+/** Play, step, speed and time. */
+export function Playback({ model }: { model: Model }) {
+  const about = model.about.value;
+  if (!about) return null;
+  const playing = model.playing.value;
+  return (
+    <section class="playback" aria-label="Playback">
+      <button
+        id="play"
+        class="primary"
+        aria-label={playing ? "Pause" : "Play"}
+        title={`${playing ? "Pause" : "Play"} (Space)`}
+        onClick={() => (model.playing.value = !playing)}
+      >
+        <Icon name={playing ? "pause" : "play"} />
+      </button>
+      <div class="buttons">
+        <button
+          id="restart"
+          aria-label="To the start"
+          title="To the start (Home)"
+          onClick={() => model.seek(0)}
+        >
+          <Icon name="restart" />
+        </button>
+        <button id="step-back" aria-label="Step back" title="Step back (←)" onClick={() => step(model, -1)}>
+          <Icon name="back" />
+        </button>
+        <button id="step" aria-label="Step forward" title="Step forward (→)" onClick={() => step(model, 1)}>
+          <Icon name="forward" />
+        </button>
+      </div>
+      <TimeSlider model={model} about={about} />
+      <TimeField model={model} about={about} />
+      <Trust about={about} />
+      <Speed model={model} />
+    </section>
+  );
+}
+
+/**
+ * A slider over one duration. A motion that is known beyond it turns the page: the slider then covers the next
+ * duration, or any other that has the time.
+ */
+function TimeSlider({ model, about }: { model: Model; about: About }) {
+  const first = useRef(0);
+  const time = model.time.value;
+  const length = about.duration;
+  if (time < first.current || time > first.current + length)
+    first.current = Math.floor(time / length) * length;
+  return (
+    <input
+      id="time"
+      class="time"
+      type="range"
+      aria-label="Time"
+      aria-valuetext={duration(time)}
+      min={first.current}
+      max={first.current + length}
+      step="any"
+      value={time}
+      onInput={(event) => model.seek(event.currentTarget.valueAsNumber)}
+    />
+  );
+}
+
+function TimeField({ model, about }: { model: Model; about: About }) {
+  const unit = timeUnit(about.duration);
+  const shown = typed(
+    (Math.round((model.time.value / about.duration) * 1e5) / 1e5) * (about.duration / unit.size),
+    9,
+  );
+  return (
+    <div class="field number">
+      <label for="time-number">
+        <i>t</i> =
+      </label>
+      <input
+        id="time-number"
+        class="digits"
+        type="number"
+        step="any"
+        value={shown}
+        aria-label={`Time, ${unit.label}`}
+        onFocus={() => (model.playing.value = false)}
+        onChange={(event) => {
+          const number = event.currentTarget.valueAsNumber;
+          if (Number.isFinite(number)) model.seek(number * unit.size);
+        }}
+      />
+      <span class="unit">{unit.label}</span>
+    </div>
+  );
+}
+
+/** Whether what is seen is exact. */
+function Trust({ about }: { about: About }) {
+  return (
+    <span class={about.exact ? "badge exact" : "badge"} title={trust(about)} id="method">
+      {about.exact ? "exact" : about.method}
+    </span>
+  );
+}
+
+function Speed({ model }: { model: Model }) {
+  const speed = model.speed.value;
+  const shown = speed < 200 ? `${typed(speed, 3)}×` : `${duration(speed, 3, timeUnit(2 * speed))}/s`;
+  return (
+    <div class="field speed" role="group" aria-label="Speed">
+      <button id="slower" aria-label="Slower" title="Slower ([)" onClick={() => faster(model, -1)}>
+        <Icon name="minus" />
+      </button>
+      <output id="speed" title="Motion per second of the clock">
+        {shown}
+      </output>
+      <button id="faster" aria-label="Faster" title="Faster (])" onClick={() => faster(model, 1)}>
+        <Icon name="plus" />
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,64 @@
+/**
+ * The compiled core under Node, without a page. Answers questions of tests/viewer/node_core.py, one line of JSON each:
+ * { "question": name, … } gets { "value": … }, or { "problem": message } where the core raised a Problem.
+ */
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+import { createServer } from "vite";
+
+const root = fileURLToPath(new URL("..", import.meta.url));
+const vite = await createServer({
+  root,
+  appType: "custom",
+  logLevel: "error",
+  optimizeDeps: { noDiscovery: true, include: [] },
+  server: { middlewareMode: true, hmr: false, ws: false, watch: null },
+});
+const { loadCore } = await vite.ssrLoadModule("/src/core/wasm.ts");
+const { Problem } = await vite.ssrLoadModule("/src/core/core.ts");
+const core = await loadCore();
+
+/** Opens a motion, asks it, and lets it go. */
+function asked({ scene, files = {}, ...options }, ask) {
+  const bytes = Object.entries(files).map(([name, base64]) => [name, Buffer.from(base64, "base64")]);
+  const motion = core.open(scene, { ...options, files: new Map(bytes) });
+  try {
+    return ask(motion);
+  } finally {
+    motion.close();
+  }
+}
+
+const answers = {
+  motion: ({ times, ...scene }) =>
+    asked(scene, (motion) => ({ about: motion.about, rows: Array.from(motion.states(times)) })),
+  surface: (scene) =>
+    asked(scene, (motion) => {
+      const surface = motion.surface();
+      return surface && { vertices: Array.from(surface.vertices), faces: Array.from(surface.faces) };
+    }),
+  bodies: ({ time, count, ...scene }) => asked(scene, (motion) => Array.from(motion.bodies(time, count))),
+  recorded: ({ about, rows, times }) => {
+    const motion = core.recorded(about, Float64Array.from(rows));
+    try {
+      return { about: motion.about, rows: Array.from(motion.states(times)) };
+    } finally {
+      motion.close();
+    }
+  },
+  merged: ({ scene, change }) => core.merged(scene, change),
+  evaluated: ({ lines }) => core.evaluated(lines),
+};
+
+for await (const line of createInterface({ input: process.stdin })) {
+  const { question, ...rest } = JSON.parse(line);
+  let answer;
+  try {
+    answer = { value: answers[question](rest) };
+  } catch (error) {
+    if (!(error instanceof Problem)) throw error;
+    answer = { problem: error.message };
+  }
+  process.stdout.write(`${JSON.stringify(answer)}\n`);
+}
+await vite.close();

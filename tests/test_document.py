@@ -222,6 +222,10 @@ def test_the_form_is_that_of_the_viewer():
     trajectory = ph.simulate(MOMENTS, START, [0, 1], method="rk4", step=0.1)
     about = json.loads(_document.document(trajectory)["recorded"]["about"])
     assert sorted(about["free"]) == sorted(inner["free"])
+    top = ph.Inertia.from_principal_moments(1, 1, 0.5)
+    trajectory = ph.simulate(top, START, [0, 1], T.heavy([0, 0, 1]), method="rk4", step=0.1)
+    about = json.loads(_document.document(trajectory)["recorded"]["about"])
+    assert sorted(about["top"]) == sorted(inner["top"])
     text = (ROOT / "viewer/src/core/core.ts").read_text()
     assert "export const ROW = 24;" in text
     offsets = dict(re.findall(r"^  (\w+): (\d+),$", text, flags=re.MULTILINE))
@@ -253,6 +257,16 @@ def test_a_long_motion_is_thinned():
     assert np.isin(rows[:, 0], times).all()
     # Evenly: no two are more than an output time further apart than others.
     assert set(np.diff(np.searchsorted(times, rows[:, 0]))) == {2, 3}
+
+
+def test_a_motion_that_an_event_ended_is_shown_to_its_end():
+    flip = ph.event.spin(ph.e3 ^ ph.e1, terminal=True)
+    start = ph.State(ph.Rotor.identity(), [0.1, 1, 0.1])
+    trajectory = ph.simulate(MOMENTS, start, np.linspace(0, 50, 501), events=flip)
+    assert trajectory.time[-1] < 50
+    scene = _document.scene_of(_document.document(trajectory))
+    assert scene.times[-1] == trajectory.time[-1]
+    assert len(scene.times) == len(trajectory.time)
 
 
 def test_times_that_stand_twice_are_kept_once():

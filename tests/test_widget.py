@@ -9,6 +9,7 @@ import pytest
 
 import polhode as ph
 from command_line import EXAMPLES, ROOT
+from comms import Comm
 from polhode import _document
 
 anywidget = pytest.importorskip("anywidget")
@@ -17,53 +18,11 @@ INERTIA = ph.Inertia.from_principal_moments(1, 2, 3)
 START = ph.State(ph.Rotor.identity(), [0.01, 1, 0.01])
 
 
-class Comm:
-    """The line to a page: keeps what is sent, and hands over what a page says."""
-
-    def __init__(self, data=None, **_):
-        self.comm_id, self.sent = "1", []
-        self.opened = data
-
-    def on_msg(self, heard):
-        self.heard = heard
-
-    def send(self, data=None, **_):
-        self.sent.append(data)
-
-    def close(self, *_, **__):
-        pass
-
-    def says(self, **state):
-        data = {"method": "update", "state": state, "buffer_paths": []}
-        # As it comes through the line.
-        self.heard({"content": {"data": json.loads(json.dumps(data))}, "buffers": []})
-
-    @property
-    def told(self):
-        """The last values that were sent, by their names."""
-        values = {}
-        for message in self.sent:
-            if message["method"] == "update":
-                values |= message["state"]
-        return values
-
-
 @pytest.fixture
 def line(bundle, monkeypatch):
-    """Make widgets whose page is the line that is returned."""
-    lines = []
-
-    def create(**given):
-        lines.append(Comm(**given))
-        return lines[-1]
-
-    monkeypatch.setattr("comm.create_comm", create)
-
-    def of(viewer):
-        # A layout has a line of its own.
-        return next(one for one in lines if "document" in one.opened["state"] and viewer.comm is one)
-
-    return of
+    """Gives the line of a widget to its page."""
+    monkeypatch.setattr("comm.create_comm", Comm)
+    return lambda viewer: viewer.comm
 
 
 def test_a_page_is_given_the_document_and_the_bundle(line, bundle):

@@ -142,7 +142,9 @@ def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem
     nothing: Document = {"format": 1, "name": path.name}
     if origin is not None:
         try:
-            return {"format": 1, "scene": origin.scene(), "name": "motion.toml"}, origin
+            # An event may have ended it before the last time that was asked for.
+            scene = replace(origin, times=trajectory.time).scene()
+            return {"format": 1, "scene": scene, "name": "motion.toml"}, origin
         except UnwritableError:
             return nothing, origin
     if not isinstance(trajectory.attributes.get("scene"), str):

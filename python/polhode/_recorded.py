@@ -15,6 +15,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array
 from polhode._bodies import Body
+from polhode._closed_forms import LagrangeTop
 from polhode._free_motion import describe_free
 from polhode._kinds import kind_of, weight
 from polhode._packed import packed
@@ -118,7 +119,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
     start = None if origin is None else origin.state
     body = _body(origin)
     return {
-        "title": trajectory.attributes.get("title"),
+        "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),
         "body": {
             **body,
             "moments": inertia.principal_moments.tolist(),
@@ -132,7 +133,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             "omega_body": (start.omega_body if start else points.omega_body[0]).components.tolist(),
         },
         "duration": float(points.time[-1]),
-        "samples": len(points.time),
+        "samples": len(trajectory.time),
         "method": "recorded",
         "exact": False,
         "horizon": None,
@@ -144,6 +145,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
         ],
         "norm_drift": proof.norm_drift,
         "free": _free(trajectory, origin, points),
+        "top": _top(trajectory, origin),
         "ensemble": None,
     }
 
@@ -191,15 +193,17 @@ def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
     """Return each law by the name of its field in a scene, and its formula or its numbers."""
     laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
     formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
+    gravity = isinstance(origin, Scene) and "gravity" in tomllib.loads(origin.text)
     told = []
-    for law, formula in zip(laws, formulas, strict=True):
+    for k, (law, formula) in enumerate(zip(laws, formulas, strict=True)):
         arguments = law.arguments
         if law.name == "formula":
             told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
         elif law.name in ("tabulated", "function"):
             told.append({"name": law.name, "text": ""})
         else:
-            told.append({"name": law.name, "text": ", ".join(map(_number, arguments))})
+            name = "gravity" if gravity and k == 0 else law.name
+            told.append({"name": name, "text": ", ".join(map(_number, arguments))})
     return told
 
 
@@ -216,3 +220,17 @@ def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Point
     told = describe_free(trajectory.inertia, points.omega_body[0])
     names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
     return {name: told[name] for name in names}
+
+
+def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any] | None:
+    """Return what the invariants of a symmetric top under its weight alone tell."""
+    if origin is None or kind_of(origin) != "heavy":
+        return None
+    start = origin.state
+    try:
+        top = LagrangeTop(trajectory.inertia, start.rotor, start.omega_body, weight(origin.torque))
+    except ValueError:
+        return None
+    told = top.describe()
+    names = ("regime", "nutation_period", "precession_rate", "critical_spin", "sleeps")
+    return {"tilt": [told["tilt_min"], told["tilt_max"]], **{name: told[name] for name in names}}

@@ -53,8 +53,8 @@ class Problem:
         """Return the scene, in TOML, whose body, start and laws are these to the last bit.
 
         Its output times go from 0 to the last one in equal intervals. Principal moments are found from the
-        same inertia matrix again, to its rounding, and rise where it is not diagonal. An `UnwritableError` for Python functions, linear maps, a
-        law that stands twice, and motions that do not go beyond time 0.
+        same inertia matrix again, to its rounding, and rise where it is not diagonal. An `UnwritableError`
+        for Python functions, linear maps, a law that stands twice, and motions that do not go beyond time 0.
         """
         laws = self.torque.laws if self.torque else ()
         tables = {

@@ -1,5 +1,6 @@
 import { effect, type ReadonlySignal } from "@preact/signals";
 import { Color, DirectionalLight, HemisphereLight, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import type { Triple } from "../core/core.ts";
 import type { Palette } from "../palette.ts";
 import { Viewpoint } from "../stage/camera.ts";
 import { type Label, Labels } from "../stage/labels.ts";
@@ -8,7 +9,7 @@ import { AXES } from "../stage/rotor.ts";
 import { NoWebGL } from "../stage/stage.ts";
 import { type Drawn, drawnOf, extent } from "./figures.ts";
 import { Handles } from "./handles.ts";
-import { nameParts, type Triple } from "./notation.ts";
+import { nameParts } from "./notation.ts";
 import { Shapes } from "./shapes.ts";
 import type { Thing } from "./things.ts";
 

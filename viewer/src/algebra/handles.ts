@@ -1,6 +1,6 @@
 import { type Camera, Plane, Raycaster, Vector2, Vector3 } from "three";
 import { AXES } from "../stage/rotor.ts";
-import type { Triple } from "./notation.ts";
+import type { Triple } from "../core/core.ts";
 import type { Thing } from "./things.ts";
 
 /** What an arrow key moves a tip, in units of the values. */

@@ -1,4 +1,5 @@
-import { numberText, type Triple } from "./notation.ts";
+import type { Triple } from "../core/core.ts";
+import { numberText } from "./notation.ts";
 
 /** Numbers that are given by literals in the text of a line: what a handle or a slider changes. */
 

@@ -1,7 +1,5 @@
 /** Values as they stand on paper. */
 
-export type Triple = [number, number, number];
-
 /** A term of a value: its sign, the size of its coefficient, empty for 1 before a blade, and the indices of its blade. */
 export interface Term {
   negative: boolean;

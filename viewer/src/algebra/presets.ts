@@ -45,7 +45,7 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
     "inertia",
     "The inertia tensor, plane to plane",
     "A body that turns in the plane of B has its angular momentum in the plane of I(B), in general another one. The " +
-      "principal planes I e_k, and all planes if the moments i1, i2, i3 are equal, are taken to themselves.",
+      "principal planes, and with equal moments all planes, are taken to themselves.",
     "i1 = 2.2",
     "i2 = 1.9",
     "i3 = 0.5",
@@ -83,9 +83,9 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
     "Two reflections make a rotation",
     "One mirror after the other turns every vector in the plane of their normals, by twice the angle between them. So the " +
       "product of two unit vectors is a rotor.",
-    "m = 1.3 e1",
-    "n = 1.1 e1 + 0.7 e2",
-    "a = 0.5 e1 - 0.9 e2 + 1 e3",
+    "m = 1.2 e1 - 0.4 e2",
+    "n = 0.8 e1 + 0.9 e2",
+    "a = 0.9 e1 - 0.7 e2 + 0.9 e3",
     "b = -m a m⁻¹",
     "c = -n b n⁻¹",
     "R = n m/norm(n m)",

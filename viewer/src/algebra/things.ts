@@ -1,16 +1,19 @@
 import { Vector3 } from "three";
-import type { Line } from "../core/core.ts";
+import type { Line, Triple } from "../core/core.ts";
 import { vectorLiteral } from "./literal.ts";
-import { heldGrades, type Triple } from "./notation.ts";
+import { heldGrades } from "./notation.ts";
 
 /** How many colours there are for things. */
 export const COLOURS = 6;
+
+/** Characters of a formula that may be a label. */
+const LONGEST = 8;
 
 /** What is drawn of the value of a line. Bivectors are given by their axial vectors. */
 export interface Thing {
   /** The number of its line, from 0. */
   line: number;
-  /** Its name, or the formula. */
+  /** Its name, or the formula, or where that is long the number of the line. */
   label: string;
   colour: number;
   vector: Vector3 | null;
@@ -49,7 +52,7 @@ function drawn(line: Line, number: number, colour: number, named: Map<string, Th
   const nonzero = (vector: Vector3 | null) => (vector && vector.length() > 0 ? vector : null);
   const thing: Thing = {
     line: number,
-    label: line.name ?? line.shown!,
+    label: line.name ?? (line.shown!.length <= LONGEST ? line.shown! : `(${number + 1})`),
     colour,
     vector: nonzero(part(1, 1)),
     bivector: rotor ? null : nonzero(part(2, 4)),

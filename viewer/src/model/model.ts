@@ -54,6 +54,8 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** What to look at, in a sentence or two. */
   readonly caption = signal<string | null>(null);
+  /** How many times all was to be brought into view. */
+  readonly fitted = signal(0);
 
   readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
   /** The row of the state at the time shown. */
@@ -115,6 +117,13 @@ export class Model {
     });
   }
 
+  /** Tries the scene again with files that were missing. */
+  supply(files: Files): void {
+    const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
+    const scene = this.draft.value ?? this.scene.value;
+    if (scene !== null) this.open(scene, { name, files: new Map([...others, ...files]) });
+  }
+
   /** Shows the scene again as it was given. */
   reset(): void {
     if (this.original !== null) this.open(this.original, null);
@@ -162,6 +171,11 @@ export class Model {
   /** Draws a thing, or no longer. */
   toggle(thing: keyof Shown): void {
     this.shown.value = { ...this.shown.value, [thing]: !this.shown.value[thing] };
+  }
+
+  /** Brings all into view. */
+  fit(): void {
+    this.fitted.value += 1;
   }
 
   dispose(): void {

@@ -5,6 +5,7 @@ import { AlgebraPage } from "../algebra/page.tsx";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
+import { Boundary } from "./boundary.tsx";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
 import { Facts, regimeOf } from "./facts.tsx";
@@ -28,6 +29,9 @@ interface Props {
 /** The page: a header, and the motion or the algebra below. */
 export function App({ model, palette, compact, wide }: Props) {
   const dragged = useSignal(false);
+  // They stay as they are while the algebra is shown.
+  const controls = useMemo(() => new Controls(model), [model]);
+  useEffect(() => () => controls.dispose(), [controls]);
   const motion = model.page.value === "motion";
   return (
     <div
@@ -46,19 +50,19 @@ export function App({ model, palette, compact, wide }: Props) {
     >
       <Header model={model} compact={compact} />
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
-        {motion ? (
-          <MotionPage model={model} palette={palette} compact={compact} wide={wide} />
-        ) : (
-          <AlgebraPage model={model} palette={palette} />
-        )}
+        <Boundary key={model.page.value}>
+          {motion ? (
+            <MotionPage model={model} palette={palette} compact={compact} wide={wide} controls={controls} />
+          ) : (
+            <AlgebraPage model={model} palette={palette} />
+          )}
+        </Boundary>
       </div>
     </div>
   );
 }
 
-function MotionPage({ model, palette, compact, wide }: Props) {
-  const controls = useMemo(() => new Controls(model), [model]);
-  useEffect(() => () => controls.dispose(), [controls]);
+function MotionPage({ model, palette, compact, wide, controls }: Props & { controls: Controls }) {
   const known = model.about.value !== null;
   return (
     <main class="motion">

@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import type { About } from "../core/core.ts";
+import type { About, Triple } from "../core/core.ts";
 import type { Model } from "../model/model.ts";
 import { significant, small } from "./format.ts";
 import { DEGREE, duration } from "./units.ts";
@@ -25,7 +25,7 @@ export function Facts({ model }: { model: Model }) {
         )}
         {about.laws.map((law) => (
           <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
-            <code>{law.text}</code>
+            <code>{about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : law.text}</code>
           </Fact>
         ))}
         {free && <Times free={free} />}
@@ -63,6 +63,14 @@ export const LAWS: Record<string, string> = {
   torque_body: "Torque, in the body",
   torque_space: "Torque, in space",
 };
+
+const HEAVY = new Set(["gravity", "heavy"]);
+
+/** The vector m g l, in N m. */
+function weight(heavy: Triple): string {
+  const parts = heavy.map((part) => significant(part, 5));
+  return `(${parts.join(", ")}) N m`;
+}
 
 function Times({ free }: { free: NonNullable<About["free"]> }) {
   return (
@@ -116,7 +124,7 @@ function Conserved({ about }: { about: About }) {
       <thead>
         <tr>
           <th scope="col">Conserved</th>
-          <th scope="col">at the start, SI</th>
+          <th scope="col">value, SI</th>
           <th scope="col">drift</th>
         </tr>
       </thead>

@@ -57,8 +57,8 @@ export const PRESETS: Preset[] = [
     scene: loops,
     view: TOP,
     caption:
-      "Let go with its axis moving backward, a heavy top draws loops. Change the first push under Spin: with none the " +
-      "loops become cusps, with a push forward waves.",
+      "Let go with its axis moving backward, a heavy top draws loops. Put its spin less and less off the axis, and the " +
+      "loops close to cusps; turn the direction of that push to 90°, and they open to waves.",
   },
   {
     name: "cusps.toml",

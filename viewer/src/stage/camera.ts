@@ -71,6 +71,11 @@ export class Viewpoint {
     return this.move !== null;
   }
 
+  /** Goes back to the preset, from where all is in view. */
+  home(): void {
+    this.go(this.preset.name, this.preset.momentum, false);
+  }
+
   /** Moves on for some seconds. */
   step(seconds: number): void {
     const { move } = this;
@@ -135,7 +140,7 @@ export class Viewpoint {
     else if (event.key === "ArrowDown") at.phi += STEP;
     else if (event.key === "+" || event.key === "=") at.radius /= 1.1;
     else if (event.key === "-") at.radius *= 1.1;
-    else if (event.key === "Home") return this.go(this.preset.name, this.preset.momentum, false);
+    else if (event.key === "Home") return this.home();
     else return;
     event.preventDefault();
     this.grabbed();

@@ -102,7 +102,7 @@ function sphereOf(screen: Screen): Ribbon[] {
 }
 
 function faint(screen: Screen): Ribbon {
-  const ribbon = new Ribbon(screen, { width: 1, opacity: 0.4, behind: 0.6 });
-  ribbon.set(circle(128), { closed: true });
+  const ribbon = new Ribbon(screen, { width: 1, opacity: 0.4 });
+  ribbon.set(circle(), { closed: true });
   return ribbon;
 }

@@ -77,7 +77,7 @@ const FRAGMENT = /* glsl */ `
 /** Numbers for each vertex: the point, the side (−1 or 1) and the parameter. */
 const STRIDE = 5;
 /** Of long lines, what is behind other things goes through so many points only. */
-const COARSE = 2000;
+const COARSE = 600;
 
 export interface RibbonStyle {
   /** CSS pixels. */

@@ -1,7 +1,7 @@
-/** How far a line may be from what it stands for, in drawn units: a tenth of a pixel of the usual view. */
-const NEAR = 4e-4;
+/** How far a line may be from what it stands for, in drawn units: a fifth of a pixel of the usual view. */
+const NEAR = 1e-3;
 /** The longest piece, so that what changes along the line changes evenly. */
-const LONGEST = 0.08;
+const LONGEST = 0.15;
 
 /** Which points (n × 3) of a smooth path a line needs: where it is nearly straight, few. */
 export function thinned(points: ArrayLike<number>): Uint32Array {

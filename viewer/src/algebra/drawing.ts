@@ -79,6 +79,8 @@ export class Drawing {
     this.hemisphere.position.set(0, 0, 1);
     this.scene.add(this.viewpoint.camera, this.hemisphere);
     this.viewpoint.go("oblique", AXES[2], true);
+    // Without this a context that is lost would not come back.
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", this.draw);
     this.observer = new ResizeObserver(this.resize);
     this.observer.observe(host);
@@ -95,6 +97,8 @@ export class Drawing {
     for (const shapes of [...this.drawn.map((drawn) => drawn.shapes), ...this.old]) shapes.dispose();
     this.frame?.dispose();
     this.renderer.dispose();
+    // Browsers have few contexts, and take long to collect one that nobody uses.
+    this.renderer.forceContextLoss();
     this.labels.element.remove();
     this.canvas.remove();
   }
@@ -191,9 +195,7 @@ export class Drawing {
     });
     const things = this.drawn.map((drawn) => {
       const { letter, index, primes } = nameParts(drawn.thing.label);
-      const number = /^\d+$/u.test(index) ? { index: Number(index) } : {};
-      const symbol = letter + (number.index === undefined ? index : "") + primes;
-      const label = this.labels.add(symbol, { rank: 1, ...number });
+      const label = this.labels.add(letter + primes, { rank: 1, ...(index && { index }) });
       label.paint(tones[drawn.thing.colour]!);
       label.say(drawn.mark.says);
       return { label, drawn, at: drawn.mark.at };

@@ -48,6 +48,7 @@ export function drawnOf(
     } else {
       mark.at = cube(shapes, thing.trivector, unit);
     }
+    if (thing.trivector < 0) mark.says = "left-handed";
   }
   if (thing.bivector) {
     if (a && b && !c) {

@@ -28,9 +28,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
     caret.current = null;
     go(list.current, row, column);
   });
-  const named = new Map(
-    things.value.filter(({ rotor, label }) => rotor || label).map((thing) => [thing.label, thing]),
-  );
+  const named = new Map(things.value.map((thing) => [thing.label, thing]));
   const colourOf = (name: string) => {
     const thing = named.get(name);
     return thing ? tones.value[thing.colour] : undefined;

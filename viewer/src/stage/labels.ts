@@ -25,7 +25,7 @@ export class Label {
 
   constructor(
     symbol: string,
-    readonly style: { index?: number; rank: number },
+    readonly style: { index?: number | string; rank: number },
     private readonly gone: (label: Label) => void,
   ) {
     const letter = document.createElement("i");
@@ -101,7 +101,7 @@ export class Labels {
       `font: ${SIZES.letter}px/${HEIGHT}px ${FAMILY}`;
   }
 
-  add(symbol: string, style: { index?: number; rank: number }): Label {
+  add(symbol: string, style: { index?: number | string; rank: number }): Label {
     const label = new Label(symbol, style, (gone) => {
       this.labels = this.labels.filter((other) => other !== gone);
     });

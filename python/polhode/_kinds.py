@@ -12,6 +12,7 @@ from polhode._closed_forms import LagrangeTop
 from polhode._free_motion import SymmetricTop, describe_free
 from polhode._rotor import Rotor
 from polhode._scene import Scene
+from polhode._setting import Setting
 from polhode._trajectory import Trajectory
 from polhode._values import vector
 from polhode.torque import Torque
@@ -20,7 +21,7 @@ from polhode.torque import Torque
 _FOLLOWED = 2.0
 
 
-def kind_of(scene: Scene) -> str:
+def kind_of(scene: Scene | Setting) -> str:
     """Return the kind of motion, by the laws that turn the body."""
     names = _turning(scene)
     if "gravity_gradient" in names:
@@ -29,7 +30,7 @@ def kind_of(scene: Scene) -> str:
     return kinds.get(names.pop(), "torqued") if len(names) == 1 else "torqued" if names else "free"
 
 
-def _turning(scene: Scene) -> set[str]:
+def _turning(scene: Scene | Setting) -> set[str]:
     """Return the names of what turns the body: torque laws, and a thrust with a place where it acts."""
     laws = scene.torque.laws if scene.torque else ()
     pushes = scene.force.laws if scene.force else ()

@@ -14,6 +14,7 @@ from polhode._arrays import Array, frozen
 from polhode._bodies import Body
 from polhode._drawn import EnsembleSpec, torque_of
 from polhode._rotor import Rotor
+from polhode._setting import Setting
 from polhode._simulate import simulate
 from polhode._state import State
 from polhode._trajectory import Trajectory
@@ -219,7 +220,10 @@ class Scene:
             progress=progress,
         )
         trajectory.attributes.update({"title": self.name, "scene": self.text})
-        return trajectory
+        if trajectory.shape:
+            return trajectory
+        setting = Setting(self.torque, self.force, self.text, self.path, self.body)
+        return replace(trajectory, _setting=setting)
 
 
 def _sum_of(calls: list[tuple[str, tuple[Any, ...]]]) -> Force | None:

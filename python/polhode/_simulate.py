@@ -15,6 +15,7 @@ from polhode._bodies import Body, Inertia
 from polhode._coefficients import as_coefficients
 from polhode._ensemble import Ensemble, bodies_of, check_state, mapped_objects, shape_of
 from polhode._multivector import Multivector
+from polhode._setting import Setting
 from polhode._state import State
 from polhode._trajectory import Certificate, Trajectory
 from polhode._values import as_point, vector
@@ -126,7 +127,8 @@ def simulate(
         progress,
     )
     certificate = Certificate(**motion.certificate())
-    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for])
+    setting = Setting(_torque(torque), None if force is None else _force(force))
+    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for], setting)
 
 
 def simulate_blocks(

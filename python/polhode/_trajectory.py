@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from polhode._arrays import Array, Shape, as_floats, frozen
 from polhode._bodies import Inertia
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
+from polhode._setting import Setting
 from polhode._state import State
 from polhode._values import bivector, vector
 
@@ -72,6 +73,8 @@ class Trajectory:
     _motion: _native.Motion | None = field(default=None, repr=False)
     # Of a batch that no force moves: places and velocities are found when they are asked for.
     _drift: Drift | None = field(default=None, repr=False)
+    # What acted on one body that was simulated alone.
+    _setting: Setting | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if self._drift is not None:
@@ -87,7 +90,11 @@ class Trajectory:
 
     @staticmethod
     def _of(
-        motion: _native.Motion, inertia: Inertia, certificate: Certificate, names: Sequence[str]
+        motion: _native.Motion,
+        inertia: Inertia,
+        certificate: Certificate,
+        names: Sequence[str],
+        setting: Setting,
     ) -> Trajectory:
         which, rising, points = motion.events()
         happened = _Points.of(points)
@@ -109,6 +116,7 @@ class Trajectory:
             certificate,
             tuple(events),
             _motion=motion,
+            _setting=setting,
         )
 
     @property
@@ -214,8 +222,8 @@ class Trajectory:
         return dict(self._motion.drifts()) if self._motion is not None else {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: all but the motion between the output times."""
-        return self.__dict__ | {"_motion": None}
+        """What is pickled: all but the motion between the output times, and what acted."""
+        return self.__dict__ | {"_motion": None, "_setting": None}
 
     def to_xarray(self) -> xarray.Dataset:
         """Return an `xarray.Dataset` with labelled dimensions, units and the conventions.
@@ -234,15 +242,64 @@ class Trajectory:
 
         write_atomically({Path(path): netcdf(self)})
 
-    def plot(self) -> Figure:
-        """Draw angular velocity, attitude and conserved quantities over time; a matplotlib figure.
+    def plot(self, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
+        """Return a matplotlib figure for paper, of one body.
 
-        Of one body; a ValueError for a batch.
+        Parameters
+        ----------
+        kind
+            ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
+            ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
+            what is conserved; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors.
+        view
+            Azimuth and elevation in degrees from which to look at what has depth; None for the usual ones.
+        time
+            Of the scene, in s; None for the last one.
+
+        Raises
+        ------
+        ValueError
+            For a batch, a kind that does not fit the motion, or too few output times.
         """
         self._require_one("plot")
-        from polhode._plot import motion_figure
+        from polhode._figures import figure
 
-        return motion_figure(self)
+        return figure(self, kind, view, time)
+
+    def film(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        seconds: float = 12.0,
+        fps: float = 25.0,
+        size: tuple[int, int] | None = None,
+        view: Any = None,
+        progress: Callable[[float], object] | None = None,
+    ) -> None:
+        """Write a film of the scene of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
+
+        Parameters
+        ----------
+        seconds, fps
+            How long the film takes for the whole motion, and its pictures in a second.
+        size
+            Width and height in pixels; None for (1280, 720), of a GIF (640, 360).
+        view
+            As for `plot`.
+        progress
+            Called now and then with the fraction done.
+
+        Raises
+        ------
+        ValueError
+            For a batch, another name of file, too few output times, or a film of no pictures.
+        OSError
+            Without ffmpeg, or where the file cannot be written; an older file stays.
+        """
+        self._require_one("film")
+        from polhode._film import write
+
+        write(self, Path(path), seconds, fps, size, view, progress)
 
     def __repr__(self) -> str:
         n = len(self.time)

@@ -97,6 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
     check.set_defaults(command=_check)
     _add_formulas(commands)
+    _add_figures(commands)
     return parser
 
 
@@ -126,6 +127,12 @@ def _add_formulas(commands: Any) -> None:
 
     repl = commands.add_parser("repl", help="evaluate formulas as you type them")
     repl.set_defaults(command=_repl)
+
+
+def _add_figures(commands: Any) -> None:
+    from polhode import _figure_command
+
+    _figure_command.add(commands, _progress)
 
 
 def _definition(text: str) -> str:

@@ -50,9 +50,16 @@ def states_at(trajectory: Trajectory, times: Array) -> Samples:
     if trajectory._motion is not None:
         state = trajectory.at(times)
         return Samples(times, state.rotor, state.omega_body)
-    after = np.clip(np.searchsorted(trajectory.time, times), 1, max(len(trajectory.time) - 1, 1))
-    nearer = np.abs(trajectory.time[after - 1] - times) <= np.abs(
-        trajectory.time[after % len(trajectory.time)] - times
-    )
-    rows = np.where(nearer, after - 1, after)
-    return Samples(trajectory.time[rows], trajectory.rotor[rows], trajectory.omega_body[rows])
+    if len(trajectory.time) == 1:
+        return Samples(trajectory.time, trajectory.rotor, trajectory.omega_body)
+    after = np.clip(np.searchsorted(trajectory.time, times), 1, len(trajectory.time) - 1)
+    middles = 0.5 * (trajectory.time[after - 1] + trajectory.time[after])
+    rows = np.where(times < middles, after - 1, after)
+    rotors = Rotor._from_rows(trajectory.rotor.components[rows])
+    return Samples(trajectory.time[rows], rotors, trajectory.omega_body[rows])
+
+
+def rotor_at(trajectory: Trajectory, k: int) -> Rotor:
+    """Return the rotor at an output time by its number, as a rotor."""
+    rotor: Rotor = Rotor._from_rows(trajectory.rotor.components[k])
+    return rotor

@@ -62,7 +62,7 @@ def _draw_sizes(axes: Axes, trajectory: Trajectory, t: Array) -> None:
         largest = float(np.abs(values).max())
         scaled = values / largest if largest else values
         axes.plot(t, scaled, color=colour, lw=1.3, ls=dashes, label=f"{name} / {largest:.5g} {unit}")
-    low = min(0.0, *(float(line.get_ydata().min()) for line in axes.lines))
+    low = min(0.0, float(trajectory.energy.min() / max(np.abs(trajectory.energy).max(), 1e-300)))
     axes.set_ylim(1.1 * low, 1.1)
     axes.set_ylabel("over its\nlargest")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False, borderaxespad=0.2)

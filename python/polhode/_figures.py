@@ -14,7 +14,7 @@ from polhode._extras import optional
 from polhode._files import write_atomically
 from polhode._kinds import kind_of, weight, wheel
 from polhode._plot import motion_figure, require_times
-from polhode._spheres import path_figure, polhode_figure
+from polhode._spheres import polhode_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,7 +25,8 @@ FORMATS = ("svg", "pdf", "png")
 # Kinds in which depth is drawn, seen from a direction.
 _SEEN = ("polhode", "locus", "phase", "scene")
 
-# Text is outlines in SVG, for few readers have a font with ∧; in PDF it stays text, in a font that journals take.
+# In SVG text is outlines, for few readers have a font with ∧ and ₁; in PDF it stays text, its font as journals
+# want it.
 _AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 42}
 _UNDATED: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polhode._dense import samples
+from polhode._dense import rotor_at, samples
 from polhode._free_motion import FreeMotion
 from polhode._plot import (
     _BLACK,
-    FAINT,
     HERPOLHODE,
     MOMENTUM,
     dress,
@@ -50,7 +49,7 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
     into_plane = ~Rotor.from_vectors(e3, momentum.dual().normalized())
     path = samples(trajectory)
     omega = into_plane(path.rotor(path.omega_body)).components
-    free = FreeMotion(trajectory.inertia, trajectory.rotor[0], trajectory.omega_body[0])
+    free = FreeMotion(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0])
     around = into_plane(free.herpolhode(_POINTS)).components
     radii = np.hypot(around[:, 0], around[:, 1])
     least, largest = float(radii.min()), float(radii.max())
@@ -82,8 +81,8 @@ def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
 def _told(free: FreeMotion, distance: float, least: float, largest: float) -> str:
     period = free.describe()["period"]
     told = (
-        "The angular velocity ω_S = −I Ω_S in space, from the dot. It stays in the invariable plane across L, at "
-        f"{abs(distance):.5g} rad/s = 2E/|L| from the fixed origin; g₁∧g₂ is the plane and sense of L."
+        "The angular velocity ω_S = −I Ω_S in space, from the dot. It stays in the invariable plane across L, "
+        f"at {abs(distance):.5g} rad/s = 2E/|L| from the fixed origin; g₁∧g₂ is the plane and sense of L."
     )
     if largest > (1 + _ALIKE) * least:
         told += f" Dashed: its least and largest distance from L, {least:.4g} and {largest:.4g} rad/s"

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 # More pieces than this are stored as a bitmap in an SVG or PDF.
 _MANY = 20_000
 _STEPS = 90  # of half a disc's rim
+# What is behind a face by less is on it; a triangle with less area in the picture hides nothing; triangles
+# that are looked at together.
+_HAIR, _SLIVER, _AT_ONCE = 0.01, 1e-9, 500
 
 
 class Disc:
@@ -35,21 +38,25 @@ class Disc:
 
 
 class Painter:
-    """Collects triangles, lines and at most two transparent discs, and draws them as seen.
+    """Collects faces, lines and at most two transparent discs, and draws them as seen.
 
     The discs divide space into parts, which are drawn from the farthest to the nearest with the discs
-    between; so these are right wherever they pass through bodies and through each other. Within a part what
-    is small is drawn in the order of its middle points.
+    between; so these are right wherever they pass through bodies and through each other. Within a part the
+    faces are drawn in the order of their middle points, and upon them the pieces of lines that none hides.
     """
 
     def __init__(self, view: View) -> None:
         self.view = view
         self.discs: list[Disc] = []
-        self._parts: list[tuple[Array, Array, Array, Array]] = []
+        self._faces: list[tuple[Array, Array, Array, Array]] = []
+        self._lines: list[tuple[Array, Array, Array, Array]] = []
+        self._hiding: list[Array] = []
 
-    def triangles(self, corners: Array, colours: Array) -> None:
-        """Add triangles (n, 3, 3) of colours (n, 3); their edges have the same, so that no seams are seen."""
-        self._add(corners, colours, colours, np.full(len(corners), 0.35))
+    def faces(self, corners: Array, colours: Array, whole: Array) -> None:
+        """Add small triangles (n, 3, 3) of colours (n, 3), and the triangles (m, 3, 3) that they make up."""
+        # Their edges have the same colour, so that no seams are seen.
+        self._faces.append((corners, colours, colours, np.full(len(corners), 0.35)))
+        self._hiding.append(whole)
 
     def line(self, points: Array, colours: Any, width: float, piece: float) -> None:
         """Add a line through points (n, 3) of one colour (3,) or one per stretch, in pieces of some length."""
@@ -66,7 +73,7 @@ class Painter:
         """Add short straight lines (n, 2, 3)."""
         corners = pieces[:, [0, 1, 1]]
         colours = np.broadcast_to(colours, (len(corners), 3))
-        self._add(corners, colours, colours, np.full(len(corners), width))
+        self._lines.append((corners, colours, colours, np.full(len(corners), width)))
 
     def arrow(self, start: Array, end: Array, colour: Any, width: float, head: float) -> None:
         """Add an arrow with a flat head that faces us."""
@@ -76,15 +83,16 @@ class Painter:
         base = end - head * along
         self.line(np.stack([start, base]), colour, width, 0.5 * head)
         wings = np.stack([end, base + 0.36 * head * across, base - 0.36 * head * across])
-        self._add(wings[np.newaxis], np.array([colour]), np.array([colour]), np.array([0.3]))
-
-    def _add(self, corners: Array, faces: Array, edges: Array, widths: Array) -> None:
-        if len(corners):
-            self._parts.append((corners, np.asarray(faces, float), np.asarray(edges, float), widths))
+        own = np.asarray(colour)[np.newaxis]
+        self._lines.append((wings[np.newaxis], own, own, np.array([0.3])))
 
     def draw(self, axes: Axes) -> None:
         """Draw everything; the layers have the z-orders from 10 on."""
-        corners, faces, edges, widths = (np.concatenate(column) for column in zip(*self._parts, strict=True))
+        lines = [np.concatenate(column) for column in zip(*self._lines, strict=True)]
+        seen = ~self.hidden(lines[0].mean(axis=1))
+        parts = [*self._faces, tuple(column[seen] for column in lines)]
+        corners, faces, edges, widths = (np.concatenate(column) for column in zip(*parts, strict=True))
+        upon = np.arange(len(corners)) >= len(corners) - seen.sum()
         origin = np.arange(len(corners))
         for disc in self.discs:
             corners, origin = _split(corners, origin, disc.normal)
@@ -93,7 +101,7 @@ class Painter:
         layers = np.zeros(len(corners), int)
         for k, disc in enumerate(self.discs):
             layers += self._sides(middles, disc) * 3 ** (len(self.discs) - 1 - k)
-        order = np.lexsort((self.view.depth(middles), layers))
+        order = np.lexsort((self.view.depth(middles), upon[origin], layers))
         flat = self.view.project(corners)[order]
         layers, origin = layers[order], origin[order]
         collection = optional("matplotlib.collections", "plot", "a figure").PolyCollection
@@ -108,10 +116,21 @@ class Painter:
                 joinstyle="round",
                 capstyle="round",
                 zorder=10 + int(layer),
+                snap=False,
             )
             drawn.set_rasterized(len(corners) > _MANY)
             axes.add_collection(drawn, autolim=False)
         self._draw_discs(axes)
+
+    def hidden(self, points: Array) -> Any:
+        """Return which points (n, 3) are behind a face, by more than a hair."""
+        found = np.zeros(len(points), bool)
+        flat = np.column_stack([self.view.project(points), np.ones(len(points))])
+        depth = self.view.depth(points)[:, np.newaxis] + _HAIR
+        for whole in self._hiding:
+            for start in range(0, len(whole), _AT_ONCE):
+                found |= _behind(self.view, whole[start : start + _AT_ONCE], flat, depth)
+        return found
 
     def _sides(self, points: Array, disc: Disc) -> Any:
         """Return 2 for points (n, 3) on our side of a disc's plane, 0 for those behind."""
@@ -149,6 +168,21 @@ class Painter:
             out = disc.rim(angle - size) / disc.radius * 0.62 * size * disc.radius
             head = self.view.project(np.stack([tip, back + out, disc.rim(angle - 0.4 * size), back - out]))
             axes.fill(*head.T, facecolor=disc.colour, edgecolor=disc.colour, lw=0.4, zorder=zorder + 0.1)
+
+
+def _behind(view: View, triangles: Array, flat: Array, depth: Array) -> Any:
+    """Return which points, (x, y, 1) in the picture (n, 3) at depths (n, 1), are behind triangles (m, 3, 3).
+
+    Each is the sum of the corners with weights that are linear in (x, y); all are positive inside.
+    """
+    corners = np.concatenate([view.project(triangles), np.ones((len(triangles), 3, 1))], axis=-1)
+    drawn = np.abs(np.linalg.det(corners)) > _SLIVER
+    weights = np.linalg.inv(corners[drawn])
+    inside = np.ones((len(flat), int(drawn.sum())), bool)
+    for k in range(3):
+        inside &= flat @ weights[:, :, k].T > 0
+    planes = np.einsum("mxk,mk->mx", weights, view.depth(triangles[drawn]))
+    return (inside & (flat @ planes.T > depth)).any(axis=1)
 
 
 def _split(corners: Array, origin: Any, normal: Array) -> tuple[Array, Any]:

@@ -40,7 +40,7 @@ _ALIKE = 1e-9
 
 
 class _Axes(NamedTuple):
-    """Numbers (from 0) of principal axes: that in the middle of the map, that to the right of it, that above."""
+    """Numbers (from 0) of principal axes: in the middle of the map, to the right of it, and above."""
 
     center: int
     right: int
@@ -257,7 +257,4 @@ def _told(moments: Array, with_wheel: bool, family: bool, divides: bool) -> str:
         told += "Black: the separatrix through ± the axis of the middle moment. "
     if not family:
         told += "All moments are equal: L stays where it is. "
-    return (
-        told
-        + "Left the sphere, dashed behind; right its map, true in area: azimuth and height are canonical."
-    )
+    return told + "Left the sphere, dashed behind; right its map, true in area."

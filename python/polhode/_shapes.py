@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ _SIDES = 48
 
 
 class Surface(NamedTuple):
-    """Vertices (n, 3) in m in body axes, from the point about which the body is drawn, and triangles (m, 3)."""
+    """Vertices (n, 3) in body axes, from the point about which the body is drawn, and triangles (m, 3)."""
 
     vertices: Array
     faces: Any
@@ -78,7 +79,7 @@ def _alike(trajectory: Trajectory) -> Surface:
         return Surface(vertices, faces, "a cone with its ratio of moments about the fixed point")
     squares = np.maximum(moments.sum() - 2 * moments, 0.0)
     lengths = np.maximum(np.sqrt(squares / squares.max()), 0.02)
-    vertices, faces = _box(lengths)
+    vertices, faces = box(lengths)
     about = " about the fixed point" if setting is not None and setting.held else ""
     return Surface(vertices @ frame.T, faces, f"a box with its ratios of moments{about}")
 
@@ -103,7 +104,7 @@ def _length(value: Any) -> float:
 # --- solids, centred on the origin with their axis along e3; the cone stands on e1∧e2
 
 
-def _box(lengths: Array) -> Mesh:
+def box(lengths: Array) -> Mesh:
     vertices = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * lengths / 2
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
@@ -162,7 +163,7 @@ def _profile(corners: list[tuple[float, float]]) -> tuple[Array, Array]:
     points = np.array(corners, float)
     size = np.abs(points).max()
     parts = [points[:1]]
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in pairwise(points):
         n = int(np.ceil(np.linalg.norm(b - a) / (0.25 * size)))
         parts.append(a + (b - a) * np.linspace(0, 1, n + 1)[1:, np.newaxis])
     r, z = np.concatenate(parts).T
@@ -170,7 +171,7 @@ def _profile(corners: list[tuple[float, float]]) -> tuple[Array, Array]:
 
 
 def _revolved(r: Array, z: Array) -> Mesh:
-    """Return the surface of a profile (n,) turned about e3, from the lower end on the axis to the upper one."""
+    """Return the surface of a profile (n,) turned about e3; it goes from the lower end on the axis up."""
     s = np.linspace(0, 2 * np.pi, _SIDES, endpoint=False)[:, np.newaxis]
     ring = np.stack(
         [r[1:-1] * np.cos(s), r[1:-1] * np.sin(s), np.broadcast_to(z[1:-1], (_SIDES, len(r) - 2))]
@@ -185,14 +186,14 @@ def _revolved(r: Array, z: Array) -> Mesh:
 
 
 def _quads(numbers: Any) -> Any:
-    """Return the triangles of a grid of vertices (n, m); the first index turns to the left, seen from outside."""
+    """Return the triangles of a grid of vertices (n, m), whose first index goes to the right from outside."""
     a, b, c, d = numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:]
     triangles = np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
     return triangles.reshape(-1, 3)
 
 
 _SOLIDS: dict[str, Any] = {
-    "box": _box,
+    "box": box,
     "ellipsoid": _ellipsoid,
     "sphere": _sphere,
     "hollow_sphere": _hollow_sphere,

@@ -198,7 +198,7 @@ def path_figure(
 
 
 def _parallel(angle: float) -> tuple[Array, Array]:
-    """Return the circle (n, 3) on the unit sphere at an angle from the third axis, twice: it is its normals."""
+    """Return the circle (n, 3) on the unit sphere at an angle from the third axis, and its normals, the same."""
     s = np.linspace(0, 2 * np.pi, _POINTS)
     across, up = np.sin(angle), np.full_like(s, np.cos(angle))
     circle = np.stack([across * np.cos(s), across * np.sin(s), up], axis=1)

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import Array, as_float
-from polhode._dense import Samples, samples, states_at
+from polhode._dense import Samples, rotor_at, samples, states_at
 from polhode._extras import optional
 from polhode._kinds import weight
 from polhode._painter import Disc, Painter
 from polhode._plot import (
     _AXES,
     _BLACK,
-    BODY,
     BODY_AXES,
     MOMENTUM,
     OMEGA,
@@ -30,8 +29,9 @@ from polhode._plot import (
 )
 from polhode._rotor import Rotor
 from polhode._shapes import surface_of
+from polhode._solid import Solid, rgb
 from polhode._values import e1, e2, e3, vector
-from polhode._view import View, view_of
+from polhode._view import view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,13 +44,10 @@ if TYPE_CHECKING:
 _ROOM = (-1.95, 1.95), (-1.65, 1.95)
 # Sizes over the largest distance of a point of the body from the origin.
 _DISCS, _BODY_FRAME, _SPACE_FRAME = (1.32, 1.12), 1.5, 1.78
-# The largest triangle that is drawn in one piece, and the pieces of the trace.
-_TRIANGLE, _STRETCH = 0.22, 0.025
+# The pieces of the trace.
+_STRETCH = 0.025
 # The longest trace, in stretches.
 _LONGEST = 4000
-# An edge between two faces is drawn where they meet at more than this angle, in rad.
-_CREASE = np.radians(25)
-_LIGHT = np.array([-0.35, 0.45, 0.82])  # to the right, up and towards us
 _WHITE = np.ones(3)
 _WEIGHT = "#5B6675"
 
@@ -63,7 +60,7 @@ class Stage:
         self.view = view_of(view)
         self.surface = surface_of(trajectory)
         self.size = float(np.linalg.norm(self.surface.vertices, axis=1).max())
-        self._prepare_body(self.surface.vertices / self.size, self.surface.faces)
+        self.solid = Solid(self.surface.vertices / self.size, self.surface.faces)
         setting = trajectory._setting
         self.held = setting is not None and setting.held
         self.weight = weight(setting.torque) if setting is not None and setting.held else np.zeros(3)
@@ -72,24 +69,6 @@ class Stage:
         self.path_times, self.path = self._trace(path)
         self.fastest = float(np.asarray(trajectory.omega_body.norm()).max())
         self.most_momentum = float(np.asarray(trajectory.momentum_space.norm()).max())
-
-    def _prepare_body(self, vertices: Array, faces: Any) -> None:
-        """Cut the faces into small triangles, and find the edges with the faces on both their sides."""
-        corners = vertices[faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        sizes = np.linalg.norm(normals, axis=1, keepdims=True)
-        self.normals = normals / np.maximum(sizes, 1e-300)
-        self.small, self.small_face = _cut(corners)
-        sides = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-        _, edge, inverse = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_inverse=True)
-        owner = np.repeat(np.arange(len(faces)), 3)
-        order = np.argsort(inverse, kind="stable")
-        first = np.searchsorted(inverse[order], np.arange(len(edge)))
-        last = np.searchsorted(inverse[order], np.arange(len(edge)), side="right") - 1
-        self.edges = vertices[sides[edge]]
-        self.edge_faces = np.stack([owner[order[first]], owner[order[last]]], axis=1)
-        cosine = (self.normals[self.edge_faces[:, 0]] * self.normals[self.edge_faces[:, 1]]).sum(axis=1)
-        self.creases = cosine < np.cos(_CREASE)
 
     def _traced(self) -> tuple[Array, str]:
         """Return the point fixed in the body (3,), in the picture's scale, whose path is drawn, and its name."""
@@ -114,17 +93,17 @@ class Stage:
     def draw(self, axes: Axes, time: float, tail: float = np.inf) -> None:
         """Draw the scene at a time, with the trace of the `tail` seconds before it."""
         state = states_at(self.trajectory, np.array([time]))
-        rotor = state.rotor[0]
+        rotor = Rotor._from_rows(state.rotor.components[0])
         omega = rotor(state.omega_body[0])
         momentum = rotor(self.trajectory.inertia(state.omega_body[0])) + self._wheel(rotor)
         painter = Painter(self.view)
-        self._paint_body(painter, rotor)
+        self.solid.paint(painter, rotor)
         frame = rotor.to_matrix().T
         for k in range(3):
-            painter.arrow(np.zeros(3), _SPACE_FRAME * np.eye(3)[k], _rgb(_BLACK), 0.9, 0.1)
+            painter.arrow(np.zeros(3), _SPACE_FRAME * np.eye(3)[k], rgb(_BLACK), 0.9, 0.1)
             # A little nearer than an axis of space in the same place.
             lift = 0.02 * self.view.toward
-            painter.arrow(lift, lift + _BODY_FRAME * frame[k], _rgb(_AXES[k]), 1.9, 0.13)
+            painter.arrow(lift, lift + _BODY_FRAME * frame[k], rgb(_AXES[k]), 1.9, 0.13)
         self._paint_trace(painter, rotor, time, tail)
         labels = [(_SPACE_FRAME * np.eye(3)[k], SPACE_AXES[k], _BLACK) for k in range(3)]
         labels += [(_BODY_FRAME * frame[k], BODY_AXES[k], _AXES[k]) for k in range(3)]
@@ -146,28 +125,8 @@ class Stage:
     def _wheel(self, rotor: Rotor) -> Multivector:
         """Return the momentum of wheels in space: of them L has more than the body's own."""
         start = self.trajectory
-        own = start.inertia(start.omega_body[0])
-        return rotor((~start.rotor[0])(start.momentum_space[0]) - own)
-
-    def _paint_body(self, painter: Painter, rotor: Rotor) -> None:
-        turn = rotor.to_matrix()
-        normals = self.normals @ turn.T
-        ours = self.view.depth(normals) > 0
-        light = _LIGHT @ np.stack([*self.view.basis, self.view.toward]) / np.linalg.norm(_LIGHT)
-        shades = 0.62 + 0.43 * np.maximum(normals @ light, 0.0)
-        shown = np.flatnonzero(ours[self.small_face])
-        colours = np.clip(_rgb(BODY) * shades[self.small_face[shown], np.newaxis], 0, 1)
-        painter.triangles(self.small[shown] @ turn.T, colours)
-        a, b = ours[self.edge_faces].T
-        seen = (a != b) | (self.creases & (a | b))
-        # A little nearer to us than the faces that they bound.
-        edges = self.edges[seen] @ turn.T + 0.05 * self.view.toward
-        counts = np.maximum(np.ceil(np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) / 0.12), 1).astype(int)
-        which = np.repeat(np.arange(len(counts)), counts)
-        within = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
-        share = (np.stack([within, within + 1], axis=1) / counts[which, np.newaxis])[..., np.newaxis]
-        starts, ends = edges[which, 0][:, np.newaxis], edges[which, 1][:, np.newaxis]
-        painter.segments(starts + share * (ends - starts), 0.38 * _rgb(BODY), 0.7)
+        turned_back = (~rotor_at(start, 0))(start.momentum_space[0])
+        return rotor(turned_back - start.inertia(start.omega_body[0]))
 
     def _paint_trace(self, painter: Painter, rotor: Rotor, time: float, tail: float) -> None:
         """Add the path of the traced point up to now, paler the longer ago."""
@@ -177,7 +136,7 @@ class Stage:
         places = np.concatenate([self.path[first:last], now[np.newaxis]])
         if len(places) > 1:
             age = np.linspace(1, 0, len(places) - 1)[:, np.newaxis]
-            colours = _rgb(TRACE) + 0.72 * age**1.5 * (_WHITE - _rgb(TRACE))
+            colours = rgb(TRACE) + 0.72 * age**1.5 * (_WHITE - rgb(TRACE))
             painter.line(places, colours, 1.3, 2 * _STRETCH * _BODY_FRAME)
 
     def _paint_weight(self, painter: Painter, rotor: Rotor) -> None:
@@ -189,13 +148,13 @@ class Stage:
             away = float(center) if 0.1 < center < 1.2 else away
         place = rotor(vector(away * self.weight / np.linalg.norm(self.weight))).components
         self.center = place
-        painter.arrow(place, place - np.array([0, 0, 0.55]), _rgb(_WEIGHT), 1.6, 0.12)
+        painter.arrow(place, place - np.array([0, 0, 0.55]), rgb(_WEIGHT), 1.6, 0.12)
 
     def _label_of(self, disc: Disc, name: str) -> Array:
         """Return where a disc's name stands: L outside of its rim on the left, Ω inside on the right."""
         angles = np.linspace(0, 2 * np.pi, 73)
-        across = self.view.project(disc.rim(angles))[:, 0]
-        best = int(np.argmax(across if name == "Ω" else -across))
+        flat = self.view.project(disc.rim(angles))
+        best = int(np.argmax(flat @ ([1.0, -0.4] if name == "Ω" else [-1.0, 0.9])))
         return disc.rim(angles[best]) * (0.72 if name == "Ω" else 1.0)
 
     def _write_labels(self, axes: Axes, labels: list[tuple[Array, str, str]]) -> None:
@@ -254,7 +213,7 @@ def scene_figure(trajectory: Trajectory, view: Any = None, time: float | None = 
     """Draw the scene at a time in s, the last one if none is given."""
     when = checked_time(trajectory, time)
     stage = Stage(trajectory, view)
-    figure = new_figure(5.2, 6.0)
+    figure = new_figure(5.2, 5.6)
     axes = figure.add_subplot()
     stage.draw(axes, when)
     seconds, unit = time_unit(trajectory.time)
@@ -271,31 +230,3 @@ def checked_time(trajectory: Trajectory, time: float | None) -> float:
     if not first <= when <= last:
         raise ValueError(f"time is {when:.6g} s; the motion goes from {first:.6g} s to {last:.6g} s")
     return when
-
-
-def _rgb(colour: str) -> Array:
-    return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
-
-
-def _cut(corners: Array) -> tuple[Array, Any]:
-    """Cut triangles (n, 3, 3) into ones that are small, and tell of each which it was part of."""
-    a, b, c = (corners[:, k] for k in range(3))
-    longest = np.max([np.linalg.norm(p - q, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
-    counts = (
-        np.maximum(np.ceil(longest / _TRIANGLE), 1).astype(int)
-        if len(corners) < 20_000
-        else np.ones(len(a), int)
-    )
-    pieces, which = [], []
-    for n in np.unique(counts):
-        rows = np.flatnonzero(counts == n)
-        for i in range(n):
-            for j in range(n - i):
-                weights = [np.array([[i, j], [i + 1, j], [i, j + 1]]) / n]
-                if i + j < n - 1:
-                    weights.append(np.array([[i + 1, j], [i + 1, j + 1], [i, j + 1]]) / n)
-                for w in weights:
-                    shares = np.column_stack([1 - w.sum(axis=1), w])
-                    pieces.append(np.einsum("kc,ncx->nkx", shares, corners[rows]))
-                    which.append(rows)
-    return np.concatenate(pieces), np.concatenate(which)

@@ -13,7 +13,7 @@ Mesh = tuple[Array, Any]  # vertices (n, 3), faces (m, 3) of whole numbers
 
 
 def read_surface(path: Path) -> Mesh:
-    """Return vertices (n, 3) and triangles (m, 3) of an STL, OBJ or PLY file that `Body.from_mesh` accepts."""
+    """Return vertices (n, 3) and triangles (m, 3) of a file that `Body.from_mesh` accepts."""
     content = path.read_bytes()
     if content.startswith(b"ply"):
         return _ply(content)
@@ -114,6 +114,6 @@ def _ply(content: bytes) -> Mesh:
             if element == "vertex":
                 vertices.append([row["x"], row["y"], row["z"]])
             elif element == "face":
-                corners = row.get("vertex_indices", row.get("vertex_index"))
+                corners = row["vertex_indices"] if "vertex_indices" in row else row["vertex_index"]
                 faces += _fan([int(k) for k in corners])
     return np.array(vertices), np.array(faces)

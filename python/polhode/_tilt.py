@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode._arrays import Array
 from polhode._closed_forms import LagrangeTop
-from polhode._dense import samples
+from polhode._dense import rotor_at, samples
 from polhode._kinds import long_axis, orbit_of
 from polhode._plot import (
     _BLACK,
@@ -44,8 +44,8 @@ def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
     path = samples(trajectory).rotor(vector(axis)).components
     top = _lagrange(trajectory, c)
     caption = (
-        "Path on the unit sphere of the axis from the fixed point to the centre of mass, seen from space axes "
-        "eₖ, from the dot; gravity is along −e₃. "
+        "Path on the unit sphere of the axis from the fixed point to the centre of mass, in space axes eₖ, "
+        "from the dot; gravity is along −e₃. "
     )
     if top is None:
         low, high = (float(x) for x in np.degrees([_tilt(path).min(), _tilt(path).max()]))
@@ -76,8 +76,8 @@ def top_figure(trajectory: Trajectory, c: Array) -> Figure:
         for bound in (told["tilt_min"], told["tilt_max"]):
             axes.axvline(np.degrees(bound), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
         caption += (
-            f", from the dot. Black: the curve of its energy, {told['energy']:.5g} J; grey: other energies with the "
-            f"same momentum about e₃, {told['vertical_momentum']:.5g} kg m²/s, and about the axis, "
+            f", from the dot. Black: the curve of its energy, {told['energy']:.5g} J; grey: other energies with "
+            f"the same momentum about e₃, {told['vertical_momentum']:.5g} kg m²/s, and about the axis, "
             f"{told['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
         )
     axes.set_xlabel("tilt θ, degrees")
@@ -102,8 +102,8 @@ def satellite_figure(trajectory: Trajectory) -> Figure:
     axes.set_ylabel("its rate, degrees/s")
     explain(
         figure,
-        "The axis of the least moment, in the plane of the orbit, seen from the planet's direction and flight; the rate "
-        "from the output times.",
+        "The axis of the least moment, in the plane of the orbit, from the dot; the rate is that between the "
+        "output times.",
     )
     return figure
 
@@ -142,7 +142,7 @@ def _draw(axes: Axes, angle: Array, rate: Array) -> None:
 def _lagrange(trajectory: Trajectory, c: Array) -> LagrangeTop | None:
     """Return the motion in closed form; None for a body that is not symmetric about c."""
     try:
-        return LagrangeTop(trajectory.inertia, trajectory.rotor[0], trajectory.omega_body[0], c)
+        return LagrangeTop(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0], c)
     except ValueError:
         return None
 

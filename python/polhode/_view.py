@@ -90,7 +90,7 @@ class View:
             arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}
             # Behind the ellipsoid, whose fill then hides what its outline encloses.
             axes.annotate("", xy=end, xytext=start, arrowprops=arrow, zorder=-1 if hidden else 4)
-            axes.text(*label, name, color=colour, ha="center", va="center", zorder=5)
+            axes.text(label[0], label[1], name, color=colour, ha="center", va="center", zorder=5)
             room.append(label[np.newaxis])
         frame_picture(axes, np.concatenate(room), 0.25 * reach)
 

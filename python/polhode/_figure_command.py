@@ -26,8 +26,8 @@ def add(commands: Any, shown: Shown) -> None:
         help="draw a figure for paper: SVG, PDF or PNG",
         description="Draw a figure of a scene's motion, or figure 1, 2 or 3 of the handout.",
         epilog="motion: rates, attitude and drift over time; polhode, herpolhode: paths of the angular "
-        "velocity; locus: the path of a top's axis; drift: what is conserved; phase: the phase portrait; scene: "
-        "the body and its bivectors. 1: a trivector swept out; 2: a vector turned; 3: the inertia map.",
+        "velocity; locus: the path of a top's axis; drift: what is conserved; phase: the portrait; "
+        "scene: the body and its bivectors. 1: a trivector swept; 2: a vector turned; 3: the inertia map.",
     )
     figure.add_argument(
         "what", metavar="WHAT", choices=(*_KINDS, *_OF_HANDOUT), help=f"{', '.join(_KINDS)}, 1, 2, 3"

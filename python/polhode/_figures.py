@@ -25,8 +25,8 @@ FORMATS = ("svg", "pdf", "png")
 # Kinds in which depth is drawn, seen from a direction.
 _SEEN = ("polhode", "locus", "phase", "scene")
 
-# In SVG text is outlines, for few readers have a font with ∧ and ₁; in PDF it stays text, its font as journals
-# want it.
+# In SVG text is outlines, for few readers have a font with ∧ and ₁; in PDF it stays text, in a font of the
+# type that journals take.
 _AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 42}
 _UNDATED: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},

@@ -81,8 +81,9 @@ def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
 def _told(free: FreeMotion, distance: float, least: float, largest: float) -> str:
     period = free.describe()["period"]
     told = (
-        "The angular velocity ω_S = −I Ω_S in space, from the dot. It stays in the invariable plane across L, "
-        f"at {abs(distance):.5g} rad/s = 2E/|L| from the fixed origin; g₁∧g₂ is the plane and sense of L."
+        "The angular velocity ω_S = −I Ω_S in space, from the dot. It stays in the "
+        f"invariable plane, across L at {abs(distance):.5g} rad/s = 2E/|L| from the fixed "
+        "origin; g₁∧g₂ is the plane and sense of L."
     )
     if largest > (1 + _ALIKE) * least:
         told += f" Dashed: its least and largest distance from L, {least:.4g} and {largest:.4g} rad/s"

@@ -59,7 +59,7 @@ class Painter:
         self._hiding.append(whole)
 
     def line(self, points: Array, colours: Any, width: float, piece: float) -> None:
-        """Add a line through points (n, 3) of one colour (3,) or one per stretch, in pieces of some length."""
+        """Add a line through points (n, 3), of one colour (3,) or one per stretch, in pieces so long."""
         starts, ends = points[:-1], points[1:]
         colours = np.broadcast_to(colours, (len(starts), 3))
         counts = np.maximum(np.ceil(np.linalg.norm(ends - starts, axis=1) / piece), 1).astype(int)

@@ -13,6 +13,7 @@ from polhode._free_motion import FreeMotion
 from polhode._plot import (
     _AXES,
     _BLACK,
+    OTHERS,
     POLHODE,
     dress,
     entitle,
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
     from polhode._trajectory import Trajectory
 
-_FAINT = "#B8B8B8"
 # Angles from an axis of extreme moment towards that of the middle one at which other motions begin, in rad.
 _STARTS = np.radians([15, 35, 55, 75])
 _POINTS = 241
@@ -156,7 +156,7 @@ def _separatrix(moments: Array) -> list[Array]:
 
 
 def _family_with_wheel(moments: Array, h: Array, chosen: _Axes) -> list[Array]:
-    """Return L over |L| of other motions with the wheel: curves on which the energy of the body is the same."""
+    """Return L over |L| of other motions with the wheel: curves of equal energy of the body."""
     contours = optional("contourpy", "plot", "a figure").contour_generator
     azimuth, height = np.meshgrid(
         np.linspace(-np.pi, np.pi, 241), np.sin(np.linspace(-1, 1, 161) * np.pi / 2)
@@ -186,7 +186,7 @@ def _on_sphere(azimuth: Array, height: Array, chosen: _Axes) -> Array:
 def _draw_sphere(axes: Axes, look: View, path: Array, family: list[Array], divides: list[Array]) -> None:
     look.ellipsoid(axes, np.ones(3))
     for curve in family:
-        look.curve(axes, curve, curve, color=_FAINT, lw=0.8)
+        look.curve(axes, curve, curve, color=OTHERS, lw=0.8)
     for curve in divides:
         look.curve(axes, curve, curve, color=_BLACK, lw=0.9)
     look.curve(axes, path, path, color=POLHODE, lw=2.0)
@@ -196,7 +196,7 @@ def _draw_sphere(axes: Axes, look: View, path: Array, family: list[Array], divid
 
 def _draw_map(axes: Axes, chosen: _Axes, path: Array, family: list[Array], divides: list[Array]) -> None:
     for curve in family:
-        _draw_on_map(axes, curve, chosen, color=_FAINT, lw=0.8, zorder=1)
+        _draw_on_map(axes, curve, chosen, color=OTHERS, lw=0.8, zorder=1)
     for curve in divides:
         _draw_on_map(axes, curve, chosen, color=_BLACK, lw=0.9, zorder=2)
     _draw_on_map(axes, path, chosen, color=POLHODE, lw=2.0, zorder=3)
@@ -248,8 +248,8 @@ def _name_axes(axes: Axes, chosen: _Axes) -> None:
 
 def _told(moments: Array, with_wheel: bool, family: bool, divides: bool) -> str:
     told = (
-        "Thick: L seen from the body, L_B = Σ Lₖ I eₖ about principal axes eₖ, over |L|, from the dot; moments "
-        f"{', '.join(f'{i:.4g}' for i in moments)} kg m². "
+        "Thick: L seen from the body, L_B = Σ Lₖ I eₖ about principal axes eₖ, over |L|, from the dot; "
+        f"moments {', '.join(f'{i:.4g}' for i in moments)} kg m². "
     )
     if family:
         told += f"Grey: other motions of this |L|{' with this wheel' if with_wheel else ''}. "

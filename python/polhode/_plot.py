@@ -28,6 +28,8 @@ _BLUE, _ORANGE, _GREEN, _BLACK = "#0072B2", "#D55E00", "#009E73", "#222222"
 _AXES = (_BLUE, _ORANGE, _GREEN)
 OMEGA, MOMENTUM, TRACE, POLHODE, HERPOLHODE = _ORANGE, _BLUE, "#CC79A7", "#B07A00", _GREEN
 FAINT, BODY = "#8A94A3", "#C9D2DE"
+# Motions beside the one that is shown.
+OTHERS = "#B8B8B8"
 
 # Planes and axes as they are written in figures.
 PLANES = ("e₂∧e₃", "e₃∧e₁", "e₁∧e₂")

@@ -58,7 +58,7 @@ def surface_of(trajectory: Trajectory) -> Surface:
 
 
 def _alike(trajectory: Trajectory) -> Surface:
-    """Return a cone on its tip for a symmetric top, and a box for any other body, with its ratios of moments."""
+    """Return a cone on its tip for a symmetric top, a box for any other body, with its ratios of moments."""
     moments = trajectory.inertia.principal_moments
     frame = trajectory.inertia.principal_frame.to_matrix()
     setting = trajectory._setting
@@ -134,10 +134,6 @@ def _cone(radius: float, height: float) -> Mesh:
     return _revolved(*_profile([(0, 0), (radius, 0), (0, height)]))
 
 
-def _rod(length: float) -> Mesh:
-    return _cylinder(length / 60, length)
-
-
 def _disc(radius: float) -> Mesh:
     return _cylinder(radius, radius / 40)
 
@@ -199,7 +195,6 @@ _SOLIDS: dict[str, Any] = {
     "hollow_sphere": _hollow_sphere,
     "cylinder": _cylinder,
     "cone": _cone,
-    "rod": _rod,
     "disc": _disc,
     "torus": _torus,
     "capsule": _capsule,
@@ -211,7 +206,6 @@ _SIZES = (
     "outer_radius",
     "inner_radius",
     "height",
-    "length",
     "major_radius",
     "minor_radius",
 )

@@ -12,6 +12,7 @@ from polhode._extras import optional
 from polhode._plot import (
     _AXES,
     _BLACK,
+    OTHERS,
     POLHODE,
     SPACE_AXES,
     TRACE,
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from polhode._trajectory import Trajectory
 
-_FAINT = "#B8B8B8"
 # Points of a curve that is drawn from its formula.
 _POINTS = 361
 
@@ -65,7 +65,7 @@ def polhode_figure(trajectory: Trajectory, wheel: Array | None = None, view: Any
     else:
         family, divides = _wheel_family(moments, energy, to_principal(vector(wheel)).components), []
     for curve in family:
-        look.curve(axes, curve, curve * moments, color=_FAINT, lw=0.8)
+        look.curve(axes, curve, curve * moments, color=OTHERS, lw=0.8)
     for curve in divides:
         look.curve(axes, curve, curve * moments, color=_BLACK, lw=0.9)
     look.curve(axes, omega, omega * moments, color=POLHODE, lw=2.0)
@@ -179,14 +179,14 @@ def path_figure(
     bounds: tuple[float, ...] = (),
     view: Any = None,
 ) -> Figure:
-    """Draw a path (n, 3) on the unit sphere; `bounds` are angles from the third axis, in rad, to be marked."""
+    """Draw a path (n, 3) on the unit sphere; `bounds`, angles from the third axis in rad, are marked."""
     figure = new_figure(5.2, 5.6)
     axes = figure.add_subplot()
     look = view_of(view)
     sphere = np.ones(3)
     look.ellipsoid(axes, sphere)
     for angle in np.radians([30, 60, 90, 120, 150]):
-        look.curve(axes, *_parallel(angle), color=_FAINT, lw=0.6)
+        look.curve(axes, *_parallel(angle), color=OTHERS, lw=0.6)
     for angle in bounds:
         look.curve(axes, *_parallel(angle), color=_BLACK, lw=1.0)
     look.curve(axes, path, path, color=TRACE, lw=1.5)
@@ -198,7 +198,7 @@ def path_figure(
 
 
 def _parallel(angle: float) -> tuple[Array, Array]:
-    """Return the circle (n, 3) on the unit sphere at an angle from the third axis, and its normals, the same."""
+    """Return the circle (n, 3) of the unit sphere at an angle from the third axis, and its normals."""
     s = np.linspace(0, 2 * np.pi, _POINTS)
     across, up = np.sin(angle), np.full_like(s, np.cos(angle))
     circle = np.stack([across * np.cos(s), across * np.sin(s), up], axis=1)

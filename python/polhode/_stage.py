@@ -71,7 +71,7 @@ class Stage:
         self.most_momentum = float(np.asarray(trajectory.momentum_space.norm()).max())
 
     def _traced(self) -> tuple[Array, str]:
-        """Return the point fixed in the body (3,), in the picture's scale, whose path is drawn, and its name."""
+        """Return the point of the body (3,), in the picture's scale, whose path is drawn, and its name."""
         if self.weight.any():
             axis, name = self.weight / np.linalg.norm(self.weight), "the axis to the centre of mass"
         else:

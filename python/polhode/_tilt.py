@@ -12,6 +12,7 @@ from polhode._dense import rotor_at, samples
 from polhode._kinds import long_axis, orbit_of
 from polhode._plot import (
     _BLACK,
+    OTHERS,
     SPACE_AXES,
     TRACE,
     dress,
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
     from polhode._trajectory import Trajectory
 
-_FAINT = "#B8B8B8"
 # Tilts and rates at which the energy is computed for its curves.
 _GRID = (321, 241)
 # How far beyond the tilts of a motion its phase portrait reaches, over their span, and at least, in rad.
@@ -76,8 +76,8 @@ def top_figure(trajectory: Trajectory, c: Array) -> Figure:
         for bound in (told["tilt_min"], told["tilt_max"]):
             axes.axvline(np.degrees(bound), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
         caption += (
-            f", from the dot. Black: the curve of its energy, {told['energy']:.5g} J; grey: other energies with "
-            f"the same momentum about e₃, {told['vertical_momentum']:.5g} kg m²/s, and about the axis, "
+            f", from the dot. Black: the curve of its energy, {told['energy']:.5g} J; grey: other energies "
+            f"with the same momentum about e₃, {told['vertical_momentum']:.5g} kg m²/s, and about the axis, "
             f"{told['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
         )
     axes.set_xlabel("tilt θ, degrees")
@@ -178,7 +178,7 @@ def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, told: dict[str, A
     span = max(present - least, 1e-12 * abs(present))
     others = least + span * np.array([0.2, 0.6, 1.5, 2.1, 2.8, 3.6])
     x, y = np.degrees(theta), np.degrees(rate)
-    axes.contour(x, y, energy, levels=others, colors=_FAINT, linewidths=0.8, zorder=1)
+    axes.contour(x, y, energy, levels=others, colors=OTHERS, linewidths=0.8, zorder=1)
     axes.contour(x, y, energy, levels=[present], colors=_BLACK, linewidths=2.6, zorder=2)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import polhode as ph
+from command_line import polhode
 
 ROOT = Path(__file__).parent.parent
 SCENES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/scenes.md").read_text(), flags=re.DOTALL)
@@ -62,6 +63,29 @@ def test_the_shell_answers_as_the_page_says():
         # Residuals of rounding differ between machines.
         got, expected = (re.sub(r"residual \S+", "residual …", x.strip()) for x in (done.stdout, answer))
         assert got == expected
+
+
+def test_the_page_of_figures_runs(tmp_path):
+    pytest.importorskip("matplotlib")
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    blocks = blocks_of(ROOT / "docs/figures.md")
+    asked = (
+        "".join(text for language, text in blocks if language == "console").removeprefix("$ ").split("\n$ ")
+    )
+    assert len(asked) == 4
+    for command, answer in (part.split("\n", 1) for part in asked):
+        done = polhode(*command.split()[1:], cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout.strip() == answer.strip()
+    (code,) = (text for language, text in blocks if language == "python")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    told = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
+    assert [line.strip() for line in done.stdout.splitlines()] == told
+    written = {"polhode.svg", "scene.pdf", "turned.svg", "top.gif", "locus.pdf"}
+    assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
 
 
 def blocks_of(page):

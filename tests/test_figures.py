@@ -343,7 +343,7 @@ def test_a_disc_is_its_bivector():
 
 
 def test_the_discs_of_a_scene_are_omega_and_L():
-    """The rims of the picture, pulled back by what is known of the plane, are circles about the right axis."""
+    """The rims of the picture, pulled back by what is known of the plane, are circles about their axes."""
     motion = free()
     time = 3.7
     axes = motion.plot("scene", time=time, view=(50, 30)).axes[0]

@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode._dense import rotor_at, samples
 from polhode._free_motion import FreeMotion
+from polhode._page import time as told_time
 from polhode._plot import (
     _BLACK,
     HERPOLHODE,
@@ -18,6 +19,7 @@ from polhode._plot import (
     in_our_look,
     new_figure,
     title_of,
+    told_in_powers,
 )
 from polhode._rotor import Rotor
 from polhode._values import e3
@@ -51,11 +53,14 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
     omega = into_plane(path.rotor(path.omega_body)).components
     free = FreeMotion(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0])
     around = into_plane(free.herpolhode(_POINTS)).components
+    power, per_second = told_in_powers(around[:, :2], "rad/s")
+    omega, around = omega / power, around / power
     radii = np.hypot(around[:, 0], around[:, 1])
     least, largest = float(radii.min()), float(radii.max())
     _draw_annulus(axes, least, largest)
     turns = float(np.abs(np.diff(np.unwrap(np.arctan2(omega[:, 1], omega[:, 0])))).sum()) / (2 * np.pi)
-    axes.plot(omega[:, 0], omega[:, 1], color=HERPOLHODE, lw=1.4 if turns < 15 else 0.8, zorder=3)
+    crowded = turns > 15 or 0.85 * largest < least < (1 - _ALIKE) * largest
+    axes.plot(omega[:, 0], omega[:, 1], color=HERPOLHODE, lw=0.7 if crowded else 1.4, zorder=3)
     axes.plot(*omega[0, :2], "o", color=HERPOLHODE, ms=6, mec="white", mew=0.8, zorder=5)
     axes.plot(0, 0, "+", color=MOMENTUM, ms=10, mew=1.8, zorder=6)
     axes.annotate("L", (0, 0), xytext=(6, 5), textcoords="offset points", color=MOMENTUM, zorder=6)
@@ -63,9 +68,9 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
     axes.set_aspect("equal")
     reach = 1.08 * largest if largest > 1e-9 * float(np.abs(omega).max()) else float(np.abs(omega).max())
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    axes.set_xlabel("ω along g₁, rad/s")
-    axes.set_ylabel("ω along g₂, rad/s")
-    explain(figure, _told(free, float(omega[0, 2]), least, largest))
+    axes.set_xlabel(f"ω along g₁, {per_second}")
+    axes.set_ylabel(f"ω along g₂, {per_second}")
+    explain(figure, _told(free, power * float(omega[0, 2]), power * least, power * largest))
     return figure
 
 
@@ -87,7 +92,7 @@ def _told(free: FreeMotion, distance: float, least: float, largest: float) -> st
     )
     if largest > (1 + _ALIKE) * least:
         told += f" Dashed: its least and largest distance from L, {least:.4g} and {largest:.4g} rad/s"
-        told += f", each passed twice in a period of {period:.4g} s." if period else "."
+        told += f", each passed twice in a period of {told_time(period, 4)}." if period else "."
     elif largest > 1e-9 * abs(distance):
         told += f" Dashed: its distance from L, {largest:.4g} rad/s, is always the same."
     else:

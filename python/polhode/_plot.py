@@ -123,6 +123,15 @@ def time_unit(times: Array) -> tuple[float, str]:
     return 365.25 * 86400.0, "yr"
 
 
+def told_in_powers(values: Array, unit: str) -> tuple[float, str]:
+    """Return the power of ten over which numbers read well, and the unit with it."""
+    largest = float(np.nanmax(np.abs(values), initial=0.0))
+    if largest == 0 or 0.01 <= largest < 1e4:
+        return 1.0, unit
+    exponent = int(np.floor(np.log10(largest)))
+    return 10.0**exponent, f"$10^{{{exponent}}}$ {unit}"
+
+
 @in_our_look
 def motion_figure(trajectory: Trajectory) -> Figure:
     """Draw angular velocity in the body, attitude, and what was conserved, over time."""
@@ -131,9 +140,10 @@ def motion_figure(trajectory: Trajectory) -> Figure:
     rates, attitude, drift = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 2))
     seconds, unit = time_unit(trajectory.time)
     t = trajectory.time / seconds
+    power, per_second = told_in_powers(trajectory.omega_body.components, "rad/s")
     for k, (plane, colour) in enumerate(zip(PLANES, _AXES, strict=True)):
-        rates.plot(t, trajectory.omega_body.components[:, k], color=colour, lw=1.2, label=plane)
-    rates.set_ylabel("angular velocity\nin the body Ω_B, rad/s")
+        rates.plot(t, trajectory.omega_body.components[:, k] / power, color=colour, lw=1.2, label=plane)
+    rates.set_ylabel(f"angular velocity in\nthe body Ω_B, {per_second}")
     _draw_attitude(attitude, trajectory, t)
     _draw_drift(drift, trajectory, t)
     drift.set_xlabel(f"time, {unit}")
@@ -191,4 +201,6 @@ def _draw_drift(axes: Axes, trajectory: Trajectory, t: Array) -> None:
         exponent = int(np.floor(np.log10(largest)))
     for (name, values), colour in zip(series.items(), (_BLUE, _ORANGE, _GREEN, _BLACK), strict=False):
         axes.plot(t, values / 10.0**exponent, color=colour, lw=1.0, label=name)
+    if largest == 0:
+        axes.set_ylim(-1.5, 1.5)
     axes.set_ylabel(f"relative drift,\n$10^{{{exponent}}}$")

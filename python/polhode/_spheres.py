@@ -78,7 +78,7 @@ def polhode_figure(trajectory: Trajectory, wheel: Array | None = None, view: Any
 def _told_of_polhode(moments: Array, energies: Array, family: bool, divides: bool) -> str:
     slowed = " (drawn larger as the body slows)" if energies.min() < 0.999 * energies[0] else ""
     told = (
-        "Thick: the angular velocity Ω_B = Σ ω_k I e_k about principal axes e_k, from the dot"
+        "Thick: the angular velocity Ω_B = Σ ωₖ I eₖ about principal axes eₖ, from the dot"
         f"{slowed}, on the ellipsoid i₁ω₁² + i₂ω₂² + i₃ω₃² = 2E with i = "
         f"{', '.join(f'{i:.4g}' for i in moments)} kg m², E = {energies[0]:.4g} J. "
     )
@@ -156,7 +156,7 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction fixed in the body (3,); e3 of space is up."""
     require_times(trajectory)
     path = samples(trajectory).rotor(vector(axis / np.linalg.norm(axis))).components
-    caption = f"Path of {name} on the unit sphere of space axes e_k, from the dot. Dashed: behind."
+    caption = f"Path of {name} on the unit sphere of space axes eₖ, from the dot. Dashed: behind."
     return path_figure(trajectory, path, caption, SPACE_AXES)
 
 

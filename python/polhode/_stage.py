@@ -137,7 +137,9 @@ class Stage:
         if len(places) > 1:
             age = np.linspace(1, 0, len(places) - 1)[:, np.newaxis]
             colours = rgb(TRACE) + 0.72 * age**1.5 * (_WHITE - rgb(TRACE))
-            painter.line(places, colours, 1.3, 2 * _STRETCH * _BODY_FRAME)
+            # Where it comes back to a place, what is later lies upon what is older.
+            lift = 0.02 * np.linspace(0, 1, len(places))[:, np.newaxis] * self.view.toward
+            painter.line(places + lift, colours, 1.3, 2 * _STRETCH * _BODY_FRAME)
 
     def _paint_weight(self, painter: Painter, rotor: Rotor) -> None:
         """Add the centre of mass, as far out as the body tells, with its weight."""

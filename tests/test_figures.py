@@ -375,7 +375,7 @@ def test_a_motion_without_states_between_is_drawn_nearby():
     """A motion without states between the output times is drawn at those next to the time."""
     motion = pickle.loads(pickle.dumps(free(times=np.linspace(0, 10, 11))))
     stage = Stage(motion)
-    assert stage.surface.told.startswith("a box")
+    assert stage.surface.told.startswith("drawn as a box")
     drawn(motion.plot("scene", time=3.4))
 
 

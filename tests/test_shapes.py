@@ -55,7 +55,7 @@ def test_every_solid_is_drawn_about_its_centre_of_mass(body, size, tmp_path):
         "[run]\nduration = 1\nsamples = 5\n"
     )
     motion = ph.Scene.read(path).run()
-    vertices, faces, _ = _shapes.surface_of(motion)
+    vertices, faces, *_ = _shapes.surface_of(motion)
     np.testing.assert_allclose(np.abs(vertices).max(axis=0), size, rtol=1e-12)
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     weights = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
@@ -75,11 +75,33 @@ def test_unknown_bodies_have_their_ratios_of_moments():
     lengths = np.ptp(box.vertices, axis=0)
     moments = (lengths**2).sum() - lengths**2
     np.testing.assert_allclose(moments / moments[0], [1, 2, 2.5], rtol=1e-12)
-    cone = _shapes.surface_of(top())
-    height, radius = cone.vertices[:, 2].max(), cone.vertices[:, 0].max()
-    assert cone.vertices[:, 2].min() == pytest.approx(0, abs=1e-12)
-    # About the tip: 3/5 m h² + 3/20 m r² and 3/10 m r².
-    assert (0.6 * height**2 + 0.15 * radius**2) / (0.3 * radius**2) == pytest.approx(2)
+    ball = _shapes.surface_of(free((1, 1.01, 1.02)))
+    assert "ball" in ball.told
+
+
+def test_unknown_held_bodies_stand_on_the_fixed_point():
+    spinning = _shapes.surface_of(top())
+    assert spinning.told == "drawn as a spinning top"
+    np.testing.assert_array_equal(spinning.center, [0, 0, 2])
+    # Its tip is the fixed point, and it goes up along the axis to the centre of mass and beyond.
+    np.testing.assert_allclose(spinning.vertices[:, 2].min(), 0, atol=1e-12)
+    assert np.linalg.norm(spinning.vertices, axis=1).min() == 0
+    assert spinning.vertices[:, 2].max() == pytest.approx(1.63 * 2)
+    box = _shapes.surface_of(ph.Scene.read(EXAMPLES / "kovalevskaya.toml").run())
+    np.testing.assert_allclose(box.vertices.mean(axis=0), [3, 0, 0], atol=1e-12)
+    np.testing.assert_array_equal(box.center, [3, 0, 0])
+
+
+def test_faces_are_told_apart():
+    """A box has a tint for the two sides across each axis; what is round has quadrants."""
+    vertices, faces = _shapes.box(np.array([1.0, 2.0, 3.0]))
+    tints = _shapes._sides(vertices, faces)
+    for k in range(3):
+        corners = vertices[faces[tints == 2 + k]]
+        assert len(corners) == 4
+        np.testing.assert_array_equal(np.abs(corners[..., k]), (k + 1) / 2)
+    vertices, faces = _shapes.cone(radius=1.0, height=2.0)
+    assert _shapes._quadrants(vertices, faces).mean() == pytest.approx(0.5)
 
 
 _CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])

@@ -101,7 +101,7 @@ def turned_vector(a: Multivector, B: Multivector, angle: float) -> Figure:
     frame_picture(axes, view.project(np.concatenate([rim, tips_of])), 0.22)
     explain(
         figure,
-        f"B = {_told(plane)} with B² = {float(plane | plane):.4g}, θ = {np.degrees(angle):.4g}°, "
+        f"B = {_told(plane)} with B² = {_told(plane | plane)}, θ = {np.degrees(angle):.4g}°, "
         f"R = {_told(R)}. a = {_told(a)} goes to a' = {_told(turned)}: the part a∥ = (a·B) B⁻¹ in the plane "
         f"turns by θ in its sense, a⊥ = (a∧B) B⁻¹ stays (handout eq. 2.4).",
     )

@@ -12,76 +12,107 @@ from polhode import _native
 from polhode._arrays import Array
 from polhode._bodies import Body
 from polhode._kinds import weight
+from polhode._rotor import Rotor
 from polhode._surface_files import Mesh, read_surface
-from polhode._values import vector
+from polhode._values import e3, vector
 
 if TYPE_CHECKING:
     from polhode._trajectory import Trajectory
 
 # Sides of what is round.
 _SIDES = 48
+# Distances from its axis and heights of a spinning top.
+_TOP = (
+    (0, 0),
+    (0.025, 0.03),
+    (0.1, 0.24),
+    (0.3, 0.54),
+    (0.54, 0.78),
+    (0.66, 0.96),
+    (0.64, 1.1),
+    (0.46, 1.22),
+    (0.16, 1.3),
+    (0.055, 1.38),
+    (0.05, 1.6),
+    (0, 1.63),
+)
 
 
 class Surface(NamedTuple):
-    """Vertices (n, 3) in body axes, from the point about which the body is drawn, and triangles (m, 3)."""
+    """Vertices (n, 3) in body axes, from the point about which the body is drawn, and triangles (m, 3).
+
+    `tints` (m,) tell faces apart so that one sees how the body turns: 0 plain, 1 the other quadrants of what
+    is round, 2 to 4 the sides of a box across its axes. `center` (3,) is the centre of mass.
+    """
 
     vertices: Array
     faces: Any
+    tints: Any
+    center: Array
     told: str
 
 
 def surface_of(trajectory: Trajectory) -> Surface:
     """Return the surface that the scene says, about the centre of mass, or the fixed point of a held body.
 
-    Where the motion tells moments alone, that of a simple body with the same ratios of them.
+    Where the motion tells moments alone, that of a simple body, as large as one likes.
     """
     setting = trajectory._setting
     table = {} if setting is None or setting.text is None else tomllib.loads(setting.text)["body"]
-    if "mesh" in table:
-        assert setting is not None
-        assert setting.path is not None
-        vertices, faces = read_surface(setting.path.parent / table["mesh"])
-        scale = _unit(table.get("length_unit", 1.0))
-        own = Body.from_mesh(setting.path.parent / table["mesh"], mass=1.0, scale=scale).center_of_mass
-        mesh, told = (scale * vertices, faces), "the mesh"
-    elif "solid" in table:
-        name = str(table["solid"])
-        sizes = {key: _lengths(value) for key, value in table.items() if key in _SIZES}
-        mesh, told = _SOLIDS[name](**sizes), f"the {name.replace('_', ' ')}"
-        own = vector([0, 0, 0.25 * sizes["height"] if name == "cone" else 0.0])
-    else:
-        return _alike(trajectory)
+    if "mesh" not in table and "solid" not in table:
+        return _made_up(trajectory)
     assert setting is not None
+    assert setting.path is not None
     assert setting.body is not None
-    about = setting.body.center_of_mass if setting.held else vector([0, 0, 0])
-    return Surface(mesh[0] + (about - own).components, mesh[1], told)
+    center = setting.body.center_of_mass.components if setting.held else np.zeros(3)
+    if "mesh" in table:
+        path, scale = setting.path.parent / table["mesh"], _unit(table.get("length_unit", 1.0))
+        vertices, faces = read_surface(path)
+        own = Body.from_mesh(path, mass=1.0, scale=scale).center_of_mass.components
+        return Surface(scale * vertices + center - own, faces, np.zeros(len(faces), int), center, "the mesh")
+    name = str(table["solid"])
+    sizes = {key: _lengths(value) for key, value in table.items() if key in _SIZES}
+    vertices, faces = _SOLIDS[name](**sizes)
+    own = np.array([0, 0, 0.25 * sizes["height"] if name == "cone" else 0.0])
+    tints = (_sides if name == "box" else _quadrants)(vertices, faces)
+    return Surface(vertices + center - own, faces, tints, center, f"the {name.replace('_', ' ')}")
 
 
-def _alike(trajectory: Trajectory) -> Surface:
-    """Return a cone on its tip for a symmetric top, a box for any other body, with its ratios of moments."""
-    moments = trajectory.inertia.principal_moments
-    frame = trajectory.inertia.principal_frame.to_matrix()
+def _made_up(trajectory: Trajectory) -> Surface:
+    """Return a box, or a ball, with the ratios of moments; of a held body a top, or the box at the weight."""
     setting = trajectory._setting
-    c = weight(setting.torque) if setting is not None and setting.held else np.zeros(3)
-    along = np.abs(c @ frame)
-    k = int(np.argmax(along))
-    others = moments[[j for j in range(3) if j != k]]
-    if along[k] > 0.999999 * np.linalg.norm(c) > 0 and np.ptp(others) <= 1e-9 * others.max():
-        # A cone of height h and radius r has i3/i1 = 2 r²/(4 h² + r²) about its tip.
-        height = float(np.sqrt(max(2 * others[0] / moments[k] - 1, 0.02))) / 2
-        vertices, faces = _cone(radius=1.0, height=height)
-        axis = c / np.linalg.norm(c)
-        first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-        first /= np.linalg.norm(first)
-        turn = np.stack([first, np.cross(axis, first), axis], axis=1)
-        # The tip, which is up, is to be the fixed point, and the base away from it along the axis.
-        vertices = (vertices * [1, -1, -1] + [0, 0, height]) @ turn.T
-        return Surface(vertices, faces, "a cone with its ratio of moments about the fixed point")
+    arm = np.zeros(3)
+    if setting is not None and setting.held:
+        known = np.zeros(3) if setting.body is None else setting.body.center_of_mass.components
+        arm = known if known.any() else weight(setting.torque)
+    moments, frame = trajectory.inertia.principal_moments, trajectory.inertia.principal_frame.to_matrix()
+    length = float(np.linalg.norm(arm))
+    k = int(np.argmax(np.abs(arm @ frame)))
+    others = np.delete(moments, k)
+    if length and abs(arm @ frame[:, k]) > 0.999 * length and np.ptp(others) <= 1e-6 * others.max():
+        vertices, faces = _spinning_top()
+        turn = Rotor.from_vectors(e3, vector(arm / length)).to_matrix()
+        return Surface(
+            length * vertices @ turn.T, faces, _quadrants(vertices, faces), arm, "drawn as a spinning top"
+        )
     squares = np.maximum(moments.sum() - 2 * moments, 0.0)
     lengths = np.maximum(np.sqrt(squares / squares.max()), 0.02)
-    vertices, faces = box(lengths)
-    about = " about the fixed point" if setting is not None and setting.held else ""
-    return Surface(vertices @ frame.T, faces, f"a box with its ratios of moments{about}")
+    ball = bool(lengths.min() > 0.95)
+    vertices, faces = _ellipsoid(lengths / 2) if ball else box(lengths)
+    tints = (_quadrants if ball else _sides)(vertices, faces)
+    size = 0.6 * length / float(np.linalg.norm(vertices, axis=1).max()) if length else 1.0
+    told = f"drawn as a {'ball' if ball else 'box'} with its ratios of moments"
+    return Surface(size * vertices @ frame.T + arm, faces, tints, arm, told)
+
+
+def _sides(vertices: Array, faces: Any) -> Any:
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return 2 + np.abs(np.cross(b - a, c - a)).argmax(axis=1)
+
+
+def _quadrants(vertices: Array, faces: Any) -> Any:
+    x, y, _ = vertices[faces].mean(axis=1).T
+    return np.where(x * y > 0, 1, 0)
 
 
 def _unit(value: Any) -> float:
@@ -130,7 +161,7 @@ def _cylinder(radius: float, height: float) -> Mesh:
     )
 
 
-def _cone(radius: float, height: float) -> Mesh:
+def cone(radius: float, height: float) -> Mesh:
     return _revolved(*_profile([(0, 0), (radius, 0), (0, height)]))
 
 
@@ -144,6 +175,21 @@ def _capsule(radius: float, height: float) -> Mesh:
     r = np.concatenate([radius * np.sin(s), side[0][1:-1], radius * np.cos(s)])
     z = np.concatenate([-height / 2 - radius * np.cos(s), side[1][1:-1], height / 2 + radius * np.sin(s)])
     return _revolved(r, z)
+
+
+def _spinning_top() -> Mesh:
+    """Return a top with its tip at the origin and its centre of mass at height 1 on e3."""
+    points = np.array([_TOP[0], *_TOP, _TOP[-1]])
+    before, start, end, after = (points[k : len(points) - 3 + k, np.newaxis] for k in range(4))
+    t = np.linspace(0, 1, 4, endpoint=False)[:, np.newaxis]
+    # Catmull's and Rom's curve through the points.
+    curve = start + 0.5 * t * (
+        end
+        - before
+        + t * (2 * before - 5 * start + 4 * end - after + t * (3 * (start - end) + after - before))
+    )
+    r, z = np.concatenate([curve.reshape(-1, 2), points[-1:]]).T
+    return _revolved(np.maximum(r, 0.0), z)
 
 
 def _torus(major_radius: float, minor_radius: float) -> Mesh:
@@ -194,7 +240,7 @@ _SOLIDS: dict[str, Any] = {
     "sphere": _sphere,
     "hollow_sphere": _hollow_sphere,
     "cylinder": _cylinder,
-    "cone": _cone,
+    "cone": cone,
     "disc": _disc,
     "torus": _torus,
     "capsule": _capsule,

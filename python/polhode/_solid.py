@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode._arrays import Array
 from polhode._painter import Painter
-from polhode._plot import BODY
+from polhode._plot import _AXES, BODY, WEIGHT
 from polhode._rotor import Rotor
 
 # The largest face that is drawn in one piece, and the pieces of edges, in a picture of a body of size 1.
@@ -21,9 +21,13 @@ _LIGHT = np.array([-0.35, 0.45, 0.82]) / np.linalg.norm([-0.35, 0.45, 0.82])  # 
 
 
 class Solid:
-    """A closed surface in body axes: vertices (n, 3), and triangles (m, 3) whose normals point out."""
+    """A closed surface in body axes: vertices (n, 3), and triangles (m, 3) whose normals point out.
 
-    def __init__(self, vertices: Array, faces: Any) -> None:
+    `tints` (m,) are the numbers of their colours, as in `Surface`; all plain if left out.
+    """
+
+    def __init__(self, vertices: Array, faces: Any, tints: Any = None) -> None:
+        self.colours = _tint()[np.zeros(len(faces), int) if tints is None else tints]
         self.corners = vertices[faces]
         a, b, c = (self.corners[:, k] for k in range(3))
         normals = np.cross(b - a, c - a)
@@ -40,7 +44,7 @@ class Solid:
         cosines = (self.normals[self._beside[:, 0]] * self.normals[self._beside[:, 1]]).sum(axis=1)
         self._creases = cosines < np.cos(_CREASE)
 
-    def paint(self, painter: Painter, rotor: Rotor, colour: str = BODY) -> None:
+    def paint(self, painter: Painter, rotor: Rotor) -> None:
         """Add the body, turned by the rotor, to what is painted."""
         turn = rotor.to_matrix().T
         view = painter.view
@@ -49,16 +53,22 @@ class Solid:
         light = _LIGHT @ np.stack([*view.basis, view.toward])
         shades = 0.62 + 0.43 * np.maximum(normals @ light, 0.0)
         shown = np.flatnonzero(ours[self._part_of])
-        colours = np.clip(rgb(colour) * shades[self._part_of[shown], np.newaxis], 0, 1)
-        painter.faces(self._small[shown] @ turn, colours, self.corners[ours] @ turn)
+        shaded = np.clip(self.colours * shades[:, np.newaxis], 0, 1)
+        painter.faces(self._small[shown] @ turn, shaded[self._part_of[shown]], self.corners[ours] @ turn)
         a, b = ours[self._beside].T
         seen = (a != b) | (self._creases & (a | b))
-        painter.segments(_pieces(self._edges[seen] @ turn), 0.38 * rgb(colour), 0.7)
+        painter.segments(_pieces(self._edges[seen] @ turn), 0.38 * rgb(BODY), 0.7)
 
 
 def rgb(colour: str) -> Array:
     """Return red, green and blue from 0 to 1 of a colour such as ``#0072B2``."""
     return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+
+
+def _tint() -> Array:
+    """Return the colours (5, 3) of faces: plain, of the other quadrants, and of the sides across axes."""
+    mixed = [(BODY, 0.0), (WEIGHT, 0.3), *((axis, 0.18) for axis in _AXES)]
+    return np.stack([rgb(BODY) + part * (rgb(colour) - rgb(BODY)) for colour, part in mixed])
 
 
 def _pieces(edges: Array) -> Array:

@@ -19,6 +19,7 @@ from polhode._plot import (
     OMEGA,
     SPACE_AXES,
     TRACE,
+    WEIGHT,
     entitle,
     explain,
     in_our_look,
@@ -28,7 +29,7 @@ from polhode._plot import (
     title_of,
 )
 from polhode._rotor import Rotor
-from polhode._shapes import surface_of
+from polhode._shapes import cone, surface_of
 from polhode._solid import Solid, rgb
 from polhode._values import e1, e2, e3, vector
 from polhode._view import view_of
@@ -46,10 +47,11 @@ _ROOM = (-1.95, 1.95), (-1.65, 1.95)
 _DISCS, _BODY_FRAME, _SPACE_FRAME = (1.32, 1.12), 1.5, 1.78
 # The pieces of the trace.
 _STRETCH = 0.025
+# The length of the arrow of the weight; radius and height of the stand under a fixed point.
+_WEIGHT, _STAND = 0.6, (0.13, 0.42)
 # The longest trace, in stretches.
 _LONGEST = 4000
 _WHITE = np.ones(3)
-_WEIGHT = "#5B6675"
 
 
 class Stage:
@@ -59,14 +61,17 @@ class Stage:
         self.trajectory = trajectory
         self.view = view_of(view)
         self.surface = surface_of(trajectory)
-        self.size = float(np.linalg.norm(self.surface.vertices, axis=1).max())
-        self.solid = Solid(self.surface.vertices / self.size, self.surface.faces)
+        vertices, faces, tints, center, _ = self.surface
+        size = float(np.linalg.norm([*vertices, center], axis=1).max())
+        self.solid, self.center = Solid(vertices / size, faces, tints), center / size
         setting = trajectory._setting
         self.held = setting is not None and setting.held
         self.weight = weight(setting.torque) if setting is not None and setting.held else np.zeros(3)
         self.traced, self.traced_name = self._traced()
         path = samples(trajectory)
         self.path_times, self.path = self._trace(path)
+        lowest = path.rotor(vector(self.center)).components[:, 2].min()
+        self.stands = bool(lowest > -0.5 * np.linalg.norm(self.center))
         self.fastest = float(np.asarray(trajectory.omega_body.norm()).max())
         self.most_momentum = float(np.asarray(trajectory.momentum_space.norm()).max())
 
@@ -114,8 +119,8 @@ class Stage:
             if (disc := oriented(value, most, size, colour, arrows)) is not None:
                 painter.discs.append(disc)
                 labels.append((self._label_of(disc, name), name, colour))
-        if self.weight.any():
-            self._paint_weight(painter, rotor)
+        if self.held:
+            self._paint_held(painter, rotor)
         painter.draw(axes)
         axes.set(xlim=_ROOM[0], ylim=_ROOM[1])
         axes.set_aspect("equal")
@@ -141,16 +146,19 @@ class Stage:
             lift = 0.02 * np.linspace(0, 1, len(places))[:, np.newaxis] * self.view.toward
             painter.line(places + lift, colours, 1.3, 2 * _STRETCH * _BODY_FRAME)
 
-    def _paint_weight(self, painter: Painter, rotor: Rotor) -> None:
-        """Add the centre of mass, as far out as the body tells, with its weight."""
-        setting = self.trajectory._setting
-        away = 0.75
-        if setting is not None and setting.body is not None:
-            center = np.linalg.norm(setting.body.center_of_mass.components) / self.size
-            away = float(center) if 0.1 < center < 1.2 else away
-        place = rotor(vector(away * self.weight / np.linalg.norm(self.weight))).components
-        self.center = place
-        painter.arrow(place, place - np.array([0, 0, 0.55]), rgb(_WEIGHT), 1.6, 0.12)
+    def _paint_held(self, painter: Painter, rotor: Rotor) -> None:
+        """Add the stand under the fixed point, and the arm to the centre of mass with its weight.
+
+        A body that hangs down would pass through the stand: it has none.
+        """
+        if self.stands:
+            vertices, faces = cone(*_STAND)
+            Solid(vertices - [0, 0, _STAND[1]], faces).paint(painter, Rotor.identity())
+        place = rotor(vector(self.center)).components
+        if self.center.any():
+            painter.line(np.stack([np.zeros(3), place]), rgb(WEIGHT), 2.2, _STRETCH)
+        if self.weight.any():
+            painter.arrow(place, place - np.array([0, 0, _WEIGHT]), rgb(WEIGHT), 1.6, 0.12)
 
     def _label_of(self, disc: Disc, name: str) -> Array:
         """Return where a disc's name stands: L outside of its rim on the left, Ω inside on the right."""
@@ -168,7 +176,11 @@ class Stage:
         ]
         flat = self.view.project(np.array([place for place, _, _ in labels]))
         sizes = np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-9)
-        flat = flat + 0.12 * flat / sizes
+        # Beyond the tips; those of the body's frame also beside, for it may cover the frame of space.
+        out = flat / sizes
+        beside = np.stack([-out[:, 1], out[:, 0]], axis=1) * np.where(out[:, :1] >= 0, 1, -1)
+        of_body = np.array([name in BODY_AXES for _, name, _ in labels])[:, np.newaxis]
+        flat = flat + np.where(of_body, 0.08 * out + 0.09 * beside, 0.12 * out)
         for _ in range(30):
             apart = flat[:, np.newaxis] - flat
             distance = np.linalg.norm(apart, axis=-1)
@@ -192,12 +204,12 @@ class Stage:
         """Return what the caption of a still says of what is drawn."""
         about = "the fixed point" if self.held else "the centre of mass"
         text = (
-            f"The body ({self.surface.told}) about {about}: its frame fₖ = R eₖ ~R, thin the space axes eₖ. "
+            f"The body ({self.surface.told}) about {about}, its frame fₖ = R eₖ ~R, thin the space axes eₖ. "
             "Discs: Ω_S and L, in their planes and sense, of areas in proportion to their sizes, |Ω| at most "
             f"{self.fastest:.4g} rad/s, |L| {self.most_momentum:.4g} kg m²/s. "
             f"Line: the path of {self.traced_name}, paler the longer ago."
         )
-        return text + (" Grey arrow: the weight, at the centre of mass." if self.weight.any() else "")
+        return text + (" Grey arrow: the weight at the centre of mass." if self.weight.any() else "")
 
 
 def oriented(value: Multivector, most: float, radius: float, colour: str, arrows: int) -> Disc | None:

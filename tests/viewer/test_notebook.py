@@ -64,6 +64,7 @@ def notebook(tmp_path):
             ),
             *("--IdentityProvider.token=secret", "--LabApp.news_url=", f"--ServerApp.root_dir={tmp_path}"),
             "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+            "--LabApp.expose_app_in_browser=True",
         ],
         stderr=subprocess.PIPE,
         encoding="utf-8",
@@ -75,10 +76,13 @@ def notebook(tmp_path):
     )
     address = next(found[0] for line in server.stderr if (found := re.search(ADDRESS, line)))
     # What it tells from now on nobody reads, but it must be taken.
-    threading.Thread(target=server.stderr.read, daemon=True).start()
-    yield f"{address}/lab/tree/a.ipynb?token=secret"
+    reader = threading.Thread(target=server.stderr.read)
+    reader.start()
+    yield f"{address}/lab?reset&token=secret"
     server.terminate()
     server.wait()
+    reader.join()
+    server.stderr.close()
 
 
 def test_python_and_the_page_follow_each_other(notebook, pages):
@@ -86,23 +90,31 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
     lab, viewer = page.page, page.viewer
     lab.context.set_offline(False)
     lab.goto(notebook)
+    lab.wait_for_function("window.jupyterapp")
+    lab.evaluate(
+        """async () => {
+            await jupyterapp.restored;
+            window.panel = await jupyterapp.commands.execute("docmanager:open", { path: "a.ipynb" });
+            await panel.context.ready;
+            await panel.sessionContext.ready;
+        }"""
+    )
 
-    def run(cell):
-        lab.locator(".jp-CodeCell").nth(cell).locator(".cm-content").click()
-        lab.keyboard.press("Shift+Enter")
+    def run():
+        """Run the next cell to its end."""
+        lab.evaluate("jupyterapp.commands.execute('notebook:run-cell-and-select-next')")
 
-    lab.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for(timeout=60_000)
-    run(0)
+    run()
     viewer.wait_for(timeout=60_000)
     page.settled()
-    run(1)
+    run()
     page.until("model.time.value === 1.25")
     # Now by hand, in the page.
     lab.get_by_label("Time, s").fill("3.5")
-    lab.get_by_label("Time, s").press("Enter")
+    lab.get_by_label("Time, s").press("Tab")
     page.until("model.time.value === 3.5")
     rates = page.data("omega-body").tolist()
-    run(2)
+    run()
     told = lab.locator(".jp-OutputArea-output", has_text="shown 3.5")
     told.wait_for()
     assert json.loads(told.inner_text().partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)

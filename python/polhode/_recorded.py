@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from polhode import _native
 from polhode._arrays import Array
 from polhode._bodies import Body
 from polhode._closed_forms import LagrangeTop
@@ -28,19 +27,6 @@ _TURN = 0.2
 _MOST_ROWS = 20_000
 # As many states tell how fast it turns.
 _SOME = 101
-
-_SOLIDS: dict[str, tuple[str, ...]] = {
-    "box": ("lengths",),
-    "ellipsoid": ("semi_axes",),
-    "sphere": ("radius",),
-    "hollow_sphere": ("outer_radius", "inner_radius"),
-    "cylinder": ("radius", "height"),
-    "cone": ("radius", "height"),
-    "capsule": ("radius", "height"),
-    "rod": ("length",),
-    "disc": ("radius",),
-    "torus": ("major_radius", "minor_radius"),
-}
 
 
 def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool) -> dict[str, str]:
@@ -156,37 +142,13 @@ def _body(origin: Scene | Problem | None) -> dict[str, Any]:
     if whole is None:
         return {"mass": None, "center_of_mass": [0.0] * 3, "solid": None, "solid_at": [0.0] * 3}
     center = whole.center_of_mass.components
-    solid = _solid(origin.text) if isinstance(origin, Scene) else None
     told = not isinstance(origin, Scene) or origin.tells_mass
     return {
         "mass": whole.mass if told else None,
         "center_of_mass": center.tolist(),
-        "solid": solid,
-        "solid_at": (center - _own_center(solid)).tolist(),
+        "solid": origin.solid if isinstance(origin, Scene) else None,
+        "solid_at": origin.shift.tolist() if isinstance(origin, Scene) else [0.0] * 3,
     }
-
-
-def _solid(scene: str) -> dict[str, Any] | None:
-    """Return the solid that a scene says, its sizes in m."""
-    body = tomllib.loads(scene)["body"]
-    kind = body.get("solid")
-    if kind is None:
-        return None
-    return {"kind": kind, **{name: _metres(body[name]) for name in _SOLIDS[kind]}}
-
-
-def _metres(size: Any) -> Any:
-    if isinstance(size, list):
-        return [_metres(one) for one in size]
-    if isinstance(size, str):
-        ((_, _, size),) = _native.quantities(size, set())
-    return float(size)
-
-
-def _own_center(solid: dict[str, Any] | None) -> Array:
-    """Return the centre of mass of a solid in its own axes: a cone stands on its base."""
-    height = solid["height"] / 4 if solid and solid["kind"] == "cone" else 0.0
-    return np.array([0.0, 0.0, height])
 
 
 def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from polhode import _native
 from polhode import force as forces
 from polhode._arrays import Array, frozen
@@ -42,6 +44,10 @@ class Scene:
         The body; under gravity in axes whose origin is the fixed point.
     tells_mass
         False where the file gives an inertia alone; the body then has 1 kg, which the motion ignores.
+    solid
+        The kind of the solid that the file says and its sizes in m, as the fields of a scene; None without.
+    shift
+        Where the origin of the file's axes is in those of the body, (3,), in m: not 0 for a pivot alone.
     state
         The state at time 0.
     torque
@@ -65,6 +71,8 @@ class Scene:
     title: str | None
     body: Body
     tells_mass: bool
+    solid: dict[str, Any] | None
+    shift: Array
     state: State
     torque: Torque | None
     formulas: tuple[str | None, ...]
@@ -93,6 +101,8 @@ class Scene:
             title=fields["title"],
             body=Body._of(fields["body"]),
             tells_mass=fields["tells_mass"],
+            solid=fields["solid"],
+            shift=frozen(fields["shift"]),
             state=State(
                 Rotor._from_rows(fields["rotor"]),
                 fields["omega_body"],
@@ -110,6 +120,14 @@ class Scene:
             drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
             ensemble=None if fields["ensemble"] is None else EnsembleSpec._of(fields["ensemble"]),
         )
+
+    def surface(self) -> tuple[Array, Array] | None:
+        """Return the mesh that the file names: vertices (n, 3) in body axes in m, and triangles (m, 3).
+
+        None where it names none.
+        """
+        mesh = _native.scene_mesh(os.fspath(self.path))
+        return None if mesh is None else (mesh[0], np.array(mesh[1], int))
 
     @property
     def result_bytes(self) -> int:

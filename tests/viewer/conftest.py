@@ -1,22 +1,17 @@
 """What is needed to try the viewer. Where it is missing, tests are left out and say what; in CI they fail."""
 
-import os
 import shutil
 import subprocess
 
 import pytest
 
+from missing import left_out
 from node_core import NodeCore
 from polhode import _document, _html
 from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
 
 BUNDLE = ROOT / "python/polhode/_viewer/viewer.js"
-
-
-def left_out(reason):
-    """Skip what needs something that is missing, unless every test must run."""
-    (pytest.fail if os.environ.get("POLHODE_EVERY_TEST") else pytest.skip)(reason)
 
 
 @pytest.fixture(scope="package")
@@ -69,7 +64,7 @@ def browser():
 
 
 @pytest.fixture(scope="package")
-def _pages(browser):
+def pages(browser):
     """What opens a page without a network, in a profile of its own; all are closed with the browser."""
 
     def opened(**options):
@@ -81,12 +76,12 @@ def _pages(browser):
 
 
 @pytest.fixture
-def new_page(_pages):
+def new_page(pages):
     """Opens pages; whatever a test does there, no page asks the network for anything, nor complains."""
     opened = []
 
     def new(**options):
-        opened.append(_pages(**options))
+        opened.append(pages(**options))
         return opened[-1]
 
     yield new

@@ -39,12 +39,16 @@ class NodeCore:
             stderr=subprocess.PIPE,
             encoding="utf-8",
         )
+        self._ended = None
 
     def ask(self, question, **rest):
-        print(json.dumps({"question": question, **rest}), file=self._process.stdin, flush=True)
-        line = self._process.stdout.readline()
-        if not line:
-            raise RuntimeError(f"Node ended: {self._process.communicate()[1]}")
+        if self._ended is None:
+            print(json.dumps({"question": question, **rest}), file=self._process.stdin, flush=True)
+            line = self._process.stdout.readline()
+            if not line:
+                self._ended = self._process.communicate()[1]
+        if self._ended is not None:
+            raise RuntimeError(f"Node ended: {self._ended}")
         answer = json.loads(line)
         if "problem" in answer:
             raise Problem(answer["problem"])
@@ -56,7 +60,8 @@ class NodeCore:
         return answer["about"], states(answer["rows"])
 
     def close(self):
-        self._process.communicate()
+        if self._ended is None:
+            self._process.communicate()
 
 
 def states(rows):

@@ -1,219 +1,111 @@
-"""The widget and its page, with a line between them: what one changes, the other has."""
+"""The widget in JupyterLab: Python and the page follow each other."""
 
 import json
+import os
+import re
+import subprocess
+import sys
+import threading
 
-import numpy as np
 import pytest
 
-import polhode as ph
-from comms import Comm
-from polhode import _html
-from viewer_page import VIEWER
+from missing import left_out
 
-pytest.importorskip("anywidget")
-
-INERTIA = ph.Inertia.from_principal_moments(1, 2, 3)
-START = ph.State(ph.Rotor.identity(), [0.01, 1, 0.01])
-
-# As anywidget does it: the module comes from a text, the model keeps values and tells of their changes.
-PAGE = """<!doctype html>
-<meta charset="utf-8">
-<link rel="icon" href="data:,">
-<div id="cell" style="width: 900px"></div>
-<script type="application/json" id="bundle">{bundle}</script>
-<script type="application/json" id="values">{values}</script>
-<script type="module">
-const text = (id) => JSON.parse(document.getElementById(id).textContent);
-const values = text("values");
-const heard = new Map();
-const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-const changed = (name) => heard.get(name)?.forEach((hear) => hear());
-const unsaved = new Set();
-window.told = [];
-const model = {{
-  get: (name) => values[name],
-  set(name, value) {{
-    if (equal(values[name], value)) return;
-    values[name] = value;
-    unsaved.add(name);
-    changed(`change:${{name}}`);
-  }},
-  on(name, hear) {{ heard.set(name, [...(heard.get(name) ?? []), hear]); }},
-  off(name, hear) {{ heard.set(name, heard.get(name).filter((other) => other !== hear)); }},
-  save_changes() {{
-    if (unsaved.size) told.push(Object.fromEntries([...unsaved].map((name) => [name, values[name]])));
-    unsaved.clear();
-  }},
-}};
-window.hears = (state) => {{
-  const names = Object.keys(state).filter((name) => !equal(values[name], state[name]));
-  Object.assign(values, state);
-  names.forEach((name) => changed(`change:${{name}}`));
-}};
-window.listeners = () => [...heard.values()].flat().length;
-const url = URL.createObjectURL(new Blob([text("bundle")], {{ type: "text/javascript" }}));
-const {{ default: widget }} = await import(url);
-window.end = await widget.render({{ model, el: document.getElementById("cell") }});
-</script>
+CELLS = (
+    "import polhode as ph\nviewer = ph.view('box.toml')\nviewer",
+    "viewer.time = 1.25",
+    "print('shown', viewer.time, viewer.state.omega_body.components.tolist())",
+)
+ADDRESS = r"http://127\.0\.0\.1:\d+"
+SCENE = """\
+[body]
+moments = [1, 2, 3]
+[initial]
+spin = { vector = [0.3, 1, 0.2] }
+[run]
+duration = "5 s"
 """
 
 
-class Notebook:
-    """A widget and the page that shows it; what each says waits until it is passed on."""
-
-    def __init__(self, viewer, page, path):
-        self.viewer, self.page, self.line = viewer, page, viewer.comm
-        values = {name: x for name, x in self.line.opened["state"].items() if not name.startswith("_")}
-        data = {"bundle": _html.bundle_path().read_text(), "values": values}
-        escaped = {name: json.dumps(x).replace("<", "\\u003c") for name, x in data.items()}
-        path.write_text(PAGE.format(**escaped))
-        page.open(path)
-        self.quiet()
-
-    def ask(self, script, argument=None):
-        """Return what a function of the page's model comes to."""
-        call = f"async x => ({script})(await {VIEWER}.ready, x)"
-        return self.page.page.evaluate(call, argument)
-
-    def pass_on(self):
-        """Hand over what was said since."""
-        sent, self.line.sent = self.line.sent, []
-        for message in sent:
-            if message["method"] == "update":
-                self.page.page.evaluate("state => hears(state)", message["state"])
-        for state in self.page.page.evaluate("() => told.splice(0)"):
-            self.line.says(**state)
-
-    def quiet(self):
-        """Pass on what is said until nobody says anything for longer than the page waits with it."""
-        silent = 0
-        while silent < 4:
-            waiting = self.page.page.evaluate("() => told.length") or self.line.sent
-            self.pass_on()
-            silent = 0 if waiting else silent + 1
-            self.page.page.wait_for_timeout(60)
-
-    def agree(self):
-        """Nothing is waiting, and both have the same."""
-        self.quiet()
-        for name in ("scene", "problem", "time", "playing", "speed", "camera", "theme", "shown"):
-            assert getattr(self.viewer, name) == self.ask(f"model => model.{name}.value"), name
-
-
 @pytest.fixture
-def shown(browser, new_page, monkeypatch, tmp_path):
-    """Shows a widget in a page."""
-    monkeypatch.setattr("comm.create_comm", Comm)
-    return lambda *given, **named: Notebook(ph.view(*given, **named), new_page(), tmp_path / "notebook.html")
-
-
-def test_the_page_has_what_python_sets(shown):
-    notebook = shown(INERTIA, START, duration=60)
-    viewer = notebook.viewer
-    notebook.agree()
-    assert viewer.playing is False
-    assert viewer.camera == "oblique"
-    viewer.time, viewer.speed, viewer.theme = 12.345678901234567, 0.25, "dark"
-    viewer.camera, viewer.shown = "along L", {"poinsot": True}
-    notebook.agree()
-    assert viewer.time == 12.345678901234567
-    assert viewer.shown["poinsot"]
-    assert viewer.shown["body"]
-    free = ph.FreeMotion(INERTIA, START.rotor, START.omega_body).at(viewer.time)
-    # The same closed form, compiled twice.
-    assert (viewer.state.rotor - free.rotor).norm() < 1e-14
-    assert (viewer.state.omega_body - free.omega_body).norm() < 1e-14
-
-
-def test_python_has_what_is_done_in_the_page(shown):
-    notebook = shown(INERTIA, START, duration=60)
-    viewer = notebook.viewer
-    before = viewer.shown["polhode"]
-    notebook.ask("model => { model.seek(1.5); model.look({ camera: 'along e3' }); model.toggle('polhode'); }")
-    notebook.agree()
-    assert (viewer.time, viewer.camera, viewer.shown["polhode"]) == (1.5, "along e3", not before)
-    notebook.ask("(model, change) => model.change(change)", "[body]\nmoments = [1.0, 2.0, 2.5]")
-    notebook.agree()
-    assert viewer.run().inertia.principal_moments.tolist() == [1, 2, 2.5]
-    assert viewer.time == 1.5
-
-
-def test_a_motion_that_plays_is_told_now_and_then_and_where_it_stops(shown):
-    notebook = shown(INERTIA, START, duration=60)
-    notebook.viewer.playing = True
-    notebook.pass_on()
-    spent, calls = notebook.page.page.evaluate(
-        f"""async () => {{
-            const model = await {VIEWER}.ready;
-            const start = performance.now();
-            await new Promise((done) => setTimeout(done, 1000));
-            model.playing.value = false;
-            return [performance.now() - start, told.length];
-        }}"""
+def notebook(tmp_path):
+    """Where JupyterLab shows a notebook with the cells."""
+    try:
+        import ipykernel  # noqa: F401
+        import jupyterlab  # noqa: F401
+    except ImportError:
+        left_out("JupyterLab was not found: pip install --group notebook-test")
+    (tmp_path / "box.toml").write_text(SCENE)
+    cells = [
+        {
+            "cell_type": "code",
+            "id": f"c{k}",
+            "execution_count": None,
+            "metadata": {},
+            "outputs": [],
+            "source": text,
+        }
+        for k, text in enumerate(CELLS)
+    ]
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    (tmp_path / "a.ipynb").write_text(
+        json.dumps({"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5})
     )
-    # Every 100 ms at most, and once more for the end.
-    assert 1 <= calls <= spent / 100 + 2
-    notebook.agree()
-    assert notebook.viewer.playing is False
-    assert notebook.viewer.time > 0
+    server = subprocess.Popen(
+        [
+            *(
+                sys.executable,
+                "-m",
+                "jupyterlab",
+                "--no-browser",
+                "--allow-root",
+                "--ip=127.0.0.1",
+                "--port=0",
+            ),
+            *("--IdentityProvider.token=secret", "--LabApp.news_url=", f"--ServerApp.root_dir={tmp_path}"),
+            "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+        ],
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        env={
+            **os.environ,
+            "JUPYTER_CONFIG_DIR": str(tmp_path / "config"),
+            "JUPYTER_DATA_DIR": str(tmp_path / "data"),
+        },
+    )
+    address = next(found[0] for line in server.stderr if (found := re.search(ADDRESS, line)))
+    # What it tells from now on nobody reads, but it must be taken.
+    threading.Thread(target=server.stderr.read, daemon=True).start()
+    yield f"{address}/lab/tree/a.ipynb?token=secret"
+    server.terminate()
+    server.wait()
 
 
-def test_the_scene_of_python_goes_on_in_time(shown):
-    notebook = shown(INERTIA, START, duration=60)
-    viewer = notebook.viewer
-    first = viewer.scene
-    viewer.time, viewer.speed = 3, 0.3
-    notebook.agree()
-    viewer.scene = first.replace("3.0]", "2.5]")
-    notebook.agree()
-    assert (viewer.time, viewer.speed) == (3, 0.3)
-    assert notebook.ask("model => model.about.value.body.moments") == [1, 2, 2.5]
-    # One that is wrong is not taken.
-    for wrong in ("this is none", first.replace("3.0]", "30.0]")):
-        viewer.scene = wrong
-        notebook.agree()
-        assert viewer.scene == first.replace("3.0]", "2.5]")
-        assert "motion.toml:" in viewer.problem
-    viewer.scene = first
-    notebook.agree()
-    assert viewer.problem is None
-    assert notebook.ask("model => model.about.value.body.moments") == [1, 2, 3]
+def test_python_and_the_page_follow_each_other(notebook, pages):
+    page = pages()
+    lab, viewer = page.page, page.viewer
+    lab.context.set_offline(False)
+    lab.goto(notebook)
 
+    def run(cell):
+        lab.locator(".jp-CodeCell").nth(cell).locator(".cm-content").click()
+        lab.keyboard.press("Shift+Enter")
 
-def test_something_else_is_shown(shown):
-    notebook = shown(INERTIA, START, duration=60)
-    viewer = notebook.viewer
-    viewer.time = 3
-    notebook.agree()
-    viewer.show(INERTIA, START, lambda t, R, W: -0.1 * W, duration=2)
-    notebook.agree()
-    assert viewer.scene is None
-    assert viewer.time == 0
-    assert notebook.ask("model => model.about.value.method") == "recorded"
-    np.testing.assert_array_equal(viewer.state.omega_body.components, START.omega_body.components)
-
-
-def test_a_cell_that_is_scrolled_away_comes_back_as_it_was(shown):
-    notebook = shown(INERTIA, START, duration=60)
-    viewer, page = notebook.viewer, notebook.page.page
-    listeners = page.evaluate("() => listeners()")
-    notebook.ask("(model, change) => model.change(change)", "[body]\nmoments = [1.0, 2.0, 2.5]")
-    viewer.time = 2
-    notebook.agree()
-    page.evaluate("() => { window.cell = document.getElementById('cell'); cell.remove(); }")
-    page.wait_for_timeout(50)
-    assert page.evaluate("() => listeners()") == 0
-    viewer.time, viewer.camera = 4, "along e1"
-    notebook.pass_on()
-    page.evaluate("() => document.body.append(cell)")
-    notebook.page.settled()
-    notebook.agree()
-    assert (viewer.time, viewer.camera) == (4, "along e1")
-    assert viewer.scene is not None
-    assert "2.5]" in viewer.scene
-    # What is only moved goes on, and is heard once.
-    page.evaluate("() => document.body.append(document.createElement('p'), cell)")
-    notebook.agree()
-    assert page.evaluate("() => listeners()") == listeners
-    page.evaluate("() => end()")
-    assert page.evaluate("() => [listeners(), cell.children.length]") == [0, 0]
+    lab.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for(timeout=60_000)
+    run(0)
+    viewer.wait_for(timeout=60_000)
+    page.settled()
+    run(1)
+    page.until("model.time.value === 1.25")
+    # Now by hand, in the page.
+    lab.get_by_label("Time, s").fill("3.5")
+    lab.get_by_label("Time, s").press("Enter")
+    page.until("model.time.value === 3.5")
+    rates = page.data("omega-body").tolist()
+    run(2)
+    told = lab.locator(".jp-OutputArea-output", has_text="shown 3.5")
+    told.wait_for()
+    assert json.loads(told.inner_text().partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)
+    asked = {re.match(r"\w+://[^/]*", address)[0] for address in page.requests}
+    assert {re.sub(r":\d+$", "", address) for address in asked} <= {"http://127.0.0.1", "ws://127.0.0.1"}
+    lab.context.close()

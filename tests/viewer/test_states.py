@@ -11,9 +11,9 @@ EVERY = [*FILES, *PRESETS, *SCENES]
 
 
 @pytest.fixture(scope="module")
-def shared(_pages, tmp_path_factory, follow):
+def shared(pages, tmp_path_factory, follow):
     """One page, which is shown one scene after the other."""
-    page = _pages()
+    page = pages()
     path = tmp_path_factory.mktemp("page") / "page.html"
     path.write_text(_html.page(_document.of_scene(follow("asymmetric").scene)))
     page.open(path)
@@ -48,7 +48,7 @@ def test_pages_that_run_writes(name, new_page, follow, tmp_path):
 
 
 def test_a_long_run_is_kept_thinner_than_it_turns(new_page, follow, tmp_path):
-    """Between rows all is interpolated; they are at most 0.2 rad apart, so that it is off by 0.2²/8 at most."""
+    """Rows are 0.2 rad apart at most, and between them all is interpolated: off by 0.2²/8 at most."""
     followed = follow("detumbling")
     page = written_page(followed, new_page(), tmp_path)
     page.compare(followed, 0.2**2 / 8)

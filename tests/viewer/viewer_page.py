@@ -11,6 +11,8 @@ CHROMIUM = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 SHOWN = ("rotor", "omega_body", "omega_space", "momentum_space", "energy")
 
 VIEWER = "document.querySelector('polhode-viewer')"
+# The state of the page; null until the core is there.
+READY = f"Promise.race([{VIEWER}.ready, null])"
 
 
 class ViewerPage:
@@ -50,7 +52,26 @@ class ViewerPage:
 
     def settled(self):
         """Wait until the core is there and the document was read."""
-        self.page.wait_for_function(f"['ready', 'problem'].includes({VIEWER}?.dataset.state)")
+        self.until(f"['ready', 'problem'].includes({VIEWER}.dataset.state)")
+
+    def until(self, condition, **given):
+        """Wait for a condition in JavaScript, of `model` and of names that are given, for a minute at most.
+
+        Not by `wait_for_function`: that evaluates text in the page, which the page's policy forbids.
+        """
+        held = self.page.evaluate(
+            f"""async given => {{
+                const {{ {", ".join(given)} }} = given;
+                for (const start = performance.now(); performance.now() < start + 60_000; ) {{
+                    const model = {VIEWER}.shadowRoot && (await {READY});
+                    if ({condition}) return true;
+                    await new Promise(requestAnimationFrame);
+                }}
+                return false;
+            }}""",
+            given,
+        )
+        assert held, f"in vain: {condition}"
 
     def data(self, name):
         """Return what the element says of a quantity, `time` or `omega-body`, as numbers."""
@@ -81,15 +102,13 @@ class ViewerPage:
         self.page.evaluate(
             f"""async given => {{
                 const model = await {VIEWER}.ready;
-                const before = model.motion.value;
+                window.before = model.motion.value;
                 model.problem.value = null;
                 {VIEWER}.document = given;
-                while (model.motion.value === before && model.problem.value === null) {{
-                    await new Promise(requestAnimationFrame);
-                }}
             }}""",
             document,
         )
+        self.until("model.motion.value !== window.before || model.problem.value !== null")
 
     def scene(self):
         """Return the text of the scene that is shown."""

@@ -7,6 +7,7 @@ import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
 import type { Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
+import { regimeOf } from "./panels/facts.tsx";
 import { bindKeys } from "./panels/keys.ts";
 import { openPreset, PRESETS } from "./presets/index.ts";
 import styles from "./theme.css?inline";
@@ -103,7 +104,7 @@ export class PolhodeViewer extends HTMLElement {
       const given = this.given ?? (await this.child()) ?? (await this.source());
       this.given ??= given;
       if (given) await model.show(given);
-      else openPreset(model, PRESETS[0]!);
+      if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
     } catch (error) {
       model.problem.value = words(error);
     }
@@ -183,7 +184,7 @@ export class PolhodeViewer extends HTMLElement {
     const data = this.dataset;
     data["state"] = model.problem.value === null ? "ready" : "problem";
     data["method"] = about?.method ?? "";
-    data["regime"] = about?.free?.regime ?? "";
+    data["regime"] = regimeOf(about);
     const of = (first: number, count: number) =>
       row ? Array.from(row.subarray(first, first + count), String).join(" ") : "";
     data["time"] = of(State.time, 1);

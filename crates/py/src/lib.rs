@@ -76,7 +76,7 @@ mod _native {
     #[pymodule_export]
     use crate::draws::Draws;
     #[pymodule_export]
-    use crate::scene::{SceneError, read_scene};
+    use crate::scene::{SceneError, read_scene, scene_mesh};
     #[pymodule_export]
     use crate::text::{diagnostic, near_unit, quantities};
 

@@ -1,6 +1,6 @@
 //! Scene files.
 
-use crate::arrays::line;
+use crate::arrays::{Array, bad, line, table};
 use crate::bodies::Body;
 use crate::draws::Draws;
 use crate::torque::Law;
@@ -11,7 +11,7 @@ use polhode_ga::{Bivector, Vector};
 use polhode_rigid::force::Force;
 use polhode_rigid::scene::Push;
 use polhode_rigid::torque::{Argument, Axes, Kind, Torque};
-use polhode_rigid::{Diagnostic, scene};
+use polhode_rigid::{Diagnostic, Size, Solid, TriangleMesh, scene};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -42,6 +42,8 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("text", &scene.text)?;
     result.set_item("body", Py::new(py, Body(body))?)?;
     result.set_item("tells_mass", scene.tells_mass())?;
+    result.set_item("solid", scene.solid().map(|solid| sizes(py, solid)).transpose()?)?;
+    result.set_item("shift", line(py, scene.shift().0.to_vec()))?;
     result.set_item("rotor", line(py, scene.attitude.components().to_vec()))?;
     result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
     result.set_item("position", line(py, position.0.to_vec()))?;
@@ -57,6 +59,32 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("drift_bound", scene.run.drift_bound)?;
     result.set_item("ensemble", Draws::of(py, scene, body, laws)?)?;
     Ok(result)
+}
+
+/// The kind of a solid and its sizes, by the names that scenes give them.
+fn sizes(py: Python<'_>, solid: Solid) -> PyResult<Bound<'_, PyDict>> {
+    let (kind, sizes) = solid.sizes();
+    let told = PyDict::new(py);
+    told.set_item("kind", kind)?;
+    for (name, size) in sizes {
+        match size {
+            Size::One(length) => told.set_item(name, length)?,
+            Size::Three(lengths) => told.set_item(name, lengths.to_vec())?,
+        }
+    }
+    Ok(told)
+}
+
+/// The mesh that a scene names, in the axes of its body and in metres: vertices (n, 3) and triangles (m, 3); none where
+/// it names none.
+#[pyfunction]
+pub(crate) fn scene_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Option<(Array<'_>, Vec<[u32; 3]>)>> {
+    let read = py.detach(|| {
+        let scene = scene::Scene::read(&path).map_err(|problems| report(&problems))?;
+        let mesh = scene.mesh_with(&TriangleMesh::read).transpose().map_err(bad)?;
+        Ok::<_, PyErr>(mesh.map(|mesh| mesh.moved(scene.shift())))
+    })?;
+    read.map(|mesh| Ok((table(py, mesh.vertices().iter().map(|v| v.0))?, mesh.faces().to_vec()))).transpose()
 }
 
 /// A law with the call of `polhode.torque` that would make it.

@@ -62,4 +62,4 @@ pub use mesh::TriangleMesh;
 pub use polhode_ga::diagnostic::Diagnostic;
 pub use scene::Scene;
 pub use simulate_error::SimulateError;
-pub use solids::{Amount, Solid};
+pub use solids::{Amount, Size, Solid};

@@ -60,6 +60,15 @@ pub enum Solid {
     },
 }
 
+/// A size of a solid, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// A radius, a height.
+    One(f64),
+    /// Lengths along e1, e2 and e3.
+    Three([f64; 3]),
+}
+
 impl Amount {
     /// The mass that this amount of a volume has; `name` is the solid's, for the message.
     pub(crate) fn mass(self, volume: Option<f64>, name: &'static str) -> Result<f64, BodyError> {
@@ -73,6 +82,28 @@ impl Amount {
 }
 
 impl Solid {
+    /// Its name and its sizes, as scenes have them.
+    pub fn sizes(self) -> (&'static str, Vec<(&'static str, Size)>) {
+        use Size::{One, Three};
+        match self {
+            Solid::Box { lengths } => ("box", vec![("lengths", Three(lengths))]),
+            Solid::Ellipsoid { semi_axes } => ("ellipsoid", vec![("semi_axes", Three(semi_axes))]),
+            Solid::Sphere { radius } => ("sphere", vec![("radius", One(radius))]),
+            Solid::HollowSphere { outer_radius, inner_radius } => {
+                let sizes = vec![("outer_radius", One(outer_radius)), ("inner_radius", One(inner_radius))];
+                ("hollow_sphere", sizes)
+            }
+            Solid::Cylinder { radius, height } => ("cylinder", round(radius, height)),
+            Solid::Cone { radius, height } => ("cone", round(radius, height)),
+            Solid::Rod { length } => ("rod", vec![("length", One(length))]),
+            Solid::Disc { radius } => ("disc", vec![("radius", One(radius))]),
+            Solid::Torus { major_radius, minor_radius } => {
+                ("torus", vec![("major_radius", One(major_radius)), ("minor_radius", One(minor_radius))])
+            }
+            Solid::Capsule { radius, height } => ("capsule", round(radius, height)),
+        }
+    }
+
     /// The solid as a body, its centre of mass on the axis e3.
     pub fn body(self, amount: Amount) -> Result<Body, BodyError> {
         self.check()?;
@@ -194,4 +225,7 @@ impl Solid {
             }
         }
     }
+}
+fn round(radius: f64, height: f64) -> Vec<(&'static str, Size)> {
+    vec![("radius", Size::One(radius)), ("height", Size::One(height))]
 }

@@ -2,12 +2,12 @@
 
 use crate::json::Json;
 use crate::opened::Opened;
-use polhode_rigid::Solid;
 use polhode_rigid::free::FreeMotion;
 use polhode_rigid::lagrange::{LagrangeDescription, LagrangeTop};
 use polhode_rigid::regime::FreeDescription;
-use polhode_rigid::scene::{BodySpec, Law};
+use polhode_rigid::scene::Law;
 use polhode_rigid::torque::{Argument, Torque};
+use polhode_rigid::{Size, Solid};
 
 fn count(n: usize) -> Json {
     Json::Number(n as f64)
@@ -62,47 +62,25 @@ pub fn about(of: &Opened) -> Json {
 
 fn body(of: &Opened) -> Json {
     let inertia = of.scene.ruling_inertia(&of.body);
-    let solid = match &of.scene.body {
-        BodySpec::Solid { solid, .. } => Some(sizes(solid)),
-        _ => None,
-    };
     Json::Object(vec![
         ("mass", Json::or_null(of.scene.tells_mass().then_some(of.body.mass))),
         ("center_of_mass", numbers(&of.body.center_of_mass.0)),
         ("moments", numbers(&inertia.principal_moments())),
         ("frame", numbers(&inertia.principal_frame().components())),
-        ("solid", Json::or_null(solid)),
+        ("solid", Json::or_null(of.scene.solid().map(solid))),
         ("solid_at", numbers(&of.scene.shift().0)),
         ("mesh", of.mesh().is_some().into()),
     ])
 }
 
 /// A solid by the names that scenes give its sizes.
-fn sizes(solid: &Solid) -> Json {
-    let (kind, sizes): (&str, Vec<(&'static str, Json)>) = match *solid {
-        Solid::Box { lengths } => ("box", vec![("lengths", numbers(&lengths))]),
-        Solid::Ellipsoid { semi_axes } => ("ellipsoid", vec![("semi_axes", numbers(&semi_axes))]),
-        Solid::Sphere { radius } => ("sphere", vec![("radius", radius.into())]),
-        Solid::HollowSphere { outer_radius, inner_radius } => (
-            "hollow_sphere",
-            vec![("outer_radius", outer_radius.into()), ("inner_radius", inner_radius.into())],
-        ),
-        Solid::Cylinder { radius, height } => {
-            ("cylinder", vec![("radius", radius.into()), ("height", height.into())])
-        }
-        Solid::Cone { radius, height } => {
-            ("cone", vec![("radius", radius.into()), ("height", height.into())])
-        }
-        Solid::Rod { length } => ("rod", vec![("length", length.into())]),
-        Solid::Disc { radius } => ("disc", vec![("radius", radius.into())]),
-        Solid::Torus { major_radius, minor_radius } => {
-            ("torus", vec![("major_radius", major_radius.into()), ("minor_radius", minor_radius.into())])
-        }
-        Solid::Capsule { radius, height } => {
-            ("capsule", vec![("radius", radius.into()), ("height", height.into())])
-        }
+fn solid(solid: Solid) -> Json {
+    let (kind, sizes) = solid.sizes();
+    let size = |(name, size): (&'static str, Size)| match size {
+        Size::One(length) => (name, length.into()),
+        Size::Three(lengths) => (name, numbers(&lengths)),
     };
-    Json::Object([("kind", kind.into())].into_iter().chain(sizes).collect())
+    Json::Object([("kind", kind.into())].into_iter().chain(sizes.into_iter().map(size)).collect())
 }
 
 /// A law by its name and, in words, what it has: its formula as the scene says it, or its numbers.

@@ -22,6 +22,12 @@ export const SHOWN: Shown = {
   labels: true,
 };
 
+/** What a scene is called, and the files that it names. */
+interface Opened {
+  name: string;
+  files: Files;
+}
+
 /**
  * The state of the page. All that is shown follows from it: the stage and the panels read its signals, and change it
  * through its methods alone.
@@ -31,6 +37,8 @@ export class Model {
   /** The scene in TOML; null where a recorded motion is shown. */
   readonly scene = signal<string | null>(null);
   readonly motion = signal<Motion | null>(null);
+  /** A text of the scene that is being written, or that is wrong; null where the scene is what is written. */
+  readonly draft = signal<string | null>(null);
   /** What is wrong with the scene, in words with places; the last motion stays. */
   readonly problem = signal<string | null>(null);
   readonly time = signal(0);
@@ -46,6 +54,8 @@ export class Model {
   readonly opened = signal<About | null>(null);
   /** What to look at, in a sentence or two. */
   readonly caption = signal<string | null>(null);
+  /** How many times all was to be brought into view. */
+  readonly fitted = signal(0);
 
   readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
   /** The row of the state at the time shown. */
@@ -56,6 +66,8 @@ export class Model {
   /** The scene as it was given, and as it was last opened. */
   private original: string | null = null;
   private base: string | null = null;
+  /** What came with a scene that is wrong, for when it is right. */
+  private pending: Opened | null = null;
 
   constructor(readonly core: Core) {}
 
@@ -77,33 +89,44 @@ export class Model {
       } else if (document.scene !== undefined) {
         this.open(document.scene, { name: document.name ?? "scene.toml", files });
       }
-      this.files = files;
-      this.name = document.name ?? this.name;
       if (document.view) this.look(document.view);
     });
   }
 
   /** Shows another scene, from its start. What is wrong with it is in `problem`, and then all else stays. */
-  open(scene: string, options?: { name: string; files: Files }): void {
-    if (this.follow(scene, options?.name ?? this.name, options?.files ?? this.files)) {
-      if (options) {
-        this.name = options.name;
-        this.files = options.files;
-        this.original = scene;
-      }
-      this.base = scene;
-      batch(() => {
-        this.opened.value = this.about.value;
-        if (options) this.caption.value = null;
-        this.time.value = 0;
-        this.speed.value = usualSpeed(this.motion.value);
-      });
+  open(scene: string, options: Opened | null = this.pending): void {
+    const { name, files } = options ?? { name: this.name, files: this.files };
+    if (!this.follow(scene, name, files)) {
+      this.draft.value = scene;
+      this.pending = options;
+      return;
     }
+    batch(() => {
+      if (options) {
+        this.name = name;
+        this.files = files;
+        this.original = scene;
+        this.caption.value = null;
+      }
+      this.pending = null;
+      this.draft.value = null;
+      this.base = scene;
+      this.opened.value = this.about.value;
+      this.time.value = 0;
+      this.speed.value = usualSpeed(this.motion.value);
+    });
+  }
+
+  /** Tries the scene again with files that were missing. */
+  supply(files: Files): void {
+    const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
+    const scene = this.draft.value ?? this.scene.value;
+    if (scene !== null) this.open(scene, { name, files: new Map([...others, ...files]) });
   }
 
   /** Shows the scene again as it was given. */
   reset(): void {
-    if (this.original !== null) this.open(this.original);
+    if (this.original !== null) this.open(this.original, null);
   }
 
   /** Replaces tables of the scene, as it was opened, by those of a TOML text; time goes on. */
@@ -150,6 +173,11 @@ export class Model {
     this.shown.value = { ...this.shown.value, [thing]: !this.shown.value[thing] };
   }
 
+  /** Brings all into view. */
+  fit(): void {
+    this.fitted.value += 1;
+  }
+
   dispose(): void {
     this.motion.value?.close();
   }
@@ -169,10 +197,14 @@ export class Model {
     const of = scene === undefined ? undefined : { scene, name, files };
     const motion = this.core.recorded(recorded?.about ?? "", rows, of);
     this.become(motion, scene ?? null);
+    this.name = name;
+    this.files = files;
     this.opened.value = motion.about;
     this.caption.value = null;
     this.original = scene ?? null;
     this.base = scene ?? null;
+    this.draft.value = null;
+    this.pending = null;
     this.time.value = rows[State.time] ?? 0;
     this.speed.value = usualSpeed(motion);
   }

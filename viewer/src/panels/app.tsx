@@ -5,9 +5,10 @@ import { AlgebraPage } from "../algebra/page.tsx";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import { Controls } from "../vary/controls.ts";
+import { Boundary } from "./boundary.tsx";
 import { BodyPanel } from "./body.tsx";
 import { Editor } from "./editor.tsx";
-import { Facts } from "./facts.tsx";
+import { Facts, regimeOf } from "./facts.tsx";
 import { Header } from "./header.tsx";
 import { LawsPanel } from "./laws.tsx";
 import { openFiles } from "./open.ts";
@@ -28,6 +29,9 @@ interface Props {
 /** The page: a header, and the motion or the algebra below. */
 export function App({ model, palette, compact, wide }: Props) {
   const dragged = useSignal(false);
+  // They stay as they are while the algebra is shown.
+  const controls = useMemo(() => new Controls(model), [model]);
+  useEffect(() => () => controls.dispose(), [controls]);
   const motion = model.page.value === "motion";
   return (
     <div
@@ -46,30 +50,35 @@ export function App({ model, palette, compact, wide }: Props) {
     >
       <Header model={model} compact={compact} />
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
-        {motion ? (
-          <MotionPage model={model} palette={palette} compact={compact} wide={wide} />
-        ) : (
-          <AlgebraPage model={model} palette={palette} />
-        )}
+        <Boundary key={model.page.value}>
+          {motion ? (
+            <MotionPage model={model} palette={palette} compact={compact} wide={wide} controls={controls} />
+          ) : (
+            <AlgebraPage model={model} palette={palette} />
+          )}
+        </Boundary>
       </div>
     </div>
   );
 }
 
-function MotionPage({ model, palette, compact, wide }: Props) {
-  const controls = useMemo(() => new Controls(model), [model]);
-  useEffect(() => () => controls.dispose(), [controls]);
+function MotionPage({ model, palette, compact, wide, controls }: Props & { controls: Controls }) {
+  const known = model.about.value !== null;
   return (
     <main class="motion">
       <Picture model={model} palette={palette} />
       <Playback model={model} />
       <aside class="panels" aria-label="Read-outs and controls">
-        <Panel id="state" title="State" open={!compact || wide}>
-          <Readout model={model} />
-        </Panel>
-        <Panel id="motion" title="Motion" open={wide && !compact}>
-          <Facts model={model} />
-        </Panel>
+        {known && (
+          <>
+            <Panel id="state" title="State" open={!compact || wide}>
+              <Readout model={model} />
+            </Panel>
+            <Panel id="motion" title="Motion" open={wide && !compact}>
+              <Facts model={model} />
+            </Panel>
+          </>
+        )}
         {!compact && controls.about.value && (
           <>
             <Panel id="start" title="Spin and attitude" open={wide}>
@@ -87,7 +96,7 @@ function MotionPage({ model, palette, compact, wide }: Props) {
           <ViewPanel model={model} />
         </Panel>
         {!compact && (
-          <Panel id="text" title="Scene" open={false}>
+          <Panel id="text" title="Scene" open={!known}>
             <Editor model={model} />
           </Panel>
         )}
@@ -116,7 +125,7 @@ function Panel(props: { id: string; title: string; open: boolean; children: Comp
 
 /** Tells those who do not see the picture when the kind of motion changes. */
 function Announcement({ model }: { model: Model }) {
-  const regime = useComputed(() => model.about.value?.free?.regime ?? "");
+  const regime = useComputed(() => regimeOf(model.about.value));
   return (
     <p class="hidden" aria-live="polite">
       {regime}

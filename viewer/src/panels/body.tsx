@@ -121,7 +121,7 @@ function Masses({ body, controls }: { body: BodyChoice; controls: Controls }) {
         <Slider
           key={k}
           id={`spread-${k + 1}`}
-          label={`Along e${"₁₂₃"[k]}`}
+          label={body.frame ? `Along axis ${k + 1}` : `Along e${"₁₂₃"[k]}`}
           value={spread}
           range={range}
           unit={si("kg m²")}

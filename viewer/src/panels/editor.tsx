@@ -4,16 +4,12 @@ import type { Model } from "../model/model.ts";
 
 /** The text of the scene, to be changed by hand. */
 export function Editor({ model }: { model: Model }) {
-  /** What is written here and not yet applied. */
-  const draft = useSignal<string | null>(null);
   const copied = useSignal(false);
   const area = useRef<HTMLTextAreaElement>(null);
-  const scene = model.scene.value;
+  const { draft } = model;
+  const scene = draft.value ?? model.scene.value;
   if (scene === null) return <p class="note">A recorded motion has no scene to edit here.</p>;
-  const apply = (): void => {
-    model.open(draft.value ?? scene);
-    if (model.problem.value === null) draft.value = null;
-  };
+  const apply = (): void => model.open(scene);
   const copy = async (): Promise<void> => {
     area.current?.select();
     // Where a page may not reach the clipboard, what is selected can be copied by hand.
@@ -45,7 +41,7 @@ export function Editor({ model }: { model: Model }) {
         autocomplete="off"
         aria-invalid={problem !== null}
         aria-describedby="scene-problem"
-        value={draft.value ?? scene}
+        value={scene}
         onInput={(event) => (draft.value = event.currentTarget.value)}
         onKeyDown={(event) => {
           if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) apply();

@@ -1,8 +1,8 @@
 import type { ComponentChildren } from "preact";
-import type { About } from "../core/core.ts";
+import type { About, Triple } from "../core/core.ts";
 import type { Model } from "../model/model.ts";
 import { significant, small } from "./format.ts";
-import { duration } from "./units.ts";
+import { DEGREE, duration } from "./units.ts";
 
 /** What is known of the motion as a whole: its kind, its times, and how far to trust it. */
 export function Facts({ model }: { model: Model }) {
@@ -18,12 +18,18 @@ export function Facts({ model }: { model: Model }) {
             {free.period !== null && `, about axis ${free.axis}`}
           </Fact>
         )}
+        {about.top && (
+          <Fact name="Regime" id="regime">
+            {about.top.regime}
+          </Fact>
+        )}
         {about.laws.map((law) => (
           <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
-            <code>{law.text}</code>
+            <code>{about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : law.text}</code>
           </Fact>
         ))}
         {free && <Times free={free} />}
+        {about.top && <Top top={about.top} />}
         <Fact name="Moments">
           <span class="digits">{about.body.moments.map((moment) => significant(moment, 5)).join(", ")}</span>{" "}
           kg m²
@@ -58,6 +64,14 @@ export const LAWS: Record<string, string> = {
   torque_space: "Torque, in space",
 };
 
+const HEAVY = new Set(["gravity", "heavy"]);
+
+/** The vector m g l, in N m. */
+function weight(heavy: Triple): string {
+  const parts = heavy.map((part) => significant(part, 5));
+  return `(${parts.join(", ")}) N m`;
+}
+
 function Times({ free }: { free: NonNullable<About["free"]> }) {
   return (
     <>
@@ -69,6 +83,31 @@ function Times({ free }: { free: NonNullable<About["free"]> }) {
       {free.modulus > 0 && <Fact name="Modulus k">{significant(free.modulus, 7)}</Fact>}
     </>
   );
+}
+
+/** How a heavy top goes round, and whether it would sleep. */
+function Top({ top }: { top: NonNullable<About["top"]> }) {
+  const [least, most] = top.tilt.map((angle) => significant(angle / DEGREE.size, 5));
+  const turn = top.precession_rate && (2 * Math.PI) / Math.abs(top.precession_rate);
+  return (
+    <>
+      <Fact name="Tilt from up">{least === most ? `${least}°` : `${least}° to ${most}°`}</Fact>
+      {top.nutation_period !== null && (
+        <Fact name="Nutation">{duration(top.nutation_period, 7)} from low to low</Fact>
+      )}
+      {turn !== null && turn !== 0 && (
+        <Fact name="Precession">{duration(turn, 7)} for a turn about e₃, on average</Fact>
+      )}
+      <Fact name="Upright">
+        {top.sleeps ? "sleeps" : "does not sleep"}; from {significant(top.critical_spin, 5)} rad/s on it would
+      </Fact>
+    </>
+  );
+}
+
+/** What kind of motion it is, in words; empty where none has a name. */
+export function regimeOf(about: About | null): string {
+  return about?.free?.regime ?? about?.top?.regime ?? "";
 }
 
 /** How the motion was found, and how far it may be off. */
@@ -85,7 +124,7 @@ function Conserved({ about }: { about: About }) {
       <thead>
         <tr>
           <th scope="col">Conserved</th>
-          <th scope="col">at the start, SI</th>
+          <th scope="col">value, SI</th>
           <th scope="col">drift</th>
         </tr>
       </thead>

@@ -14,24 +14,37 @@ export function Header({ model, compact }: { model: Model; compact: boolean }) {
     <header>
       <h1>{motion ? (model.about.value?.title ?? "Polhode") : "Algebra"}</h1>
       {!compact && motion && <Scenes model={model} />}
-      <nav aria-label="Pages">
-        <div role="tablist" class="tabs">
-          {PAGES.map((page) => (
-            <button
-              key={page}
-              id={`tab-${page}`}
-              role="tab"
-              aria-selected={model.page.value === page}
-              aria-controls="page"
-              onClick={() => (model.page.value = page)}
-            >
-              {page === "motion" ? "Motion" : "Algebra"}
-            </button>
-          ))}
-        </div>
-      </nav>
+      <Tabs model={model} />
       <Help />
     </header>
+  );
+}
+
+/** One stop of the Tab key; arrows go from tab to tab. */
+function Tabs({ model }: { model: Model }) {
+  const turn = (event: KeyboardEvent): void => {
+    if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+    event.preventDefault();
+    model.page.value = model.page.value === "motion" ? "algebra" : "motion";
+    const tabs = (event.currentTarget as HTMLElement).querySelectorAll<HTMLElement>("button");
+    tabs[PAGES.indexOf(model.page.value)]?.focus();
+  };
+  return (
+    <div role="tablist" aria-label="Pages" class="tabs" onKeyDown={turn}>
+      {PAGES.map((page) => (
+        <button
+          key={page}
+          id={`tab-${page}`}
+          role="tab"
+          aria-selected={model.page.value === page}
+          aria-controls="page"
+          tabIndex={model.page.value === page ? 0 : -1}
+          onClick={() => (model.page.value = page)}
+        >
+          {page === "motion" ? "Motion" : "Algebra"}
+        </button>
+      ))}
+    </div>
   );
 }
 

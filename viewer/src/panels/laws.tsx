@@ -42,7 +42,7 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
   const set = (parameter: Parameter, value: number): void =>
     controls.setLaws({ ...choice, values: { ...choice.values, [key(law, parameter)]: value } });
   return (
-    <fieldset class="law">
+    <div class="law">
       <label class="check">
         <input id={`law-${law.name}`} type="checkbox" checked={on} onChange={toggle} />
         {law.label}
@@ -63,7 +63,7 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
             />
           );
         })}
-    </fieldset>
+    </div>
   );
 }
 

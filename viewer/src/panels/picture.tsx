@@ -1,4 +1,4 @@
-import { type ReadonlySignal, useSignal } from "@preact/signals";
+import { effect, type ReadonlySignal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { runClock } from "../model/clock.ts";
 import { type Model, words } from "../model/model.ts";
@@ -12,7 +12,14 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
   useEffect(() => {
     try {
       const stage = new Stage(place.current!, model, palette);
-      return () => stage.dispose();
+      const before = model.fitted.peek();
+      const forget = effect(() => {
+        if (model.fitted.value > before) stage.fit();
+      });
+      return () => {
+        forget();
+        stage.dispose();
+      };
     } catch (error) {
       missing.value =
         error instanceof NoWebGL
@@ -39,9 +46,11 @@ function Trouble({ model }: { model: Model }) {
   return (
     <div class="trouble" role="alert" id="problem">
       <pre>{problem}</pre>
-      <button class="quiet" onClick={() => model.reset()}>
-        Reset
-      </button>
+      {model.motion.value && (
+        <button class="quiet" onClick={() => model.reset()}>
+          Reset
+        </button>
+      )}
     </div>
   );
 }

@@ -75,10 +75,9 @@ function TimeSlider({ model, about }: { model: Model; about: About }) {
 
 function TimeField({ model, about }: { model: Model; about: About }) {
   const unit = timeUnit(about.duration);
-  const shown = typed(
-    (Math.round((model.time.value / about.duration) * 1e5) / 1e5) * (about.duration / unit.size),
-    9,
-  );
+  // Some ten thousand different times in a duration, each a decimal number.
+  const decimals = Math.min(Math.max(0, 5 - Math.ceil(Math.log10(about.duration / unit.size))), 20);
+  const shown = typed(Number((model.time.value / unit.size).toFixed(decimals)), 15);
   return (
     <div class="field number">
       <label for="time-number">

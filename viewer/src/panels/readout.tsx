@@ -19,35 +19,37 @@ export function Readout({ model }: { model: Model }) {
   const energy = row[State.energy]!;
   const size = length(row, State.momentumSpace);
   return (
-    <dl class="readout">
-      <Quantity symbol={<Symbol name="R" />} note="attitude, body to space" unit="">
-        <Terms values={row.subarray(State.rotor, State.rotor + 4)} blades={["", ...BLADES]} scale={ROTOR} />
-      </Quantity>
-      <Quantity
-        symbol={<Symbol name="Ω" sub="B" />}
-        note="angular velocity, in the body"
-        unit={`${omega.power}rad/s`}
-        mark="omega"
-      >
-        <Terms values={three(State.omegaBody)} blades={BLADES} scale={omega} />
-      </Quantity>
-      <Quantity
-        symbol={<Symbol name="Ω" sub="S" />}
-        note="the same, in space"
-        unit={`${omega.power}rad/s`}
-        mark="omega"
-      >
-        <Terms values={three(State.omegaSpace)} blades={BLADES} scale={omega} />
-      </Quantity>
-      <Quantity
-        symbol={<Symbol name="L" />}
-        note="angular momentum, in space"
-        unit={`${momentum.power}kg m²/s`}
-        mark="momentum"
-      >
-        <Terms values={three(State.momentumSpace)} blades={BLADES} scale={momentum} />
-      </Quantity>
-      <div class="pair">
+    <>
+      <dl class="readout">
+        <Quantity symbol={<Symbol name="R" />} note="attitude, body to space" unit="">
+          <Terms values={row.subarray(State.rotor, State.rotor + 4)} blades={["", ...BLADES]} scale={ROTOR} />
+        </Quantity>
+        <Quantity
+          symbol={<Symbol name="Ω" sub="B" />}
+          note="angular velocity, in the body"
+          unit={`${omega.power}rad/s`}
+          mark="omega"
+        >
+          <Terms values={three(State.omegaBody)} blades={BLADES} scale={omega} />
+        </Quantity>
+        <Quantity
+          symbol={<Symbol name="Ω" sub="S" />}
+          note="the same, in space"
+          unit={`${omega.power}rad/s`}
+          mark="omega"
+        >
+          <Terms values={three(State.omegaSpace)} blades={BLADES} scale={omega} />
+        </Quantity>
+        <Quantity
+          symbol={<Symbol name="L" />}
+          note="angular momentum, in space"
+          unit={`${momentum.power}kg m²/s`}
+          mark="momentum"
+        >
+          <Terms values={three(State.momentumSpace)} blades={BLADES} scale={momentum} />
+        </Quantity>
+      </dl>
+      <dl class="readout pair">
         <Quantity
           symbol={
             <span>
@@ -62,8 +64,8 @@ export function Readout({ model }: { model: Model }) {
         <Quantity symbol={<Symbol name="E" />} note="" unit="J">
           <Number value={energy} start={first[State.energy]!} />
         </Quantity>
-      </div>
-    </dl>
+      </dl>
+    </>
   );
 }
 

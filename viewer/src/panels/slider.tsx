@@ -29,7 +29,7 @@ export function Slider(props: {
   onChange: (value: number) => void;
 }) {
   const { id, label, value, range, unit, onChange } = props;
-  const shown = typed(value / unit.size, 5);
+  const shown = typed(value / unit.size, 4);
   return (
     <div class="slider">
       <label for={id}>{label}</label>

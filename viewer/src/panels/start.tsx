@@ -42,7 +42,7 @@ function SpinControls(props: { spin: Spin; usual: number; onChange: (spin: Spin)
   return (
     <>
       <div class="row">
-        <label for="plane">Spin in the plane</label>
+        <label for="plane">Spin in</label>
         <select
           id="plane"
           value={spin.plane}

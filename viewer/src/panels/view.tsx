@@ -54,6 +54,9 @@ export function ViewPanel({ model }: { model: Model }) {
             </option>
           ))}
         </select>
+        <button id="fit" title="Fit all into the picture (F)" onClick={() => model.fit()}>
+          Fit
+        </button>
       </div>
       <div class="row">
         <label for="theme">Colours</label>

@@ -48,7 +48,7 @@ export const PRESETS: Preset[] = [
     scene: symmetric,
     view: { speed: 0.1, shown: { polhode: true, herpolhode: true, omega: true, momentum: true } },
     caption:
-      "Two steady turns, one on either side of the rotor: R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t), handout eq. (4.35). " +
+      "Two steady turns, one on either side of the rotor: R(t) = exp(−½Ωₗ t) R(0) exp(−½Ωᵣ t), handout eq. (4.35). " +
       "The axis goes round L while the body turns about the axis.",
   },
   {
@@ -57,8 +57,8 @@ export const PRESETS: Preset[] = [
     scene: loops,
     view: TOP,
     caption:
-      "Let go with its axis moving backward, a heavy top draws loops. Change the first push under Spin: with none the " +
-      "loops become cusps, with a push forward waves.",
+      "Let go with its axis moving backward, a heavy top draws loops. Put its spin less and less off the axis, and the " +
+      "loops close to cusps; turn the direction of that push to 90°, and they open to waves.",
   },
   {
     name: "cusps.toml",

@@ -13,7 +13,7 @@ export class Arrow {
   constructor(screen: Screen, style: RibbonStyle) {
     this.shaft = new Ribbon(screen, style);
     this.head = new Mesh(
-      new ConeGeometry(HEAD.radius, HEAD.length, 24).translate(0, -HEAD.length / 2, 0).rotateX(Math.PI / 2),
+      new ConeGeometry(HEAD.radius, HEAD.length, 12).translate(0, -HEAD.length / 2, 0).rotateX(Math.PI / 2),
       new MeshLambertMaterial({ emissiveIntensity: 0.45 }),
     );
     this.object.add(this.shaft.object, this.head);

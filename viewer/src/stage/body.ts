@@ -1,4 +1,4 @@
-import { Color, Group, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial } from "three";
+import { Color, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial } from "three";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
 import type { Figure } from "./figure.ts";
@@ -11,10 +11,7 @@ const TINTS = 5;
 /** The body. Sides of a box and quadrants of what is round have tints of their own, so that one sees how it turns. */
 export class Body implements Part {
   readonly inBody = new Group();
-  private readonly materials = Array.from(
-    { length: TINTS },
-    () => new MeshStandardMaterial({ roughness: 0.75, metalness: 0 }),
-  );
+  private readonly materials = Array.from({ length: TINTS }, () => new MeshLambertMaterial());
   private readonly ink = inkOfEdges();
   private drawn: { surface: Surface; tinted: Figure["tinted"]; look: Look } | null = null;
 

@@ -67,10 +67,19 @@ export class Viewpoint {
     this.changed();
   }
 
-  /** Moves on for some seconds; whether there is more to come. */
-  step(seconds: number): boolean {
+  get moving(): boolean {
+    return this.move !== null;
+  }
+
+  /** Goes back to the preset, from where all is in view. */
+  home(): void {
+    this.go(this.preset.name, this.preset.momentum, false);
+  }
+
+  /** Moves on for some seconds. */
+  step(seconds: number): void {
     const { move } = this;
-    if (!move) return false;
+    if (!move) return;
     move.passed += seconds;
     const part = Math.min(move.passed / MOVE, 1);
     const eased = part * part * (3 - 2 * part);
@@ -84,7 +93,6 @@ export class Viewpoint {
       ),
     );
     if (part === 1) this.move = null;
-    return this.move !== null;
   }
 
   /** The canvas has another form: what was in view stays in view. */
@@ -132,7 +140,7 @@ export class Viewpoint {
     else if (event.key === "ArrowDown") at.phi += STEP;
     else if (event.key === "+" || event.key === "=") at.radius /= 1.1;
     else if (event.key === "-") at.radius *= 1.1;
-    else if (event.key === "Home") return this.go(this.preset.name, this.preset.momentum, false);
+    else if (event.key === "Home") return this.home();
     else return;
     event.preventDefault();
     this.grabbed();

@@ -1,5 +1,5 @@
 import { BoxGeometry, Group, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
-import type { Motion } from "../core/core.ts";
+import { type Motion, Problem } from "../core/core.ts";
 import type { Palette } from "../palette.ts";
 import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part } from "./part.ts";
@@ -18,6 +18,8 @@ export class Crowd implements Part {
   readonly inSpace = new Group();
   private readonly material = new MeshLambertMaterial({ emissiveIntensity: 0.15 });
   private bodies: InstancedMesh<BoxGeometry, MeshLambertMaterial> | null = null;
+  /** Why the bodies are not drawn. */
+  problem: string | null = null;
   private motion: Motion | null = null;
   private axis = new Vector3();
   private time = Number.NaN;
@@ -43,7 +45,7 @@ export class Crowd implements Part {
   update({ time }: Instant): void {
     if (!this.bodies || !this.motion || time === this.time) return;
     this.time = time;
-    const rotors = this.motion.bodies(Math.max(time, 0), MOST);
+    const rotors = this.rotors(this.motion, Math.max(time, 0));
     const count = Math.min(rotors.length / 4, MOST);
     const [turn, place, whole] = [new Quaternion(), new Vector3(), new Vector3(1, 1, 1)];
     const matrix = new Matrix4();
@@ -54,6 +56,18 @@ export class Crowd implements Part {
     }
     this.bodies.count = count;
     this.bodies.instanceMatrix.needsUpdate = true;
+  }
+
+  /** The rotors of the bodies; none, and what is wrong in `problem`, where they could not be followed. */
+  private rotors(motion: Motion, time: number): Float64Array {
+    try {
+      return motion.bodies(time, MOST);
+    } catch (error) {
+      if (!(error instanceof Problem)) throw error;
+      this.problem = error.message;
+      this.motion = null;
+      return new Float64Array();
+    }
   }
 
   dispose(): void {
@@ -67,6 +81,7 @@ export class Crowd implements Part {
     this.bodies?.dispose();
     this.bodies = null;
     this.motion = null;
+    this.problem = null;
     this.time = Number.NaN;
   }
 }

@@ -43,6 +43,8 @@ export const MOMENTUM: DiscStyle = {
   label: [-1, -0.45],
 };
 
+/** Corners of a circle: so many that it is half a pixel off at most. */
+const ROUND = 72;
 const HEADS = 3;
 /** Turns in a second of the clock of the arrowheads on the rim. */
 const PACE = 0.08;
@@ -57,7 +59,7 @@ export class Disc implements Part {
   private readonly heads = new Group();
   private readonly fill: Mesh<CircleGeometry, MeshBasicMaterial>;
   private readonly rim: Ribbon;
-  private readonly head = new ConeGeometry(0.03, 0.1, 20);
+  private readonly head = new ConeGeometry(0.03, 0.1, 12);
   private readonly solid = new MeshLambertMaterial({ emissiveIntensity: 0.45 });
   private readonly arrow: Arrow;
   private readonly label: Label;
@@ -72,12 +74,18 @@ export class Disc implements Part {
     private readonly calm: () => boolean,
   ) {
     this.fill = new Mesh(
-      new CircleGeometry(1, 96),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.09, side: DoubleSide, depthWrite: false }),
+      new CircleGeometry(1, ROUND),
+      new MeshBasicMaterial({
+        transparent: true,
+        opacity: 0.09,
+        side: DoubleSide,
+        depthWrite: false,
+        forceSinglePass: true,
+      }),
     );
     this.fill.renderOrder = 3;
     this.rim = new Ribbon(screen, { width: 2, behind: 0.18 });
-    this.rim.set(circle(96), { closed: true });
+    this.rim.set(circle(), { closed: true });
     for (let k = 0; k < HEADS; k++) this.heads.add(new Mesh(this.head, this.solid));
     this.arrow = new Arrow(screen, { width: 2.6, behind: 0.35 });
     this.disc.add(this.fill, this.rim.object, this.heads);
@@ -156,10 +164,10 @@ export class Disc implements Part {
 }
 
 /** Points of the unit circle about e3. */
-export function circle(count: number): Float64Array {
-  const points = new Float64Array(3 * count);
-  for (let k = 0; k < count; k++) {
-    const angle = (2 * Math.PI * k) / count;
+export function circle(): Float64Array {
+  const points = new Float64Array(3 * ROUND);
+  for (let k = 0; k < ROUND; k++) {
+    const angle = (2 * Math.PI * k) / ROUND;
     points.set([Math.cos(angle), Math.sin(angle), 0], 3 * k);
   }
   return points;

@@ -1,4 +1,4 @@
-import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Vector3 } from "three";
+import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshLambertMaterial, Vector3 } from "three";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
 import { Arrow } from "./arrow.ts";
@@ -18,15 +18,15 @@ const CIRCLES = 5;
 export class Gravity implements Part {
   readonly inSpace = new Group();
   readonly inBody = new Group();
-  private readonly stand: Mesh<ConeGeometry, MeshStandardMaterial>;
-  private readonly stem: Mesh<CylinderGeometry, MeshStandardMaterial>;
+  private readonly stand: Mesh<ConeGeometry, MeshLambertMaterial>;
+  private readonly stem: Mesh<CylinderGeometry, MeshLambertMaterial>;
   private readonly weight: Arrow;
   private readonly sphere: Ribbon[];
   private readonly label: Label;
   private figure: Figure | null = null;
 
   constructor(screen: Screen, labels: Labels) {
-    const material = new MeshStandardMaterial({ roughness: 0.8 });
+    const material = new MeshLambertMaterial();
     this.stand = new Mesh(
       new ConeGeometry(0.13, STAND, 48).rotateX(Math.PI / 2).translate(0, 0, -STAND / 2),
       material,
@@ -102,7 +102,7 @@ function sphereOf(screen: Screen): Ribbon[] {
 }
 
 function faint(screen: Screen): Ribbon {
-  const ribbon = new Ribbon(screen, { width: 1, opacity: 0.4, behind: 0.6 });
-  ribbon.set(circle(128), { closed: true });
+  const ribbon = new Ribbon(screen, { width: 1, opacity: 0.4 });
+  ribbon.set(circle(), { closed: true });
   return ribbon;
 }

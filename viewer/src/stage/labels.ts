@@ -1,4 +1,4 @@
-import { type Camera, type Matrix4, Vector3 } from "three";
+import { type Camera, type Matrix4, type Vector2, Vector3 } from "three";
 
 /** CSS pixels. */
 const HEIGHT = 19;
@@ -25,7 +25,7 @@ export class Label {
 
   constructor(
     symbol: string,
-    readonly style: { index?: number; rank: number },
+    readonly style: { index?: number | string; rank: number },
     private readonly gone: (label: Label) => void,
   ) {
     const letter = document.createElement("i");
@@ -101,7 +101,7 @@ export class Labels {
       `font: ${SIZES.letter}px/${HEIGHT}px ${FAMILY}`;
   }
 
-  add(symbol: string, style: { index?: number; rank: number }): Label {
+  add(symbol: string, style: { index?: number | string; rank: number }): Label {
     const label = new Label(symbol, style, (gone) => {
       this.labels = this.labels.filter((other) => other !== gone);
     });
@@ -118,7 +118,8 @@ export class Labels {
       .join(", ");
   }
 
-  place(camera: Camera, space: Matrix4, width: number, height: number, shown: boolean): void {
+  place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
+    const [width, height] = [size.x, size.y];
     this.element.style.display = shown ? "" : "none";
     if (!shown) return;
     const taken: Box[] = [];
@@ -127,7 +128,7 @@ export class Labels {
       if (label.hidden) continue;
       const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
       const box = free(around(point, centre, label.width(width < ROOMY), label.side), taken, width, height);
-      label.element.style.visibility = box ? "visible" : "hidden";
+      label.element.style.visibility = box ? "" : "hidden";
       if (!box) continue;
       taken.push(box);
       label.element.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;

@@ -7,6 +7,7 @@ import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part } from "./part.ts";
 import { Ribbon, type Screen } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
+import { rowsOf, thinned } from "./thinned.ts";
 
 /** Points of a path at most. */
 const POINTS = 10_000;
@@ -35,6 +36,7 @@ export class Paths implements Part {
   private turns = 1;
   private middle = Number.NaN;
   private closed = false;
+  private asked = 0;
 
   constructor(screen: Screen) {
     this.trace = new Ribbon(screen, { width: 2.2, behind: 0.3 });
@@ -44,11 +46,11 @@ export class Paths implements Part {
     this.inBody.add(this.polhode.object);
   }
 
+  /** How many states the paths that are seen go through. */
   get points(): number {
-    return [this.trace, this.herpolhode, this.polhode].reduce(
-      (sum, path) => sum + (path.object.visible ? path.count : 0),
-      0,
-    );
+    const seen = (path: Ribbon) => path.object.visible && path.count > 0;
+    const open = [this.trace, this.herpolhode, ...(this.closed ? [] : [this.polhode])].filter(seen).length;
+    return open * this.asked + (this.closed && seen(this.polhode) ? this.polhode.count : 0);
   }
 
   follow(figure: Figure): void {
@@ -91,8 +93,8 @@ export class Paths implements Part {
 
   private ask(figure: Figure, time: number): void {
     // Times are whole multiples of one step, so that the next stretch goes through the same points.
-    const step = (3 * this.tail) / POINTS;
     const [first, last] = span(figure.about);
+    const step = Math.min(3 * this.tail, last - first) / POINTS;
     const from = Math.ceil(Math.max(first, time - 1.5 * this.tail) / step);
     const to = Math.floor(Math.min(last, time + 1.5 * this.tail) / step);
     const times = Float64Array.from({ length: Math.max(to - from + 1, 1) }, (_, k) =>
@@ -100,10 +102,15 @@ export class Paths implements Part {
     );
     const rows = figure.motion.states(times);
     this.middle = time;
-    this.trace.set(traced(rows, figure.traced), { parameters: times.map((t) => (t - time) / this.tail) });
-    const parameters = times.map((t) => (t - time) / this.turns);
-    this.herpolhode.set(taken(rows, State.omegaSpace, figure.rate), { parameters });
-    if (!this.closed) this.polhode.set(taken(rows, State.omegaBody, LIFTED * figure.rate), { parameters });
+    this.asked = times.length;
+    const draw = (path: Ribbon, points: Float64Array, tail: number) => {
+      const kept = thinned(points);
+      const parameters = rowsOf(times, kept, 1).map((t) => (t - time) / tail);
+      path.set(rowsOf(points, kept, 3), { parameters });
+    };
+    draw(this.trace, traced(rows, figure.traced), this.tail);
+    draw(this.herpolhode, taken(rows, State.omegaSpace, figure.rate), this.turns);
+    if (!this.closed) draw(this.polhode, taken(rows, State.omegaBody, LIFTED * figure.rate), this.turns);
   }
 }
 

@@ -37,24 +37,30 @@ export class Poinsot implements Part {
 
   constructor(screen: Screen) {
     this.skin = new Mesh(
-      new SphereGeometry(1, 96, 64).rotateX(Math.PI / 2),
+      new SphereGeometry(1, 48, 24).rotateX(Math.PI / 2),
       new MeshLambertMaterial({ transparent: true, opacity: 0.14, side: FrontSide, depthWrite: false }),
     );
     this.skin.renderOrder = 4;
     this.circles = AXES.map((axis) => {
       const ribbon = new Ribbon(screen, { width: 1, opacity: 0.5, behind: 0.4 });
-      ribbon.set(circle(128), { closed: true });
+      ribbon.set(circle(), { closed: true });
       ribbon.object.quaternion.setFromUnitVectors(AXES[2], axis);
       return ribbon;
     });
     this.ellipsoid.add(this.skin, ...this.circles.map(({ object }) => object));
     this.sheet = new Mesh(
-      new CircleGeometry(PLANE, 96),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.08, side: DoubleSide, depthWrite: false }),
+      new CircleGeometry(PLANE, 72),
+      new MeshBasicMaterial({
+        transparent: true,
+        opacity: 0.08,
+        side: DoubleSide,
+        depthWrite: false,
+        forceSinglePass: true,
+      }),
     );
     this.sheet.renderOrder = 5;
     this.grid = gridOf(screen);
-    this.contact = new Mesh(new SphereGeometry(0.028, 24, 16), new MeshBasicMaterial());
+    this.contact = new Mesh(new SphereGeometry(0.028, 16, 12), new MeshBasicMaterial());
     this.inBody.add(this.ellipsoid);
     this.inSpace.add(this.sheet, this.contact, ...this.grid.map(({ object }) => object));
   }
@@ -107,7 +113,7 @@ function gridOf(screen: Screen): Ribbon[] {
   const lines = [0.25, 0.5, 0.75, 1].map((radius) => {
     const ribbon = new Ribbon(screen, { width: 1, opacity: 0.45 });
     ribbon.set(
-      circle(128).map((x) => x * radius * PLANE),
+      circle().map((x) => x * radius * PLANE),
       { closed: true },
     );
     return ribbon;

@@ -8,6 +8,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   LessEqualDepth,
+  Matrix4,
   Mesh,
   ShaderMaterial,
   Sphere,
@@ -23,6 +24,7 @@ const VERTEX = /* glsl */ `
   attribute vec3 before;
   attribute vec3 after;
   attribute vec2 along;
+  uniform mat4 onto;
   uniform vec2 screen;
   uniform float width;
   varying float parameter;
@@ -32,7 +34,6 @@ const VERTEX = /* glsl */ `
   }
 
   void main() {
-    mat4 onto = projectionMatrix * modelViewMatrix;
     vec4 here = onto * vec4(position, 1.0);
     vec4 from = onto * vec4(before, 1.0);
     vec4 to = onto * vec4(after, 1.0);
@@ -75,6 +76,8 @@ const FRAGMENT = /* glsl */ `
 
 /** Numbers for each vertex: the point, the side (−1 or 1) and the parameter. */
 const STRIDE = 5;
+/** Of long lines, what is behind other things goes through so many points only. */
+const COARSE = 600;
 
 export interface RibbonStyle {
   /** CSS pixels. */
@@ -97,10 +100,14 @@ export class Ribbon {
   /** How many points it has. */
   count = 0;
   private readonly color = { value: new Color() };
+  private readonly onto = { value: new Matrix4() };
   private readonly now = { value: 0 };
   private readonly ahead = { value: 0 };
   private readonly fades = { value: false };
   private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[] = [];
+  private parameters: ArrayLike<number> = [];
+  /** For each mesh how many points its strip goes on at a time. */
+  private steps: number[] = [];
 
   constructor(screen: Screen, style: RibbonStyle) {
     const opacity = style.opacity ?? 1;
@@ -111,6 +118,7 @@ export class Ribbon {
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,
         uniforms: {
+          onto: this.onto,
           screen,
           width: { value: style.width },
           color: this.color,
@@ -127,6 +135,13 @@ export class Ribbon {
       });
       const mesh = new Mesh(new BufferGeometry(), material);
       mesh.frustumCulled = false;
+      // One product here instead of one for each vertex.
+      mesh.onBeforeRender = (_, __, camera) => {
+        this.onto.value
+          .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
+          .multiply(mesh.matrixWorld);
+        material.uniformsNeedUpdate = true;
+      };
       mesh.renderOrder = style.order ?? 2;
       mesh.visible = false;
       this.meshes.push(mesh);
@@ -161,38 +176,51 @@ export class Ribbon {
       }
     }
     this.count = count;
-    const geometry = count > 1 ? strip(data, count) : new BufferGeometry();
-    this.meshes[0]!.geometry.dispose();
-    for (const mesh of this.meshes) {
-      mesh.geometry = geometry;
+    this.parameters = options.parameters ?? [];
+    this.fades.value = false;
+    const vertices = new InterleavedBuffer(data, STRIDE);
+    this.steps = this.meshes.map((_, pass) => (pass === 0 ? 1 : Math.ceil(count / COARSE)));
+    this.meshes.forEach((mesh, pass) => {
+      mesh.geometry.dispose();
       mesh.visible = count > 1;
-    }
+      mesh.geometry = mesh.visible ? strip(vertices, count, this.steps[pass]!) : new BufferGeometry();
+    });
   }
 
   paint(color: string | Color): void {
     this.color.value.set(color);
   }
 
-  /** The parameter at which the line is strongest. */
+  /** The parameter, growing along the line, at which it is strongest; only what is not faded away is drawn. */
   fade(now: number, ahead: number): void {
     this.fades.value = true;
     this.now.value = now;
     this.ahead.value = ahead;
+    const first = Math.max(firstAfter(this.parameters, now - 1) - 1, 0);
+    const last = Math.min(firstAfter(this.parameters, now + 1), this.count - 1);
+    this.meshes.forEach((mesh, pass) => {
+      const step = this.steps[pass]!;
+      const from = Math.floor(first / step);
+      mesh.geometry.setDrawRange(6 * from, 6 * Math.max(Math.ceil(last / step) - from, 0));
+    });
   }
 
   dispose(): void {
-    this.meshes[0]!.geometry.dispose();
-    for (const mesh of this.meshes) mesh.material.dispose();
+    for (const mesh of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
   }
 }
 
-/** Each vertex sees its neighbours in the same buffer, two vertices before and after it. */
-function strip(data: Float32Array, count: number): BufferGeometry {
+/** A strip through every `step`-th point. Vertices see their neighbours in the same buffer, two before and after. */
+function strip(vertices: InterleavedBuffer, count: number, step: number): BufferGeometry {
   const geometry = new BufferGeometry();
-  const vertices = new InterleavedBuffer(data, STRIDE);
-  const index = new Uint32Array(6 * (count - 1));
-  for (let k = 0; k < count - 1; k++) {
-    index.set([2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3], 6 * k);
+  const pieces = Math.ceil((count - 1) / step);
+  const index = new Uint32Array(6 * pieces);
+  for (let k = 0; k < pieces; k++) {
+    const [a, b] = [2 * k * step, 2 * Math.min((k + 1) * step, count - 1)];
+    index.set([a, a + 1, b, b, a + 1, b + 1], 6 * k);
   }
   geometry.setAttribute("before", new InterleavedBufferAttribute(vertices, 3, 0));
   geometry.setAttribute("position", new InterleavedBufferAttribute(vertices, 3, 2 * STRIDE));
@@ -202,4 +230,15 @@ function strip(data: Float32Array, count: number): BufferGeometry {
   // Three would find it from more vertices than there are, for its order of drawing; the place of the object does.
   geometry.boundingSphere = new Sphere();
   return geometry;
+}
+
+/** The first index at which growing numbers are above a bound. */
+function firstAfter(numbers: ArrayLike<number>, bound: number): number {
+  let [low, high] = [0, numbers.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (numbers[middle]! > bound) high = middle;
+    else low = middle + 1;
+  }
+  return low;
 }

@@ -6,6 +6,7 @@ import {
   CylinderGeometry,
   LatheGeometry,
   SphereGeometry,
+  SplineCurve,
   TorusGeometry,
   Vector2,
 } from "three";
@@ -14,7 +15,7 @@ import type { Solid, Triple } from "../core/core.ts";
 import type { Surface } from "./surface.ts";
 
 /** Steps around an axis of revolution. A multiple of four, so that no face lies in two quadrants. */
-const ROUND = 96;
+const ROUND = 64;
 /** What has no thickness is drawn with this part of its size. */
 const THIN = 0.03;
 
@@ -60,29 +61,27 @@ export function equivalent(moments: Triple): Solid {
   return { kind: "box", lengths };
 }
 
-/** A spinning top of textbooks: its tip at the origin, widest at a height along e3, with a stem above. */
+/** Half the section of a spinning top: distances from its axis and heights, for a centre of mass at height 1. */
+const TOP: [number, number][] = [
+  [0, 0],
+  [0.025, 0.03],
+  [0.1, 0.24],
+  [0.3, 0.54],
+  [0.54, 0.78],
+  [0.66, 0.96],
+  [0.64, 1.1],
+  [0.46, 1.22],
+  [0.16, 1.3],
+  [0.055, 1.38],
+  [0.05, 1.6],
+  [0, 1.63],
+];
+
+/** A spinning top of textbooks: its tip at the origin, its centre of mass at a height along e3, with a stem above. */
 export function spinningTop(height: number): Surface {
-  const profile = [
-    [0, 0],
-    [0.035, 0.06],
-    [0.16, 0.42],
-    [0.52, 0.86],
-    [0.66, 0.98],
-    [0.68, 1.04],
-    [0.62, 1.1],
-    [0.3, 1.2],
-    [0.08, 1.26],
-    [0.055, 1.32],
-    [0.055, 1.62],
-    [0.04, 1.65],
-    [0, 1.66],
-  ];
-  return upright(
-    new LatheGeometry(
-      profile.map(([radius, along]) => new Vector2(radius! * height, along! * height)),
-      ROUND,
-    ),
-  );
+  const section = new SplineCurve(TOP.map(([radius, along]) => new Vector2(radius, along))).getPoints(24);
+  for (const point of section) point.set(Math.max(point.x, 0), point.y).multiplyScalar(height);
+  return upright(new LatheGeometry(section, ROUND));
 }
 
 function ellipsoid(semiAxes: Triple): Surface {

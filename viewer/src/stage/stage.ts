@@ -4,6 +4,8 @@ import {
   DirectionalLight,
   Group,
   HemisphereLight,
+  LineSegments,
+  Mesh,
   Scene,
   Vector2,
   Vector3,
@@ -30,6 +32,8 @@ import { quaternion, vector } from "./rotor.ts";
 /** This browser draws nothing in three dimensions. */
 export class NoWebGL extends Error {}
 
+const LOST = "The graphics card has let go of the picture; it is drawn again as soon as that can be.";
+
 /** The longest time that a frame lets pass: a page that was hidden goes on from where it was. */
 const LONGEST = 0.1;
 
@@ -51,6 +55,7 @@ export class Stage {
   private readonly screen: Screen = { value: new Vector2(1, 1) };
   private readonly viewpoint: Viewpoint;
   private readonly paths: Paths;
+  private readonly crowd = new Crowd();
   private readonly parts: Part[];
   private readonly calm = matchMedia("(prefers-reduced-motion: reduce)");
   private readonly observer: ResizeObserver;
@@ -65,6 +70,8 @@ export class Stage {
   private drawn = 0;
   private spent = 0;
   private lost = false;
+  /** Whether the host has any size. */
+  private seen = false;
   /** What a frame itself changes is in its picture. */
   private drawing = false;
 
@@ -78,7 +85,7 @@ export class Stage {
       powerPreference: "high-performance",
     });
     if (!context) throw new NoWebGL("this browser draws no WebGL 2");
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, context, antialias: true });
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.viewpoint = new Viewpoint(this.canvas, this.draw);
     this.paths = new Paths(this.screen);
     const calm = () => this.calm.matches;
@@ -91,7 +98,7 @@ export class Stage {
       new Poinsot(this.screen),
       this.paths,
       new Gravity(this.screen, this.labels),
-      new Crowd(),
+      this.crowd,
     ];
     for (const { inSpace, inBody } of this.parts) {
       if (inSpace) this.space.add(inSpace);
@@ -124,9 +131,16 @@ export class Stage {
     this.viewpoint.dispose();
     for (const part of this.parts) part.dispose();
     this.renderer.dispose();
+    // Browsers keep but a few contexts; a notebook makes many stages.
+    this.renderer.forceContextLoss();
     this.canvas.remove();
     this.labels.element.remove();
     this.message.remove();
+  }
+
+  /** Goes back to the place of the model's camera, from where all is in view. */
+  fit(): void {
+    this.viewpoint.home();
   }
 
   /** Puts canvas, labels and message into the host. */
@@ -140,20 +154,36 @@ export class Stage {
       // Without this it would not come back.
       event.preventDefault();
       this.lost = true;
-      message.hidden = false;
+      this.tell(LOST, true);
+      this.forget();
     });
     canvas.addEventListener("webglcontextrestored", () => {
       this.lost = false;
-      message.hidden = true;
-      this.draw();
+      this.tell(null);
+      this.resize();
     });
-    message.hidden = true;
     message.setAttribute("role", "status");
-    message.textContent =
-      "The graphics card has let go of the picture; it will be drawn again as soon as it can be.";
     message.style.cssText = "position: absolute; inset: auto 1rem 1rem; margin: 0; text-align: center";
     if (getComputedStyle(host).position === "static") host.style.position = "relative";
     host.append(canvas, this.labels.element, message);
+    this.tell(null);
+  }
+
+  /** Shows a message, or none; `alone` hides the picture. */
+  private tell(message: string | null, alone = false): void {
+    this.message.textContent = message;
+    this.message.style.display = message ? "" : "none";
+    for (const element of [this.canvas, this.labels.element])
+      element.style.visibility = alone ? "hidden" : "";
+  }
+
+  /** Lets go of what the lost context held, of which the new one would not know. */
+  private forget(): void {
+    this.scene.traverse((object) => {
+      if (!(object instanceof Mesh || object instanceof LineSegments)) return;
+      object.geometry.dispose();
+      for (const material of [object.material].flat()) material.dispose();
+    });
   }
 
   /** Asks for one frame. */
@@ -163,28 +193,34 @@ export class Stage {
 
   private readonly resize = (): void => {
     const { clientWidth: width, clientHeight: height } = this.host;
-    if (width === 0 || height === 0) return;
+    this.seen = width > 0 && height > 0;
+    if (!this.seen || this.lost) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.screen.value.set(width, height);
     this.viewpoint.resize(width, height);
-    this.draw();
+    // At once, for the canvas is empty now.
+    cancelAnimationFrame(this.request);
+    this.frame(performance.now());
   };
 
   private readonly frame = (now: number): void => {
     this.request = 0;
-    this.drawing = true;
     const began = performance.now();
     const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST);
     const playing = this.model.playing.peek();
-    if (playing) {
-      this.model.tick(passed);
-      this.played += passed;
+    this.drawing = true;
+    try {
+      if (playing) {
+        this.model.tick(passed);
+        this.played += passed;
+      }
+      this.viewpoint.step(passed);
+      this.show();
+    } finally {
+      this.drawing = false;
     }
-    const moving = this.viewpoint.step(passed);
-    this.show();
-    this.drawing = false;
-    const going = playing || moving;
+    const going = playing || this.viewpoint.moving;
     this.last = going ? now : null;
     if (going) this.draw();
     const took = performance.now() - began;
@@ -197,8 +233,8 @@ export class Stage {
 
   /** Draws the present. */
   private show(): void {
-    const { host, model, renderer, viewpoint } = this;
-    if (host.clientWidth === 0 || host.clientHeight === 0) return;
+    const { model, renderer, viewpoint } = this;
+    if (!this.seen) return;
     const shown = model.shown.peek();
     this.follow();
     this.paint();
@@ -209,6 +245,8 @@ export class Stage {
       this.stand(instant.momentum);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
+      const { problem } = this.crowd;
+      this.tell(problem && `The other bodies are not drawn: ${problem}`);
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
@@ -216,8 +254,7 @@ export class Stage {
     this.labels.place(
       viewpoint.camera,
       this.space.matrixWorld,
-      host.clientWidth,
-      host.clientHeight,
+      this.screen.value,
       shown.labels && row !== null,
     );
     renderer.render(this.scene, viewpoint.camera);
@@ -242,10 +279,11 @@ export class Stage {
     const background = new Color(palette.background);
     const dark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5;
     this.renderer.setClearColor(background);
+    this.host.style.backgroundColor = palette.background;
     this.hemisphere.color.set("#ffffff");
-    this.hemisphere.groundColor.set(dark ? "#58606c" : "#c0c7d0");
-    this.hemisphere.intensity = dark ? 2.3 : 2.5;
-    this.lamp.intensity = dark ? 1.8 : 1.7;
+    this.hemisphere.groundColor.set(dark ? "#58606c" : "#aeb6c0");
+    this.hemisphere.intensity = dark ? 2.1 : 2.2;
+    this.lamp.intensity = dark ? 2.0 : 1.9;
     this.message.style.color = palette.text;
     this.labels.paint(palette.background);
     for (const part of this.parts) part.paint(palette);
@@ -294,6 +332,6 @@ export class Stage {
     ];
     const drawn = things.filter(([seen]) => seen).map(([, thing]) => thing);
     const bodies = about?.ensemble ? ` One of ${about.ensemble} bodies.` : "";
-    return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}.`;
+    return `${about?.title ?? "A rigid body in motion"}.${bodies} Drawn: ${drawn.join(", ") || "nothing"}. Arrow keys turn the view, + and − zoom, Home goes back.`;
   }
 }

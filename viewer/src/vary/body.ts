@@ -11,8 +11,10 @@ export interface BodyChoice {
   first: Solid | null;
   /** kg, or kg/m³. */
   amount: { kind: "mass" | "density"; value: number };
-  /** ∫x_k² dm along the principal axes, kg m²: any three that are not negative are those of a body. */
+  /** ∫x_k² dm along three axes at right angles, kg m²: any three that are not negative are those of a body. */
   spread: Triple;
+  /** The rotor that turns body axes to those three; null where they are the same. */
+  frame: Quadruple | null;
 }
 
 /** The sizes of each solid by the names of the scene, with the words for them. */
@@ -57,13 +59,20 @@ export const thin = (form: BodyChoice["form"]): boolean => form === "rod" || for
 
 /** The body of a motion, to be varied. */
 export function bodyOf(about: About): BodyChoice {
-  const { solid, mass, moments } = about.body;
+  const { solid, mass, moments, frame } = about.body;
+  // Principal axes are often those of the body in another order.
+  const matrix = inBodyAxes(moments, frame);
+  const size = Math.max(...moments);
+  const aligned = matrix.every((row, i) =>
+    row.every((entry, j) => i === j || Math.abs(entry) < 1e-12 * size),
+  );
   return {
     form: solid ? solid.kind : "scene",
     solid,
     first: solid,
     amount: { kind: "mass", value: mass ?? 1 },
-    spread: spreadOf(moments),
+    spread: spreadOf(aligned ? [matrix[0]![0], matrix[1]![1], matrix[2]![2]] : moments),
+    frame: aligned ? null : frame,
   };
 }
 
@@ -97,13 +106,13 @@ export function resized(solid: Solid, name: string, size: number): Solid {
   return { ...solid, [field]: value } as Solid;
 }
 
-/** The table `[body]` of a choice; `frame` turns principal axes to body axes. */
-export function bodyTable(choice: BodyChoice, frame: Quadruple): string {
-  const { form, solid, amount, spread } = choice;
+/** The table `[body]` of a choice. */
+export function bodyTable(choice: BodyChoice): string {
+  const { form, solid, amount, spread, frame } = choice;
   if (form === "masses" || !solid) {
     const [a, b, c] = spread;
     const moments: Triple = [b + c, c + a, a + b];
-    const shape = upright(frame) ? { moments } : { inertia: inBodyAxes(moments, frame) };
+    const shape = frame ? { inertia: inBodyAxes(moments, frame) } : { moments };
     return table("body", { ...shape, mass: amount.kind === "mass" ? amount.value : 1 });
   }
   const { kind, ...sizes } = solid;
@@ -169,10 +178,6 @@ function solidOf(kind: Solid["kind"], [x, y, z]: Triple): Solid {
       return { kind, major_radius: radius - tube, minor_radius: tube };
     }
   }
-}
-
-function upright([scalar, ...plane]: Quadruple): boolean {
-  return scalar !== 0 && plane.every((part) => Math.abs(part) < 1e-12 * Math.abs(scalar));
 }
 
 /** The matrix of the moments in body axes, into which the rotor `frame` turns principal ones. */

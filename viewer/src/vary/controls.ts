@@ -122,12 +122,12 @@ export class Controls {
     const parts: string[] = [];
     const chosen = this.touched.has("laws") && laws.from === "here";
     if (this.touched.has("body") && body.form !== "scene") {
-      parts.push(bodyTable(body, about.body.frame));
+      parts.push(bodyTable(body));
       const moved = body.form === "masses" || !about.body.solid;
       if (about.held && moved && !chosen) parts.push(this.weightAsBefore(about));
     } else if (chosen && about.held && laws.on.has("heavy")) {
       // The weight acts on a body that is held at the origin of its axes, so its moments are said about that.
-      parts.push(bodyTable({ ...body, form: "masses" }, about.body.frame));
+      parts.push(bodyTable({ ...body, form: "masses" }));
     }
     if (this.touched.has("start")) parts.push(startTable(start, rateUnit(start.spin.rate)));
     if (chosen) {

@@ -5,7 +5,7 @@ use crate::body::{Body, BodyError};
 use crate::inertia::Inertia;
 use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
 use crate::simulate::check_moments;
-use crate::solids::Amount;
+use crate::solids::{Amount, Solid};
 use crate::torque::Torque;
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Rotor, Vector};
@@ -98,6 +98,14 @@ impl Scene {
     /// Whether the file tells the mass, or what it follows from.
     pub fn tells_mass(&self) -> bool {
         !matches!(self.body, BodySpec::Moments { mass: None, .. } | BodySpec::Inertia { mass: None, .. })
+    }
+
+    /// The solid that the scene says.
+    pub fn solid(&self) -> Option<Solid> {
+        match self.body {
+            BodySpec::Solid { solid, .. } => Some(solid),
+            _ => None,
+        }
     }
 
     /// The mesh of the body, in metres, if it has one.

@@ -11,7 +11,7 @@ const UNIT: f64 = 1e-9;
 /// Digits that are shown, as Python shows values.
 const DIGITS: usize = 8;
 
-const BLADES: [&str; 8] = ["", "e1", "e2", "e3", "e2∧e3", "e3∧e1", "e1∧e2", "e1∧e2∧e3"];
+const BLADES: [&str; 8] = ["", "e1", "e2", "e3", "e2∧e3", "e3∧e1", "e1∧e2", "I"];
 
 /// Its components in the order of the basis, its grades, whether it is a rotor, and its text.
 pub fn valued(value: &Graded, ty: Type) -> Json {
@@ -88,7 +88,7 @@ mod tests {
         ] {
             assert_eq!(number(x), expected);
         }
-        assert_eq!(text(&[0.0, 1.0, -1.0, -0.0, 2.5, 0.0, 0.0, -3.0]), "e1 - e2 + 2.5 e2∧e3 - 3 e1∧e2∧e3");
+        assert_eq!(text(&[0.0, 1.0, -1.0, -0.0, 2.5, 0.0, 0.0, -3.0]), "e1 - e2 + 2.5 e2∧e3 - 3 I");
         assert_eq!(text(&[0.0; 8]), "0");
     }
 }

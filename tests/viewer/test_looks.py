@@ -1,0 +1,110 @@
+"""How a page looks: pictures by what is in them, themes, small screens, and what a frame takes."""
+
+import io
+
+import numpy as np
+import pytest
+
+from viewer_page import VIEWER
+from viewer_scenes import ROOT, TUMBLING
+
+PALETTE = (ROOT / "viewer/src/palette.ts").read_text()
+
+
+def colours(theme):
+    """Return the colours of Ω, L and the background of a theme, `LIGHT` or `DARK`, as RGB."""
+    text = PALETTE.partition(f"export const {theme}")[2]
+
+    def named(name):
+        code = text.partition(f'{name}: "#')[2][:6]
+        return np.array([int(code[k : k + 2], 16) for k in (0, 2, 4)])
+
+    return {name: named(name) for name in ("omega", "momentum", "background")}
+
+
+def picture(page):
+    """Return what the canvas and its labels look like, (height, width, 3)."""
+    image = pytest.importorskip("PIL.Image")
+    page.drawn()
+    shot = page.page.locator("polhode-viewer .picture").screenshot(animations="disabled")
+    return np.asarray(image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+
+def near(pixels, colour, distance=12):
+    """How many pixels have a colour, up to the smoothing of edges."""
+    return int((np.abs(pixels - colour).max(axis=-1) <= distance).sum())
+
+
+@pytest.mark.parametrize(
+    "name", ["t-handle", "symmetric", "nutating-top", "gravity-gradient", "toutatis-uncertain"]
+)
+def test_pictures_show_the_motion(name, opened):
+    page = opened(name, color_scheme="light")
+    first = picture(page)
+    light = colours("LIGHT")
+    # Most is background; the rims of the discs of Ω and L are there in their own colours.
+    assert 0.3 * first[..., 0].size < near(first, light["background"]) < 0.98 * first[..., 0].size
+    assert near(first, light["omega"]) > 100
+    assert near(first, light["momentum"]) > 100
+    page.seek(0.37 * page.page.evaluate(f"async () => (await {VIEWER}.ready).about.value.duration"))
+    assert np.abs(picture(page) - first).max() > 50
+
+
+def test_the_same_state_looks_the_same(opened):
+    page = opened("t-handle")
+    page.seek(1.0)
+    first = picture(page)
+    page.seek(2.0)
+    other = picture(page)
+    page.seek(1.0)
+    again = picture(page)
+    # Labels may be placed a pixel beside; another state differs in far more.
+    changed = (np.abs(again - first).max(axis=-1) > 32).mean()
+    assert changed < 0.002
+    assert (np.abs(other - first).max(axis=-1) > 32).mean() > 10 * max(changed, 0.001)
+
+
+@pytest.mark.parametrize("theme", ["LIGHT", "DARK"])
+def test_themes_follow_the_machine(theme, opened):
+    page = opened("t-handle", color_scheme=theme.lower())
+    pixels = picture(page)
+    assert near(pixels, colours(theme)["background"], 3) > 0.3 * pixels[..., 0].size
+    assert near(pixels, colours(theme)["omega"]) > 100
+
+
+def test_a_theme_is_chosen(opened):
+    page = opened("t-handle", color_scheme="light")
+    page.page.locator("#panel-view summary").click()
+    page.page.get_by_label("Colours").select_option("dark")
+    pixels = picture(page)
+    assert near(pixels, colours("DARK")["background"], 3) > 0.3 * pixels[..., 0].size
+
+
+@pytest.mark.parametrize("shown", ["t-handle", {"format": 1, "page": "algebra"}], ids=["motion", "algebra"])
+def test_a_phone_shows_all_without_sideways_scrolling(shown, opened):
+    page = opened(shown, viewport={"width": 360, "height": 740}, is_mobile=True, has_touch=True)
+    page.drawn()
+    wide = page.page.evaluate(
+        f"""() => [document.documentElement, ...{VIEWER}.shadowRoot.querySelectorAll("*")]
+            .filter((element) => element.clientWidth > 200 && element.scrollWidth > element.clientWidth + 1)
+            .map((element) => `${{element.localName}}.${{element.className}}`)"""
+    )
+    assert wide == []
+    outside = page.page.evaluate(
+        f"""() => [...{VIEWER}.shadowRoot.querySelectorAll("button, input, select")]
+            .filter((control) => control.checkVisibility() && control.getBoundingClientRect().right > 361)
+            .map((control) => control.id)"""
+    )
+    assert outside == []
+
+
+def test_frames_of_a_long_trace(opened, record_property):
+    """What a frame takes with ten thousand points of a path is told in the report, not judged."""
+    scene = TUMBLING + '[run]\nduration = "10 min"\nsamples = 10001\n'
+    page = opened({"format": 1, "scene": scene, "view": {"speed": 20, "playing": True}})
+    stage = page.page.locator("polhode-viewer .stage")
+    page.until(f"{VIEWER}.shadowRoot.querySelector('.stage').dataset.drawn > 60")
+    took, points = float(stage.get_attribute("data-frame-ms")), int(stage.get_attribute("data-points"))
+    assert points >= 10_000
+    record_property("viewer_frame_ms", took)
+    record_property("viewer_trace_points", points)

@@ -1,0 +1,123 @@
+import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import { type Model, words } from "../model/model.ts";
+import type { Palette } from "../palette.ts";
+import { NoWebGL } from "../stage/stage.ts";
+import styles from "./algebra.css?inline";
+import { colours, Drawing } from "./drawing.ts";
+import { outline, withVector } from "./literal.ts";
+import { ALGEBRA_PRESETS } from "./presets.ts";
+import { Rows } from "./rows.tsx";
+import { type Thing, thingsOf } from "./things.ts";
+
+/** The page of algebra: lines of formulas, what they come to, and a drawing of it. The text is its only state. */
+export function AlgebraPage({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
+  useEffect(() => {
+    if (model.lines.peek() === "") model.lines.value = ALGEBRA_PRESETS[0]!.lines;
+  }, [model]);
+  const lines = useComputed(() => model.core.evaluated(model.lines.value));
+  const things = useComputed(() => thingsOf(lines.value));
+  const tones = useComputed(() => colours(palette.value));
+  const change = useMemo(
+    () => (line: number, text: (old: string) => string) => {
+      const all = model.lines.peek().split("\n");
+      if (all[line] === undefined) return;
+      all[line] = text(all[line]);
+      model.lines.value = all.join("\n");
+    },
+    [model],
+  );
+  return (
+    <div class="algebra">
+      <style>{styles}</style>
+      <Choice model={model} />
+      <Picture
+        things={things}
+        palette={palette}
+        move={(line, to) => change(line, (old) => withVector(old, to))}
+      />
+      <Rows text={model.lines} lines={lines} things={things} tones={tones} change={change} />
+    </div>
+  );
+}
+
+/** Which preset the lines come from, and what it shows. Handles and sliders change literals only. */
+function Choice({ model }: { model: Model }) {
+  const chosen = useComputed(() => {
+    const written = outline(model.lines.value);
+    return ALGEBRA_PRESETS.find(({ lines }) => outline(lines) === written) ?? null;
+  });
+  const preset = chosen.value;
+  return (
+    <section class="choice" aria-label="Figure">
+      <label>
+        <span class="hidden">Figure</span>
+        <select
+          id="figure"
+          value={preset?.id ?? ""}
+          onChange={(event) => {
+            const next = ALGEBRA_PRESETS.find(({ id }) => id === event.currentTarget.value);
+            if (next) model.lines.value = next.lines;
+          }}
+        >
+          {preset === null && (
+            <option value="" disabled>
+              Own lines
+            </option>
+          )}
+          {ALGEBRA_PRESETS.map(({ id, title }) => (
+            <option key={id} value={id}>
+              {title}
+            </option>
+          ))}
+        </select>
+      </label>
+      <p class="about" aria-live="polite">
+        {preset?.about ??
+          "Give a name a value, define a function, V(x) = ½ x·x, or ask whether an equation holds."}
+      </p>
+    </section>
+  );
+}
+
+function Picture(props: {
+  things: ReadonlySignal<readonly Thing[]>;
+  palette: ReadonlySignal<Palette>;
+  move: (line: number, to: [number, number, number]) => void;
+}) {
+  const { things, palette, move } = props;
+  const place = useRef<HTMLDivElement>(null);
+  const drawing = useRef<Drawing | null>(null);
+  const missing = useSignal<string | null>(null);
+  useEffect(() => {
+    try {
+      drawing.current = new Drawing(place.current!, things, palette, move);
+    } catch (error) {
+      missing.value =
+        error instanceof NoWebGL
+          ? "This browser draws no 3-d pictures (WebGL 2 is missing or switched off). All values are there."
+          : words(error);
+    }
+    return () => drawing.current?.dispose();
+  }, [things, palette]);
+  return (
+    <section class="drawing" aria-label="Drawing">
+      <div class="drawn" ref={place} />
+      {missing.value !== null ? (
+        <p class="missing">{missing.value}</p>
+      ) : (
+        <button class="quiet home" title="Everything in view" onClick={() => drawing.current?.home()}>
+          <svg class="icon" viewBox="0 0 20 20" aria-hidden="true">
+            <path
+              d="M3 8V3h5M12 3h5v5M17 12v5h-5M8 17H3v-5"
+              fill="none"
+              stroke="currentColor"
+              stroke-width="1.6"
+            />
+          </svg>
+          <span class="hidden">Everything in view</span>
+        </button>
+      )}
+    </section>
+  );
+}

@@ -1,0 +1,130 @@
+import type { ReadonlySignal, Signal } from "@preact/signals";
+import { useLayoutEffect, useRef } from "preact/hooks";
+import type { Line } from "../core/core.ts";
+import { scalarLiteral, withScalar } from "./literal.ts";
+import { Kind, Result } from "./result.tsx";
+import { ScalarSlider } from "./slider.tsx";
+import type { Thing } from "./things.ts";
+import { painted } from "./painted.tsx";
+
+type Change = (line: number, text: (old: string) => string) => void;
+
+interface Props {
+  text: Signal<string>;
+  lines: ReadonlySignal<readonly Line[]>;
+  things: ReadonlySignal<readonly Thing[]>;
+  tones: ReadonlySignal<readonly string[]>;
+  change: Change;
+}
+
+/** The lines, each with what it comes to. Enter, Backspace, the arrow keys and pasting go over their ends. */
+export function Rows({ text, lines, things, tones, change }: Props) {
+  const list = useRef<HTMLOListElement>(null);
+  /** Where the caret goes when the rows are there: the row and the place in it. */
+  const caret = useRef<[number, number] | null>(null);
+  useLayoutEffect(() => {
+    if (!caret.current) return;
+    const [row, column] = caret.current;
+    caret.current = null;
+    go(list.current, row, column);
+  });
+  const named = new Map(things.value.map((thing) => [thing.label, thing]));
+  const colourOf = (name: string) => {
+    const thing = named.get(name);
+    return thing ? tones.value[thing.colour] : undefined;
+  };
+  /** Puts some text in the place of rows, with the caret so far from its beginning. */
+  const replace = (first: number, count: number, written: string, at: number): void => {
+    const all = text.peek().split("\n");
+    all.splice(first, count, ...written.split("\n"));
+    const before = written.slice(0, at).split("\n");
+    caret.current = [first + before.length - 1, before[before.length - 1]!.length];
+    text.value = all.join("\n");
+  };
+  const pressed = (event: KeyboardEvent, row: number): void => {
+    const area = event.currentTarget as HTMLTextAreaElement;
+    const { selectionStart: start, selectionEnd: end, value } = area;
+    const all = text.peek().split("\n");
+    const plain = !event.shiftKey && !event.ctrlKey && !event.metaKey && !event.altKey;
+    const wrapped = area.clientHeight > 2.5 * parseFloat(getComputedStyle(area).lineHeight);
+    if (event.key === "Backspace" && start === 0 && end === 0 && row > 0) {
+      replace(row - 1, 2, all[row - 1]! + value, all[row - 1]!.length);
+    } else if (event.key === "Delete" && start === value.length && end === start && row < all.length - 1) {
+      replace(row, 2, value + all[row + 1]!, start);
+    } else if (event.key === "ArrowUp" && plain && row > 0 && (!wrapped || start === 0)) {
+      go(list.current, row - 1, start);
+    } else if (event.key === "ArrowDown" && plain && row < all.length - 1) {
+      if (wrapped && start < value.length) return;
+      go(list.current, row + 1, start);
+    } else {
+      return;
+    }
+    event.preventDefault();
+  };
+  return (
+    <section class="rows" aria-label="Lines">
+      <ol ref={list}>
+        {lines.value.map((line, row) => {
+          const thing = things.value.find((one) => one.line === row);
+          const tone = thing && tones.value[thing.colour];
+          const scalar =
+            line.value?.grades.join() === "0" && line.name !== null ? scalarLiteral(line.text) : null;
+          return (
+            <li
+              key={row}
+              class={line.problem ? "line wrong" : "line"}
+              data-line={row + 1}
+              data-components={line.value?.components.join(" ")}
+              data-holds={line.equation ? String(line.equation.holds) : undefined}
+              data-problem={line.problem?.message}
+            >
+              <div class="code">
+                <pre aria-hidden="true">{painted(line, colourOf)}</pre>
+                <textarea
+                  rows={1}
+                  spellcheck={false}
+                  autocomplete="off"
+                  autocapitalize="off"
+                  aria-label={`Line ${row + 1}`}
+                  aria-invalid={line.problem !== null}
+                  aria-describedby={`came-${row}`}
+                  value={line.text}
+                  onInput={(event) => {
+                    const { value, selectionStart } = event.currentTarget;
+                    replace(row, 1, value, selectionStart);
+                  }}
+                  onKeyDown={(event) => pressed(event, row)}
+                />
+              </div>
+              <Kind line={line} tone={tone} />
+              {scalar && (
+                <ScalarSlider
+                  name={line.name!}
+                  number={scalar.number}
+                  unit={scalar.unit.trim()}
+                  onChange={(number) => change(row, (old) => withScalar(old, number))}
+                />
+              )}
+              <Result id={`came-${row}`} line={line} written={scalar !== null || (thing?.movable ?? false)} />
+            </li>
+          );
+        })}
+      </ol>
+      <button
+        class="quiet more"
+        onClick={() => {
+          const all = text.peek();
+          replace(all.split("\n").length, 0, "", 0);
+        }}
+      >
+        + Line
+      </button>
+    </section>
+  );
+}
+
+function go(list: HTMLOListElement | null, row: number, column: number): void {
+  const area = list?.children[row]?.querySelector("textarea");
+  area?.focus();
+  area?.setSelectionRange(column, column);
+}

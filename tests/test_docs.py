@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import polhode as ph
+from command_line import polhode
 from polhode import _cli
 from viewers import needs_bundle
 
@@ -77,6 +78,29 @@ def test_the_commands_of_the_viewer_are_commands():
     for command in commands:
         options = _cli._parser().parse_args(command.split())
         assert callable(options.command)
+
+
+def test_the_page_of_figures_runs(tmp_path):
+    pytest.importorskip("matplotlib")
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    blocks = blocks_of(ROOT / "docs/figures.md")
+    asked = (
+        "".join(text for language, text in blocks if language == "console").removeprefix("$ ").split("\n$ ")
+    )
+    assert len(asked) == 4
+    for command, answer in (part.split("\n", 1) for part in asked):
+        done = polhode(*command.split()[1:], cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout.strip() == answer.strip()
+    (code,) = (text for language, text in blocks if language == "python")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    told = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
+    assert [line.strip() for line in done.stdout.splitlines()] == told
+    written = {"polhode.svg", "scene.pdf", "turned.svg", "top.gif", "locus.pdf"}
+    assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
 
 
 def blocks_of(page):

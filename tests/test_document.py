@@ -454,6 +454,15 @@ def test_a_file_of_a_scene_brings_it(tmp_path):
     assert "t-handle.stl" in _document.document(tmp_path / "a.nc")["files"]
 
 
+def test_files_that_are_cut_off_are_refused(saved):
+    _, path = saved
+    content = path.read_bytes()
+    for length in (0, 100, len(content) // 2, len(content) - 1):
+        path.write_bytes(content[:length])
+        with pytest.raises(OSError, match=r"a.nc is no netCDF file that can be read"):
+            ph.Trajectory.read(path)
+
+
 def test_other_files_are_refused(tmp_path):
     xarray = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")
@@ -465,7 +474,7 @@ def test_other_files_are_refused(tmp_path):
     xarray.Dataset({"time": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(ValueError, match=r"other.nc is no motion that polhode wrote: it has no"):
         ph.Trajectory.read(tmp_path / "other.nc")
-    many = ph.simulate(MOMENTS, ph.State(START.rotor, np.ones((2, 3))), [0, 1])
+    many = ph.simulate(MOMENTS, ph.State(START.rotor, np.ones((2, 4, 3))), [0, 1])
     many.save(tmp_path / "many.nc")
     with pytest.raises(ValueError, match="batch of bodies"):
         ph.Trajectory.read(tmp_path / "many.nc")

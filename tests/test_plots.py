@@ -9,8 +9,9 @@ import pytest
 import polhode as ph
 
 pytest.importorskip("matplotlib")
-from polhode._plot import motion_figure
-from polhode._spheres import _View, axis_figure, polhode_figure
+from polhode._camera import View
+from polhode._plot import PLANES, POLHODE, TRACE, motion_figure
+from polhode._spheres import axis_figure, polhode_figure
 
 R0 = ph.Rotor.from_components([4, -2, 1, 2])
 TIMES = np.linspace(0, 10, 201)
@@ -88,8 +89,8 @@ def test_axes_are_labelled_with_units():
     assert "relative" in drift.get_ylabel()
     assert drift.get_xlabel() == "time, s"
     assert figure.get_suptitle() == "A title"
-    assert [t.get_text() for t in rates.get_legend().get_texts()] == ["e2∧e3", "e3∧e1", "e1∧e2"]
-    assert [t.get_text() for t in attitude.get_legend().get_texts()] == ["1", "e2∧e3", "e3∧e1", "e1∧e2"]
+    assert [t.get_text() for t in rates.get_legend().get_texts()] == list(PLANES)
+    assert [t.get_text() for t in attitude.get_legend().get_texts()] == ["1", *PLANES]
 
 
 @pytest.mark.parametrize(
@@ -113,14 +114,24 @@ def test_the_lines_are_the_data():
         np.testing.assert_array_equal(line.get_ydata(), motion.rotor.components[:, k])
 
 
-def orange(axes):
-    """The two halves of the polhode, behind and in front, merged: (n, 2)."""
+def halves(axes, colour):
+    """The two halves of a path, behind and in front, (n, 2) each; points on the outline are in both."""
     back, front = (
         np.array(line.get_data()).T
         for line in axes.lines
-        if line.get_color() == "#D55E00" and len(line.get_xdata()) > 1
+        if line.get_color() == colour and len(line.get_xdata()) > 1
     )
-    return np.where(np.isnan(front), back, front), ~np.isnan(front[:, 0])
+    return back, front
+
+
+def is_on(points, back, front):
+    """Where each of the points (n, 2) is drawn: whether in the half behind, and whether in front."""
+    found = [
+        (np.abs(half[~np.isnan(half[:, 0])] - points[:, np.newaxis]).max(axis=2) < 1e-12).any(axis=1)
+        for half in (back, front)
+    ]
+    assert (found[0] | found[1]).all()
+    return found
 
 
 @pytest.mark.parametrize("name", ["asymmetric", "long axis", "symmetric", "turned axes"])
@@ -128,15 +139,16 @@ def test_the_drawn_polhode_is_on_the_ellipsoid(name):
     """The picture is ω about the principal axes, whose Σ i_k ω_k² is 2E; the outline encloses it."""
     motion = FREE[name]()
     axes = polhode_figure(motion).axes[0]
-    flat, front = orange(axes)
+    back, front = halves(axes, POLHODE)
     F, i = motion.inertia.principal_frame, motion.inertia.principal_moments
     omega = (~F)(motion.omega_body).components
     np.testing.assert_allclose(omega**2 @ i, 2 * motion.energy, rtol=1e-9)
-    view = _View()
-    np.testing.assert_allclose(flat, view.project(omega), rtol=0, atol=1e-12)
+    view = View()
+    behind, ahead = is_on(view.project(omega), back, front)
     # From the picture's plane and the side it is drawn on, the point of the ellipsoid comes back.
     a = view.toward**2 @ i
-    for point, facing, w in zip(flat, front, omega, strict=True):
+    for point, facing, hidden, w in zip(view.project(omega), ahead, behind, omega, strict=True):
+        assert facing != hidden
         base = point @ view.basis
         b, c = view.toward * base @ i, base**2 @ i - 2 * motion.energy[0]
         root = np.sqrt(max(b * b - a * c, 0.0))
@@ -146,7 +158,7 @@ def test_the_drawn_polhode_is_on_the_ellipsoid(name):
 
 def test_what_is_behind_is_drawn_behind():
     """The point of a sphere towards us is in front, its opposite behind, the ends of the split meet."""
-    view = _View()
+    view = View()
     assert np.linalg.norm(view.toward) == pytest.approx(1)
     np.testing.assert_allclose(view.basis @ view.toward, 0, atol=1e-15)
     np.testing.assert_allclose(view.project(view.toward[np.newaxis]), 0, atol=1e-15)
@@ -158,19 +170,22 @@ def test_what_is_behind_is_drawn_behind():
     circle = np.cos(s) * view.toward + np.sin(s) * side
     view.curve(axes, circle, circle, color="k")
     back, front = (np.array(line.get_data()).T for line in axes.lines)
-    visible = (np.cos(s) > 0)[:, 0]
-    np.testing.assert_array_equal(~np.isnan(front[:, 0]), visible)
-    hidden = ~np.isnan(back[:, 0])
-    assert hidden[~visible].all()
-    # One point of the visible side at either end, so that the halves meet.
-    assert (hidden & visible).sum() == 2
-    alphas = [line.get_alpha() for line in axes.lines]
-    assert alphas[0] < alphas[1]
+    behind, ahead = ~np.isnan(back[:, 0]), ~np.isnan(front[:, 0])
+    # The halves meet on the outline: in two points more, in the middle of the chords that cross it.
+    both = behind & ahead
+    assert both.sum() == 2
+    np.testing.assert_allclose(np.abs(back[both, 0]), np.cos(np.radians(1)), rtol=1e-12)
+    np.testing.assert_array_equal(ahead[~both], np.cos(s)[:, 0] > 0)
+    np.testing.assert_array_equal(behind[~both], np.cos(s)[:, 0] < 0)
+    dashed, solid = axes.lines
+    assert dashed.get_alpha() < solid.get_alpha()
+    assert dashed.is_dashed()
+    assert not solid.is_dashed()
 
 
 def test_the_outline_is_that_of_the_ellipsoid():
     """Its points are those of the surface farthest out in each direction of the picture."""
-    view, semi_axes = _View(), np.array([1.0, 2.0, 3.0])
+    view, semi_axes = View(), np.array([1.0, 2.0, 3.0])
     outline = view.silhouette(semi_axes)
     u = np.random.default_rng(0).normal(size=(20_000, 3))
     surface = view.project(semi_axes * u / np.linalg.norm(u, axis=1, keepdims=True))
@@ -185,10 +200,10 @@ def test_the_outline_is_that_of_the_ellipsoid():
 def test_the_path_of_the_axis_is_the_turned_axis():
     motion = heavy()
     axes = axis_figure(motion, np.array([0.0, 0.0, 2.0]), "the axis").axes[0]
-    flat, front = orange(axes)
     path = motion.rotor.to_matrix()[:, :, 2]
-    np.testing.assert_allclose(flat, _View().project(path), rtol=0, atol=1e-12)
-    np.testing.assert_array_equal(front, path @ _View().toward >= 0)
+    behind, ahead = is_on(View().project(path), *halves(axes, TRACE))
+    np.testing.assert_array_equal(ahead, path @ View().toward >= 0)
+    np.testing.assert_array_equal(behind, path @ View().toward < 0)
 
 
 @pytest.mark.parametrize(("rate", "label"), [(10.0, "attitude rotor"), (1000.0, "of principal axis 3")])

@@ -104,6 +104,7 @@ def _parser() -> argparse.ArgumentParser:
     check.set_defaults(command=_check)
     _add_view(commands)
     _add_formulas(commands)
+    _add_figures(commands)
     return parser
 
 
@@ -150,6 +151,12 @@ def _add_formulas(commands: Any) -> None:
 
     repl = commands.add_parser("repl", help="evaluate formulas as you type them")
     repl.set_defaults(command=_repl)
+
+
+def _add_figures(commands: Any) -> None:
+    from polhode import _figure_command
+
+    _figure_command.add(commands, _progress)
 
 
 def _definition(text: str) -> str:

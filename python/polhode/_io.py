@@ -178,9 +178,10 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
 
 # --- back again
 
+# Attributes that are ours, or the library's.
 _OWN = {
     *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
-    "error_estimate",
+    *("error_estimate", "_NCProperties"),
 }
 
 
@@ -207,23 +208,32 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
         )
     except KeyError as error:
         raise ValueError(f"{path} is no motion that polhode wrote: it has no {error}") from None
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{path} is no motion that polhode wrote: {error}") from error
 
 
 def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arrays and the attributes of a file."""
-    library = optional("h5netcdf", "io", "a netCDF file")
+    library = optional("h5py", "io", "a netCDF file")
     if not os.path.isfile(path):
         raise FileNotFoundError(f"{path}: no such file")
     try:
         with library.File(path, "r") as file:
-            attributes = {name: getattr(x, "item", lambda x=x: x)() for name, x in file.attrs.items()}
-            many = "batch_shape" in attributes or "body" in file.dimensions
-            fields = {} if many else {name: variable[...] for name, variable in file.variables.items()}
-    except OSError as error:
+            attributes = {name: getattr(x, "tolist", lambda x=x: x)() for name, x in file.attrs.items()}
+            many = "batch_shape" in attributes or "body" in file
+            fields = {} if many else {name: _array(name, variable) for name, variable in file.items()}
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        # A file that is damaged fails at any depth of the library, which has no error of its own.
         raise OSError(f"{path} is no netCDF file that can be read: {error}") from error
     if many:
         raise ValueError(f"{path} holds a batch of bodies; xarray.open_dataset reads it")
     return fields, attributes
+
+
+def _array(name: str, variable: Any) -> Any:
+    if variable is None:
+        raise OSError(f"`{name}` is damaged")
+    return variable.asstr()[...] if variable.dtype.kind == "O" else variable[...]
 
 
 def _rotors(quaternions: Any) -> Any:
@@ -257,10 +267,10 @@ def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:
 
     if "event_name" not in fields:
         return ()
-    names = [name.decode() if isinstance(name, bytes) else name for name in fields["event_name"]]
+    names = fields["event_name"]
     found = []
     for name in dict.fromkeys(names):
-        at = np.array([one == name for one in names])
+        at = names == name
         found.append(
             Crossings(
                 name,

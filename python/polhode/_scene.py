@@ -122,7 +122,7 @@ class Scene:
         )
 
     def surface(self) -> tuple[Array, Array] | None:
-        """Return the mesh that the file names, read again: vertices (n, 3) in body axes in m, triangles (m, 3).
+        """Return the mesh that the file names: vertices (n, 3) in body axes in m, and triangles (m, 3).
 
         None where it names none.
         """

@@ -49,6 +49,11 @@ class Problem:
     step: float | None = None
     tolerance: float | None = None
 
+    @property
+    def held(self) -> bool:
+        """Whether the body is held at a fixed point, the origin of its axes."""
+        return self.torque is not None and self.torque.holds
+
     def scene(self) -> str:
         """Return the scene, in TOML, whose body, start and laws are these to the last bit.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -257,15 +257,64 @@ class Trajectory:
 
         write_atomically({Path(path): netcdf(self)})
 
-    def plot(self) -> Figure:
-        """Draw angular velocity, attitude and conserved quantities over time; a matplotlib figure.
+    def plot(self, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
+        """Return a matplotlib figure for paper, of one body.
 
-        Of one body; a ValueError for a batch.
+        Parameters
+        ----------
+        kind
+            ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
+            ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
+            what is conserved; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors.
+        view
+            Azimuth and elevation in degrees from which to look at what has depth; None for the usual ones.
+        time
+            Of the scene, in s; None for the last one.
+
+        Raises
+        ------
+        ValueError
+            For a batch, a kind that does not fit the motion, or too few output times.
         """
         self._require_one("plot")
-        from polhode._plot import motion_figure
+        from polhode._figures import figure
 
-        return motion_figure(self)
+        return figure(self, kind, view, time)
+
+    def film(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        seconds: float = 12.0,
+        fps: float = 25.0,
+        size: tuple[int, int] | None = None,
+        view: Any = None,
+        progress: Callable[[float], object] | None = None,
+    ) -> None:
+        """Write a film of the scene of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
+
+        Parameters
+        ----------
+        seconds, fps
+            How long the film takes for the whole motion, and its pictures in a second.
+        size
+            Width and height in pixels; None for (1280, 720), of a GIF (640, 360).
+        view
+            As for `plot`.
+        progress
+            Called now and then with the fraction done.
+
+        Raises
+        ------
+        ValueError
+            For a batch, another name of file, too few output times, or a film of no pictures.
+        OSError
+            Without ffmpeg, or where the file cannot be written; an older file stays.
+        """
+        self._require_one("film")
+        from polhode._film import write
+
+        write(self, Path(path), seconds, fps, size, view, progress)
 
     def view(self) -> Viewer:
         """Show the motion in a notebook, as `polhode.view` does.

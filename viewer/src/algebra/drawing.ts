@@ -233,7 +233,8 @@ export class Drawing {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (width === 0 || height === 0) return;
     const { camera } = this.viewpoint;
-    if (this.viewpoint.step(1 / 60)) this.draw();
+    this.viewpoint.step(1 / 60);
+    if (this.viewpoint.moving) this.draw();
     this.scene.updateMatrixWorld();
     const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
     const up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
@@ -245,7 +246,7 @@ export class Drawing {
       const towards = right.clone().multiplyScalar(across).addScaledVector(up, high).projectOnPlane(axis);
       label.at.copy(towards.setLength(radius));
     }
-    this.labels.place(camera, this.scene.matrixWorld, width, height, true);
+    this.labels.place(camera, this.scene.matrixWorld, new Vector2(width, height), true);
     this.handles.place(camera, width, height);
     this.renderer.render(this.scene, camera);
     for (const shapes of this.old) shapes.dispose();

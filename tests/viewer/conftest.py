@@ -14,6 +14,13 @@ from viewer_scenes import ROOT, followed
 BUNDLE = ROOT / "python/polhode/_viewer/viewer.js"
 
 
+def pytest_terminal_summary(terminalreporter):
+    """Tell what was measured and not judged."""
+    for report in terminalreporter.getreports("passed"):
+        for name, value in report.user_properties:
+            terminalreporter.line(f"{name}: {value}")
+
+
 @pytest.fixture(scope="package")
 def node():
     """The path of Node, with the packages of the viewer."""

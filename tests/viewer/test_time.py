@@ -90,15 +90,19 @@ def test_the_controls_are_reached_by_tab_alone(name, opened):
     reached = []
     for _ in controls:
         page.page.keyboard.press("Tab")
-        reached.append(page.page.evaluate(FOCUSED))
+        control, marked = page.page.evaluate(FOCUSED)
+        assert marked, f"{control} has the focus and does not show it"
+        reached.append(control)
     assert reached == controls
 
 
-# The element with the focus, through shadow roots: its tag, name and id; the page itself is null.
+# The element with the focus, through shadow roots: its tag and id, and whether it is marked.
 FOCUSED = """() => {
     let element = document.activeElement;
-    while (element?.shadowRoot?.activeElement) element = element.shadowRoot.activeElement;
-    return element === document.body ? null : `${element.localName}#${element.id}`;
+    while (element.shadowRoot?.activeElement) element = element.shadowRoot.activeElement;
+    const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(element);
+    const marked = (outlineStyle !== "none" && outlineWidth !== "0px") || boxShadow !== "none";
+    return [`${element.localName}#${element.id}`, marked];
 }"""
 CONTROLS = """() => {
     const root = document.querySelector("polhode-viewer").shadowRoot;

@@ -222,7 +222,7 @@ class Scene:
         trajectory.attributes.update({"title": self.name, "scene": self.text})
         if trajectory.shape:
             return trajectory
-        setting = Setting(self.torque, self.force, self.text, self.path, self.body)
+        setting = Setting(self.torque, self.force, self.text, self.path.absolute(), self.body)
         return replace(trajectory, _setting=setting)
 
 

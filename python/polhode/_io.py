@@ -219,7 +219,7 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
         raise FileNotFoundError(f"{path}: no such file")
     try:
         with library.File(path, "r") as file:
-            attributes = {name: getattr(x, "tolist", lambda x=x: x)() for name, x in file.attrs.items()}
+            attributes = {name: _attribute(x) for name, x in file.attrs.items()}
             many = "batch_shape" in attributes or "body" in file
             fields = {} if many else {name: _array(name, variable) for name, variable in file.items()}
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
@@ -228,6 +228,11 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     if many:
         raise ValueError(f"{path} holds a batch of bodies; xarray.open_dataset reads it")
     return fields, attributes
+
+
+def _attribute(x: Any) -> Any:
+    """Return a text or a number as such; in the file a number is an array of one."""
+    return x.item() if isinstance(x, np.ndarray) and x.size == 1 else x
 
 
 def _array(name: str, variable: Any) -> Any:

@@ -100,21 +100,27 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
         }"""
     )
 
-    def run():
-        """Run the next cell to its end."""
-        lab.evaluate("jupyterapp.commands.execute('notebook:run-cell-and-select-next')")
+    def run(cell):
+        """Run a cell to its end."""
+        lab.evaluate(
+            """cell => {
+                panel.content.activeCellIndex = cell;
+                return jupyterapp.commands.execute("notebook:run-cell");
+            }""",
+            cell,
+        )
 
-    run()
+    run(0)
     viewer.wait_for(timeout=60_000)
     page.settled()
-    run()
+    run(1)
     page.until("model.time.value === 1.25")
     # Now by hand, in the page.
     lab.get_by_label("Time, s").fill("3.5")
     lab.get_by_label("Time, s").press("Tab")
     page.until("model.time.value === 3.5")
     rates = page.data("omega-body").tolist()
-    run()
+    run(2)
     told = lab.locator(".jp-OutputArea-output", has_text="shown 3.5")
     told.wait_for()
     assert json.loads(told.inner_text().partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)

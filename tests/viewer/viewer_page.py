@@ -52,7 +52,7 @@ class ViewerPage:
 
     def settled(self):
         """Wait until the core is there and the document was read."""
-        self.until(f"['ready', 'problem'].includes({VIEWER}.dataset.state)")
+        self.until(f"['ready', 'problem'].includes({VIEWER}?.dataset.state)")
 
     def until(self, condition, **given):
         """Wait for a condition in JavaScript, of `model` and of names that are given, for a minute at most.
@@ -63,7 +63,7 @@ class ViewerPage:
             f"""async given => {{
                 const {{ {", ".join(given)} }} = given;
                 for (const start = performance.now(); performance.now() < start + 60_000; ) {{
-                    const model = {VIEWER}.shadowRoot && (await {READY});
+                    const model = {VIEWER}?.ready && (await {READY});
                     if ({condition}) return true;
                     await new Promise(requestAnimationFrame);
                 }}

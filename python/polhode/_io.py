@@ -17,7 +17,8 @@ from polhode._extras import optional
 if TYPE_CHECKING:
     import xarray
 
-    from polhode._trajectory import Crossings, Trajectory
+    from polhode._certificate import Crossings
+    from polhode._trajectory import Trajectory
 
 CONVENTIONS = (
     "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, "
@@ -249,7 +250,7 @@ def _rotors(quaternions: Any) -> Any:
 
 
 def _certificate(attributes: dict[str, Any]) -> Any:
-    from polhode._trajectory import Certificate
+    from polhode._certificate import Certificate
 
     drift = json.loads(attributes["drift"])
     norm_drift = drift.pop("rotor_norm")
@@ -267,7 +268,7 @@ def _certificate(attributes: dict[str, Any]) -> Any:
 
 def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:
     """Return the events that happened, by their names."""
-    from polhode._trajectory import Crossings
+    from polhode._certificate import Crossings
     from polhode._values import bivector, vector
 
     if "event_name" not in fields:

@@ -178,6 +178,42 @@ def test_a_long_title_is_wrapped():
         assert figure.get_suptitle().count("$") == 20
 
 
+VIEWS = [(35, 22), (-120, 5), (200, -40), (0, 0), (0, 90), (77, -90)]
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_what_is_behind_is_dashed_from_wherever_one_looks(view):
+    """Each point of the polhode is in the half on whose side of the ellipsoid its normal points."""
+    motion = free((1, 2, 3), (1, 0.5, -0.25))
+    look = View(*view)
+    dashed, solid = (
+        line for line in motion.plot("polhode", view=view).axes[0].lines if is_path(line, POLHODE)
+    )
+    assert dashed.is_dashed()
+    assert not solid.is_dashed()
+    omega = motion.omega_body.components
+    flat, ours = look.project(omega), (omega * [1, 2, 3]) @ look.toward > 0
+    for line, chosen in ((solid, ours), (dashed, ~ours)):
+        drawn_here = np.array(line.get_data()).T
+        drawn_here = drawn_here[~np.isnan(drawn_here[:, 0])]
+        missing = [p for p in flat[chosen] if np.abs(drawn_here - p).max(axis=1).min() > 1e-12]
+        assert not missing
+        # And nothing else but where it passes the outline, an end of each stretch.
+        assert len(drawn_here) - chosen.sum() <= np.count_nonzero(np.diff(ours))
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_all_views_are_drawn(view):
+    for kind in ("polhode", "phase", "scene"):
+        drawn(free().plot(kind, view=view))
+    for kind in ("locus", "scene"):
+        drawn(top().plot(kind, view=view))
+
+
+def is_path(line, colour):
+    return line.get_color() == colour and len(line.get_xdata()) > 1
+
+
 # --- herpolhode
 
 

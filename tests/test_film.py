@@ -121,6 +121,7 @@ def test_the_trace_is_the_path_up_to_now():
             ValueError,
             "size is 321x180; of an MP4 width and height must be even",
         ),
+        ({"size": 640}, ValueError, "size is 640; it must be width and height"),
         ({"view": "up"}, (ValueError, TypeError), "view"),
         ({"path": "none/a.gif"}, OSError, "there is no directory none"),
     ],

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from polhode._agreement import Agreement as Agreement
     from polhode._bodies import Body as Body
     from polhode._bodies import Inertia as Inertia
+    from polhode._certificate import Certificate as Certificate
+    from polhode._certificate import Crossings as Crossings
+    from polhode._certificate import Failure as Failure
     from polhode._closed_forms import DampedTop as DampedTop
     from polhode._closed_forms import LagrangeTop as LagrangeTop
     from polhode._closed_forms import LarmorSphere as LarmorSphere
@@ -58,9 +61,6 @@ if TYPE_CHECKING:
     from polhode._simulate import simulate as simulate
     from polhode._simulate import simulate_blocks as simulate_blocks
     from polhode._state import State as State
-    from polhode._trajectory import Certificate as Certificate
-    from polhode._trajectory import Crossings as Crossings
-    from polhode._trajectory import Failure as Failure
     from polhode._trajectory import Trajectory as Trajectory
 
 # Imported when they are first asked for: those who only multiply need not wait for mechanics.
@@ -88,9 +88,9 @@ _LATER = {
     "mean": "_interpolation",
     "slerp": "_interpolation",
     "LinearMap": "_linear",
-    "Certificate": "_trajectory",
-    "Crossings": "_trajectory",
-    "Failure": "_trajectory",
+    "Certificate": "_certificate",
+    "Crossings": "_certificate",
+    "Failure": "_certificate",
     "Trajectory": "_trajectory",
     "Moments": "_moments",
     "view": "_notebook",

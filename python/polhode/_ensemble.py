@@ -13,10 +13,11 @@ from polhode import _memory, _native
 from polhode._arrays import Array, Shape, frozen
 from polhode._batch import Batch, check_finite, common
 from polhode._bodies import Body, Inertia
+from polhode._certificate import Certificate, Failure
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State
-from polhode._trajectory import Certificate, Drift, Failure, Trajectory
+from polhode._trajectory import Drift, Trajectory
 
 # Of a point: rotor, angular velocity, momentum and energy; place and velocity, where forces move bodies.
 _BYTES_OF_POINT = 8 * (4 + 3 + 3 + 1)

@@ -10,11 +10,12 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Array
+from polhode._certificate import Failure
 from polhode._extras import optional
 from polhode._io import CONVENTIONS
 from polhode._kinds import kind_of
 from polhode._scene import Scene
-from polhode._trajectory import Failure, Trajectory
+from polhode._trajectory import Trajectory
 
 # Bytes of a chunk, what is read or written at once.
 _CHUNK = 1 << 20

@@ -27,8 +27,8 @@ _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
 _SMALLEST, _LARGEST, _MOST = 16, 7680, 100_000
 # The trace goes back this share of the film.
 _TAIL = 0.35
-# At this height in pixels type has its usual size.
-_HEIGHT, _DPI = 600.0, 115.0
+# Pixels in an inch, by which type and lines are measured, at a height; smaller films have larger type for it.
+_HEIGHT, _DPI, _SMALLER = 600.0, 115.0, 0.75
 
 Progress = Callable[[float], object]
 
@@ -84,6 +84,8 @@ def ffmpeg() -> str:
 
 
 def _checked_size(size: Any, form: str) -> tuple[int, int]:
+    if not isinstance(size, tuple | list) or len(size) != 2:
+        raise ValueError(f"size is {size!r}; it must be width and height in pixels, such as (1280, 720)")
     width, height = (as_count(x, "size") for x in size)
     if min(width, height) < _SMALLEST or max(width, height) > _LARGEST:
         raise ValueError(
@@ -132,7 +134,7 @@ def _picture(stage: Stage, time: float, tail: float, size: tuple[int, int]) -> A
 @in_our_look
 def frame(stage: Stage, time: float, tail: float, size: tuple[int, int]) -> Figure:
     """Return the figure of a moment, as large in pixels as the film."""
-    dpi = _DPI * size[1] / _HEIGHT
+    dpi = _DPI * (size[1] / _HEIGHT) ** _SMALLER
     figure: Figure = optional("matplotlib.figure", "plot", "a film").Figure(
         figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi
     )

@@ -9,12 +9,13 @@ import numpy as np
 
 from polhode import _native
 from polhode._arrays import Array
+from polhode._certificate import Failure
 from polhode._free_motion import FreeMotion
 from polhode._kinds import kind_of, orbit_of, weight
 from polhode._plot import main_axis
 from polhode._rotor import Rotor
 from polhode._scene import Scene
-from polhode._trajectory import Failure, Trajectory
+from polhode._trajectory import Trajectory
 from polhode._values import vector
 
 # Numbers of each body at each time, in single precision: seven digits are more than a quantile has.

@@ -17,7 +17,8 @@ from polhode._extras import optional
 if TYPE_CHECKING:
     import xarray
 
-    from polhode._trajectory import Crossings, Trajectory
+    from polhode._certificate import Crossings
+    from polhode._trajectory import Trajectory
 
 CONVENTIONS = (
     "Right-handed e1, e2, e3; I = e1e2e3. Rotor R = exp(-B theta/2) turns body axes to space axes, "
@@ -219,7 +220,7 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
         raise FileNotFoundError(f"{path}: no such file")
     try:
         with library.File(path, "r") as file:
-            attributes = {name: getattr(x, "tolist", lambda x=x: x)() for name, x in file.attrs.items()}
+            attributes = {name: _attribute(x) for name, x in file.attrs.items()}
             many = "batch_shape" in attributes or "body" in file
             fields = {} if many else {name: _array(name, variable) for name, variable in file.items()}
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
@@ -228,6 +229,11 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     if many:
         raise ValueError(f"{path} holds a batch of bodies; xarray.open_dataset reads it")
     return fields, attributes
+
+
+def _attribute(x: Any) -> Any:
+    """Return a text or a number as such; in the file a number is an array of one."""
+    return x.item() if isinstance(x, np.ndarray) and x.size == 1 else x
 
 
 def _array(name: str, variable: Any) -> Any:
@@ -244,7 +250,7 @@ def _rotors(quaternions: Any) -> Any:
 
 
 def _certificate(attributes: dict[str, Any]) -> Any:
-    from polhode._trajectory import Certificate
+    from polhode._certificate import Certificate
 
     drift = json.loads(attributes["drift"])
     norm_drift = drift.pop("rotor_norm")
@@ -262,7 +268,7 @@ def _certificate(attributes: dict[str, Any]) -> Any:
 
 def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:
     """Return the events that happened, by their names."""
-    from polhode._trajectory import Crossings
+    from polhode._certificate import Crossings
     from polhode._values import bivector, vector
 
     if "event_name" not in fields:

@@ -55,7 +55,7 @@ class Painter:
     def faces(self, corners: Array, colours: Array, whole: Array) -> None:
         """Add small triangles (n, 3, 3) of colours (n, 3), and the triangles (m, 3, 3) that they make up."""
         # Their edges have the same colour, so that no seams are seen.
-        self._faces.append((corners, colours, colours, np.full(len(corners), 0.35)))
+        self._faces.append((corners, colours, colours, np.full(len(corners), 0.7)))
         self._hiding.append(whole)
 
     def line(self, points: Array, colours: Any, width: float, piece: float) -> None:
@@ -113,8 +113,7 @@ class Painter:
                 facecolors=faces[rows],
                 edgecolors=edges[rows],
                 linewidths=widths[rows],
-                joinstyle="round",
-                capstyle="round",
+                joinstyle="bevel",
                 zorder=10 + int(layer),
                 snap=False,
             )

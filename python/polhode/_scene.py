@@ -246,9 +246,10 @@ class Scene:
             progress=progress,
         )
         trajectory.attributes.update({"title": self.name, "scene": self.text})
-        if not trajectory.shape:
-            object.__setattr__(trajectory, "_origin", self)
-        return trajectory
+        if trajectory.shape:
+            return trajectory
+        # Wherever the program goes afterwards.
+        return replace(trajectory, _origin=replace(self, path=self.path.absolute()))
 
 
 def _sum_of(calls: list[tuple[str, tuple[Any, ...]]]) -> Force | None:

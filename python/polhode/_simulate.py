@@ -12,12 +12,13 @@ from polhode import _native
 from polhode import force as forces
 from polhode._arrays import as_count, as_float, as_floats
 from polhode._bodies import Body, Inertia
+from polhode._certificate import Certificate
 from polhode._coefficients import as_coefficients
 from polhode._ensemble import Ensemble, bodies_of, check_state, mapped_objects, shape_of
 from polhode._multivector import Multivector
 from polhode._scene_text import Problem
 from polhode._state import State
-from polhode._trajectory import Certificate, Trajectory
+from polhode._trajectory import Trajectory
 from polhode._values import as_point, vector
 from polhode.event import Event
 from polhode.force import Force

@@ -92,7 +92,7 @@ def satellite_figure(trajectory: Trajectory) -> Figure:
     assert trajectory._origin is not None
     along, _, up = long_axis(orbit_of(trajectory._origin.torque), trajectory).T
     angle = np.unwrap(np.arctan2(along, up))
-    rate = np.gradient(angle, trajectory.time)
+    rate = _rate_of(angle, trajectory.time)
     figure, axes = _portrait(trajectory)
     turns = 2 * np.pi * np.round(angle / (2 * np.pi))
     jumps = np.flatnonzero(np.diff(turns)) + 1
@@ -102,7 +102,7 @@ def satellite_figure(trajectory: Trajectory) -> Figure:
     axes.set_ylabel("its rate, degrees/s")
     explain(
         figure,
-        "The axis of the least moment, in the plane of the orbit, from the dot; the rate is that between the "
+        "The axis of the least moment, in the plane of the orbit, from the dot; the rate is that between "
         "output times.",
     )
     return figure
@@ -123,6 +123,15 @@ def angle_figure(trajectory: Trajectory) -> Figure:
         f"The axis f{name} about which the body mostly turns: its angle from e₃ of space, from the dot.",
     )
     return figure
+
+
+def _rate_of(angle: Array, time: Array) -> Array:
+    """Return the rate of an angle (n,) from its values; one time has one rate."""
+    moments, first, which = np.unique(time, return_index=True, return_inverse=True)
+    if len(moments) < 2:
+        return np.zeros_like(angle)
+    rate: Array = np.gradient(angle[first], moments)[which]
+    return rate
 
 
 def _portrait(trajectory: Trajectory) -> tuple[Figure, Axes]:

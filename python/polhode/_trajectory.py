@@ -13,6 +13,7 @@ import numpy as np
 from polhode import _native
 from polhode._arrays import Array, Shape, as_floats, frozen
 from polhode._bodies import Inertia
+from polhode._certificate import Certificate, Crossings, Failure
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State
@@ -357,122 +358,6 @@ class Drift:
     def _rates(self, times: Array) -> Array:
         rates = self.velocities[..., np.newaxis, :]
         return np.broadcast_to(rates, (*rates.shape[:-2], len(times), 3))
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A body of a batch that could not be followed to the end.
-
-    Attributes
-    ----------
-    index
-        Its place in the batch.
-    time
-        Up to when it was followed, in s.
-    message
-        Why no further.
-    """
-
-    index: tuple[int, ...]
-    time: float
-    message: str
-
-    def __str__(self) -> str:
-        return f"at index {self.index} after {self.time:.6g} s: {self.message}"
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """How a run was made, and how far it went astray in what the law conserves.
-
-    Of a batch of bodies all numbers are arrays of its shape; the method is a name where all bodies that were
-    followed to the end have the same, else an array of names. For bodies that failed, the error estimate and
-    the drifts are NaN.
-
-    Attributes
-    ----------
-    method, step, steps, evaluations
-        The method's name (``exact`` for the exact solution), its longest step in s, and the steps and the
-        evaluations of the torque of all passes.
-    error_estimate
-        Cautious estimate of the relative error in rotor and angular velocity, from the last two passes; None
-        for a step that was given; NaN in a batch.
-    conserved
-        Each conserved quantity's initial value in SI; NaN for a body of a batch that does not conserve it.
-    drift
-        Its largest change over the run, relative to the terms that make it up.
-    norm_drift
-        Largest ``abs(|R| − 1)``.
-    """
-
-    method: Any
-    step: Any
-    steps: Any
-    evaluations: Any
-    error_estimate: Any
-    conserved: dict[str, Any]
-    drift: dict[str, Any]
-    norm_drift: Any
-
-    @property
-    def worst(self) -> float:
-        """The largest drift of all, over the bodies that were followed to the end; NaN if none was."""
-        if not np.ndim(self.norm_drift):
-            return float(max([self.norm_drift, *self.drift.values()]))
-        finished = ~np.isnan(self.norm_drift)
-        if not finished.any():
-            return np.nan
-        told = ((self.drift[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
-        columns = [(self.norm_drift, finished), *told]
-        return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
-
-    def _of(self, index: tuple[Any, ...]) -> Certificate:
-        """Return that of some bodies of a batch."""
-
-        def picked(numbers: Any) -> Any:
-            found = np.asarray(numbers[index])
-            return found if found.ndim else found.item()
-
-        kept = [name for name, start in self.conserved.items() if not np.all(np.isnan(start[index]))]
-        estimate = picked(self.error_estimate)
-        return Certificate(
-            self.method if isinstance(self.method, str) else picked(self.method),
-            picked(self.step),
-            picked(self.steps),
-            picked(self.evaluations),
-            None if np.ndim(estimate) == 0 and np.isnan(estimate) else estimate,
-            {name: picked(self.conserved[name]) for name in kept},
-            {name: picked(self.drift[name]) for name in kept},
-            picked(self.norm_drift),
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Crossings:
-    """When and where an event happened, m times, in the order in which they were met: by `abs(time)`.
-
-    Attributes
-    ----------
-    name
-        What the event is called.
-    time
-        Times in s, (m,).
-    rising
-        Whether the quantity passed zero from below, in the direction in which time was followed, (m,).
-    rotor, omega_body, position, velocity
-        The states there, as in `Trajectory`, batch (m,).
-    """
-
-    name: str
-    time: Array
-    rising: Array
-    rotor: Rotor
-    omega_body: Multivector
-    position: Multivector
-    velocity: Multivector
-
-    def __len__(self) -> int:
-        return len(self.time)
 
 
 @dataclass(frozen=True, eq=False)

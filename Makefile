@@ -35,6 +35,7 @@ setup: .venv/.built
 
 # The viewer: the core as WebAssembly, and one bundle that Python puts into pages and notebooks.
 WASM_SOURCES := $(shell find crates/ga crates/rigid crates/wasm -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
+WASM := $(or $(CARGO_TARGET_DIR),target)/wasm32-unknown-unknown/viewer/polhode_wasm.wasm
 VIEWER_SOURCES := $(shell find viewer/src -type f) viewer/vite.config.ts $(wildcard examples/*.toml examples/*.stl)
 
 viewer: $(VIEWER)
@@ -43,9 +44,12 @@ viewer/node_modules/.installed: viewer/package-lock.json
 	cd viewer && npm ci --silent
 	@touch $@
 
-$(VIEWER): viewer/node_modules/.installed $(VIEWER_SOURCES) $(WASM_SOURCES)
+$(WASM): $(WASM_SOURCES)
 	@missing=$$(viewer/missing.sh); test -z "$$missing" || { echo "$$missing" >&2; exit 1; }
 	cargo build --quiet --locked --profile viewer --target wasm32-unknown-unknown -p polhode-wasm
+	@touch $@
+
+$(VIEWER): $(WASM) viewer/node_modules/.installed $(VIEWER_SOURCES)
 	cd viewer && npm run --silent build
 
 check-viewer: viewer/node_modules/.installed

@@ -13,6 +13,7 @@ from missing import left_out
 
 CELLS = (
     "import polhode as ph\nviewer = ph.view('box.toml')\nviewer",
+    "print('told', viewer.state is not None)",
     "viewer.time = 1.25",
     "print('shown', viewer.time, viewer.state.omega_body.components.tolist())",
 )
@@ -110,20 +111,28 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
             cell,
         )
 
+    def run_until(cell, text):
+        """Run a cell until it prints a text; returns that. The page tells Python a tenth of a second later."""
+        output = lab.locator(".jp-OutputArea-output", has_text=text)
+        for _ in range(200):
+            run(cell)
+            if output.count():
+                break
+        return output.inner_text()
+
     run(0)
     viewer.wait_for(timeout=60_000)
     page.settled()
-    run(1)
+    run_until(1, "told True")
+    run(2)
     page.until("model.time.value === 1.25")
     # Now by hand, in the page.
     lab.get_by_label("Time, s").fill("3.5")
     lab.get_by_label("Time, s").press("Tab")
     page.until("model.time.value === 3.5")
     rates = page.data("omega-body").tolist()
-    run(2)
-    told = lab.locator(".jp-OutputArea-output", has_text="shown 3.5")
-    told.wait_for()
-    assert json.loads(told.inner_text().partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)
+    told = run_until(3, "shown 3.5")
+    assert json.loads(told.partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)
     asked = {re.match(r"\w+://[^/]*", address)[0] for address in page.requests}
     assert {re.sub(r":\d+$", "", address) for address in asked} <= {"http://127.0.0.1", "ws://127.0.0.1"}
     lab.context.close()

@@ -97,7 +97,7 @@ def test_importing_needs_numpy_only():
 @pytest.mark.parametrize("guide", ["ARCHITECTURE.md", "README.md", "CONVENTIONS.md", "CONTRIBUTING.md"])
 def test_paths_named_in_the_guides_exist(guide):
     text = (ROOT / guide).read_text()
-    named = re.findall(r"`((?:crates|python|tests|examples|benchmarks|docs|\.ci)/[\w./-]*)`", text)
+    named = re.findall(r"`((?:crates|python|viewer|tests|examples|benchmarks|docs|\.ci)/[\w./-]*)`", text)
     linked = re.findall(r"\]\((?!https?:)([^)#]+)\)", text)
     missing = [path for path in named + linked if not (ROOT / path).exists()]
     assert not missing

@@ -112,7 +112,7 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
         )
 
     def run_until(cell, text):
-        """Run a cell until it prints a text; returns that. The page tells Python a tenth of a second later."""
+        """Run a cell until it prints a text; returns that. The page tells Python a little later."""
         output = lab.locator(".jp-OutputArea-output", has_text=text)
         for _ in range(200):
             run(cell)

@@ -33,7 +33,7 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool)
     """Return what a page needs to show the motion of one body without following it again.
 
     At most 20,000 rows, evenly chosen among the output times. Where the motion is known between these, and
-    the body turns far from one to the next, they are closer.
+    the body turns far from one to the next, there are others between them.
 
     Parameters
     ----------
@@ -62,23 +62,33 @@ def _points(trajectory: Trajectory) -> _Points:
     last = float(times[-1]) if len(times) else 0.0
     if last <= 0:
         raise ValueError("the viewer shows motions from time 0 on, and this one has no later time")
-    wanted = min(_MOST_ROWS, len(times))
     if trajectory._motion is not None:
         some = _Points.of(trajectory._motion.at(np.linspace(0.0, last, _SOME)))
         rate = float(np.max([some.omega_body.norm().max(), trajectory.omega_body.norm().max()]))
-        wanted = min(_MOST_ROWS, max(len(times), math.ceil(rate * last / _TURN) + 1))
-        if wanted > len(times) or times[0] != 0:
-            return _Points.of(trajectory._motion.at(np.linspace(0.0, last, wanted)))
+        met = np.unique(np.append(times[times >= 0], 0.0))
+        met = met[_evenly(len(met))]
+        intervals = len(met) - 1
+        # Equal parts of each interval, so that the output times stay among them.
+        parts = min(math.ceil(rate * last / _TURN / intervals), (_MOST_ROWS - 1) // intervals)
+        if parts > 1 or times[0] != 0:
+            parts = max(parts, 1)
+            closer = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), met)
+            return _Points.of(trajectory._motion.at(closer))
     if times[0] != 0:
         raise ValueError(f"the viewer shows motions from time 0 on, and this one begins at {times[0]:g} s")
     # Output times may stand twice.
     rising = np.flatnonzero(np.diff(times, prepend=-1.0) > 0)
-    kept = rising[np.linspace(0, len(rising) - 1, min(wanted, len(rising))).round().astype(int)]
+    kept = rising[_evenly(len(rising))]
     return _Points(
         times[kept],
         *(getattr(trajectory, name)[kept] for name in ("rotor", "omega_body", "momentum_space", "energy")),
         *(getattr(trajectory, name)[kept] for name in ("position", "velocity")),
     )
+
+
+def _evenly(count: int) -> Any:
+    """Return which of so many to keep where there are too many, the first and the last among them."""
+    return np.linspace(0, count - 1, min(_MOST_ROWS, count)).round().astype(int)
 
 
 def _rows(points: _Points) -> Array:

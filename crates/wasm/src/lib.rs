@@ -3,7 +3,7 @@
 //! [`opened`] follows a scene, [`about`] tells what is known of the motion, [`crowd`] follows an ensemble for looking,
 //! [`recorded`] holds a motion that was followed elsewhere, [`merged`] changes tables of a scene, [`formulas`] evaluates
 //! lines; [`json`] is the text in which the page gets what is not an array. `viewer/src/core/wasm.ts` is the other side
-//! of [`exports`].
+//! of the exports.
 
 pub mod about;
 pub mod crowd;

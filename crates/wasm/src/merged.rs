@@ -1,9 +1,9 @@
 //! Tables of a scene replaced by others, all else kept as it was written.
 
-use toml_edit::{Decor, DocumentMut};
+use toml_edit::{Decor, DocumentMut, Item, Table};
 
-/// The scene with its tables replaced by those of `change`; an empty table takes its one away. Comments and the order
-/// of the rest stay.
+/// The scene with its tables replaced by those of `change`; an empty table takes its one away. Of a table that is
+/// written with dots, `run.samples = 11`, those fields alone are replaced. Comments and the order of the rest stay.
 pub fn merged(scene: &str, change: &str) -> Result<String, String> {
     let read = |text: &str, what: &str| {
         text.parse::<DocumentMut>().map_err(|error| format!("{what} cannot be read: {error}"))
@@ -13,6 +13,10 @@ pub fn merged(scene: &str, change: &str) -> Result<String, String> {
         let empty = table.as_table_like().is_some_and(|table| table.is_empty());
         if empty {
             scene.remove(name);
+            continue;
+        }
+        if let Some(fields) = table.as_table().filter(|table| table.is_dotted()) {
+            replace_fields(scene.entry(name).or_insert(toml_edit::table()), fields);
             continue;
         }
         let mut table = table.clone();
@@ -26,6 +30,23 @@ pub fn merged(scene: &str, change: &str) -> Result<String, String> {
         scene.insert(name, table);
     }
     Ok(scene.to_string())
+}
+
+/// Replaces fields of a table, each in its place; an empty table takes its one away.
+fn replace_fields(table: &mut Item, fields: &Table) {
+    let Some(table) = table.as_table_like_mut() else { return };
+    for (name, field) in fields {
+        if field.as_table_like().is_some_and(|field| field.is_empty()) {
+            table.remove(name);
+            continue;
+        }
+        let mut field = field.clone();
+        let old = table.get(name).and_then(|old| old.as_value()).map(|old| old.decor().clone());
+        if let (Some(value), Some(decor)) = (field.as_value_mut(), old) {
+            *value.decor_mut() = decor;
+        }
+        table.insert(name, field);
+    }
 }
 
 #[cfg(test)]
@@ -46,6 +67,16 @@ mod tests {
         assert_eq!(heavy.trim_end(), format!("{SCENE}\n[gravity]\nacceleration = 9.81").trim_end());
         assert_eq!(merged(&heavy, "[gravity]\n").unwrap().trim_end(), SCENE.trim_end());
         assert_eq!(merged(SCENE, "[gravity]\n").unwrap(), SCENE);
+    }
+
+    #[test]
+    fn fields_are_replaced_where_they_stand() {
+        let scene = "[run]\nduration = 1 # s\ninterval = 0.1\nmethod = \"kahan\"\n";
+        let changed = merged(scene, "run.duration = 2\nrun.samples = 11\nrun.interval = {}\n").unwrap();
+        assert_eq!(changed, "[run]\nduration = 2 # s\nmethod = \"kahan\"\nsamples = 11\n");
+        let inline = merged("run = { duration = 1, rtol = 1e-9 }\n", "run.duration = 2\n").unwrap();
+        assert_eq!(inline, "run = { duration = 2, rtol = 1e-9 }\n");
+        assert_eq!(merged("", "run.duration = 2\n").unwrap(), "[run]\nduration = 2\n");
     }
 
     #[test]

@@ -73,7 +73,7 @@ export class Drawing {
     this.canvas.className = "algebra-canvas";
     host.append(this.canvas, this.labels.element);
     this.handles = new Handles(host, () => this.unit, move);
-    this.viewpoint = new Viewpoint(this.canvas, this.draw);
+    this.viewpoint = new Viewpoint(this.canvas, this.draw, () => this.home());
     this.lamp.position.set(-3, 4, 6);
     this.viewpoint.camera.add(this.lamp, this.lamp.target);
     this.hemisphere.position.set(0, 0, 1);

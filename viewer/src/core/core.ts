@@ -18,7 +18,7 @@ export interface Core {
    * an `About` as JSON text; the scene is needed for the surface of a mesh alone.
    */
   recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion;
-  /** The scene with tables replaced by those of `change`, a TOML text; an empty table takes its one away. */
+  /** The scene with tables replaced by those of `change`, a TOML text; an empty table takes its one away; of `run.samples = 11` that field alone. */
   merged(scene: string, change: string): string;
   /** Each line evaluated, with the names that earlier ones gave values. */
   evaluated(lines: string): Line[];
@@ -87,8 +87,9 @@ export interface About {
     moments: Triple;
     /** The rotor from principal axes to body axes. */
     frame: Quadruple;
-    /** The solid that the scene says; its axes are the body's, its origin at `solid_at` in body axes. */
+    /** The solid that the scene says; its axes are the body's. */
     solid: Solid | null;
+    /** Where the origin of that solid, or of the mesh, is in body axes. */
     solid_at: Triple;
     /** Whether `surface()` has a mesh. */
     mesh: boolean;

@@ -4,7 +4,7 @@ import type { CameraName, PageDocument, Shown, ViewState } from "../document.ts"
 import { unpacked } from "../packed.ts";
 
 /** How long a scene may be followed in the page before it gives up, in s. */
-const BUDGET = 4;
+const BUDGET = 8;
 
 /** What is drawn at first. */
 export const SHOWN: Shown = {
@@ -129,7 +129,7 @@ export class Model {
     if (this.original !== null) this.open(this.original, null);
   }
 
-  /** Replaces tables of the scene, as it was opened, by those of a TOML text; time goes on. */
+  /** Replaces tables and fields of the scene, as it was opened, by those of a TOML text; time goes on. */
   change(tables: string): void {
     if (this.base === null) return;
     try {

@@ -26,12 +26,16 @@ interface Props {
   wide: boolean;
 }
 
+/** Which panels stand open, of those that were opened or folded by hand. */
+type Folds = Map<string, boolean>;
+
 /** The page: a header, and the motion or the algebra below. */
 export function App({ model, palette, compact, wide }: Props) {
   const dragged = useSignal(false);
   // They stay as they are while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
+  const folds = useMemo<Folds>(() => new Map(), []);
   const motion = model.page.value === "motion";
   return (
     <div
@@ -52,7 +56,7 @@ export function App({ model, palette, compact, wide }: Props) {
       <div id="page" role="tabpanel" aria-labelledby={`tab-${model.page.value}`} class="page">
         <Boundary key={model.page.value}>
           {motion ? (
-            <MotionPage model={model} palette={palette} compact={compact} wide={wide} controls={controls} />
+            <MotionPage {...{ model, palette, compact, wide, controls, folds }} />
           ) : (
             <AlgebraPage model={model} palette={palette} />
           )}
@@ -62,7 +66,8 @@ export function App({ model, palette, compact, wide }: Props) {
   );
 }
 
-function MotionPage({ model, palette, compact, wide, controls }: Props & { controls: Controls }) {
+function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
+  const { model, palette, compact, wide, controls, folds } = props;
   const known = model.about.value !== null;
   return (
     <main class="motion">
@@ -71,32 +76,32 @@ function MotionPage({ model, palette, compact, wide, controls }: Props & { contr
       <aside class="panels" aria-label="Read-outs and controls">
         {known && (
           <>
-            <Panel id="state" title="State" open={!compact || wide}>
+            <Panel id="state" title="State" open={!compact || wide} folds={folds}>
               <Readout model={model} />
             </Panel>
-            <Panel id="motion" title="Motion" open={wide && !compact}>
+            <Panel id="motion" title="Motion" open={wide && !compact} folds={folds}>
               <Facts model={model} />
             </Panel>
           </>
         )}
         {!compact && controls.about.value && (
           <>
-            <Panel id="start" title="Spin and attitude" open={wide}>
+            <Panel id="start" title="Spin and attitude" open={wide} folds={folds}>
               <StartPanel controls={controls} />
             </Panel>
-            <Panel id="body" title="Body" open={false}>
+            <Panel id="body" title="Body" open={false} folds={folds}>
               <BodyPanel controls={controls} />
             </Panel>
-            <Panel id="laws" title="Torques" open={false}>
+            <Panel id="laws" title="Torques" open={false} folds={folds}>
               <LawsPanel controls={controls} />
             </Panel>
           </>
         )}
-        <Panel id="view" title="View" open={false}>
+        <Panel id="view" title="View" open={false} folds={folds}>
           <ViewPanel model={model} />
         </Panel>
         {!compact && (
-          <Panel id="text" title="Scene" open={!known}>
+          <Panel id="text" title="Scene" open={!known} folds={folds}>
             <Editor model={model} />
           </Panel>
         )}
@@ -106,14 +111,24 @@ function MotionPage({ model, palette, compact, wide, controls }: Props & { contr
   );
 }
 
-function Panel(props: { id: string; title: string; open: boolean; children: ComponentChildren }) {
+function Panel(props: {
+  id: string;
+  title: string;
+  open: boolean;
+  folds: Folds;
+  children: ComponentChildren;
+}) {
+  const { id, folds } = props;
   // What is folded is not drawn: read-outs change with each frame.
-  const open = useSignal(props.open);
+  const open = useSignal(folds.get(id) ?? props.open);
   return (
     <details
-      id={`panel-${props.id}`}
+      id={`panel-${id}`}
       open={open.value}
-      onToggle={(event) => (open.value = event.currentTarget.open)}
+      onToggle={(event) => {
+        open.value = event.currentTarget.open;
+        if (open.value !== (folds.get(id) ?? props.open)) folds.set(id, open.value);
+      }}
     >
       <summary>
         <h2>{props.title}</h2>

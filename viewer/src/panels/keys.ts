@@ -52,6 +52,8 @@ export function bindKeys(host: HTMLElement, model: Model): () => void {
 function act(event: KeyboardEvent, host: HTMLElement, model: Model): boolean {
   const camera = CAMERAS[Number(event.key) - 1];
   if (camera) {
+    // Again: back to where it was before the view was turned by hand.
+    if (camera === model.camera.value) model.fit();
     model.camera.value = camera;
     return true;
   }

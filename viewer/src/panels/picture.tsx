@@ -31,9 +31,11 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
   }, [model, palette]);
   return (
     <section class="picture" aria-label="Picture">
-      <div class="stage" ref={place} />
-      {missing.value !== null && <p class="missing">{missing.value}</p>}
-      <Trouble model={model} />
+      <div class="seen">
+        <div class="stage" ref={place} />
+        {missing.value !== null && <p class="missing">{missing.value}</p>}
+        <Trouble model={model} />
+      </div>
       {model.caption.value !== null && <p class="caption">{model.caption.value}</p>}
     </section>
   );

@@ -14,35 +14,37 @@ export function Playback({ model }: { model: Model }) {
   const playing = model.playing.value;
   return (
     <section class="playback" aria-label="Playback">
-      <button
-        id="play"
-        class="primary"
-        aria-label={playing ? "Pause" : "Play"}
-        title={`${playing ? "Pause" : "Play"} (Space)`}
-        onClick={() => (model.playing.value = !playing)}
-      >
-        <Icon name={playing ? "pause" : "play"} />
-      </button>
-      <div class="buttons">
+      <div class="line">
         <button
-          id="restart"
-          aria-label="To the start"
-          title="To the start (Home)"
-          onClick={() => model.seek(0)}
+          id="play"
+          class="primary"
+          aria-label={playing ? "Pause" : "Play"}
+          title={`${playing ? "Pause" : "Play"} (Space)`}
+          onClick={() => (model.playing.value = !playing)}
         >
-          <Icon name="restart" />
+          <Icon name={playing ? "pause" : "play"} />
         </button>
-        <button id="step-back" aria-label="Step back" title="Step back (←)" onClick={() => step(model, -1)}>
-          <Icon name="back" />
-        </button>
-        <button id="step" aria-label="Step forward" title="Step forward (→)" onClick={() => step(model, 1)}>
-          <Icon name="forward" />
-        </button>
+        <div class="buttons">
+          <button
+            id="restart"
+            aria-label="To the start"
+            title="To the start (Home)"
+            onClick={() => model.seek(0)}
+          >
+            <Icon name="restart" />
+          </button>
+          <button id="step-back" aria-label="Step back" title="Step back (←)" onClick={() => step(model, -1)}>
+            <Icon name="back" />
+          </button>
+          <button id="step" aria-label="Step forward" title="Step forward (→)" onClick={() => step(model, 1)}>
+            <Icon name="forward" />
+          </button>
+        </div>
+        <TimeSlider model={model} about={about} />
+        <TimeField model={model} about={about} />
+        <Trust about={about} />
+        <Speed model={model} />
       </div>
-      <TimeSlider model={model} about={about} />
-      <TimeField model={model} about={about} />
-      <Trust about={about} />
-      <Speed model={model} />
     </section>
   );
 }
@@ -78,6 +80,8 @@ function TimeField({ model, about }: { model: Model; about: About }) {
   // Some ten thousand different times in a duration, each a decimal number.
   const decimals = Math.min(Math.max(0, 5 - Math.ceil(Math.log10(about.duration / unit.size))), 20);
   const shown = typed(Number((model.time.value / unit.size).toFixed(decimals)), 15);
+  // Room for all times of a duration, so that nothing moves while time passes.
+  const width = Math.max(4, (about.duration / unit.size).toFixed(decimals).length, shown.length);
   return (
     <div class="field number">
       <label for="time-number">
@@ -89,6 +93,7 @@ function TimeField({ model, about }: { model: Model; about: About }) {
         type="number"
         step="any"
         value={shown}
+        style={{ width: `${Math.min(width, 12) + 1}ch` }}
         aria-label={`Time, ${unit.label}`}
         onFocus={() => (model.playing.value = false)}
         onChange={(event) => {

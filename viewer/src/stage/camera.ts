@@ -6,7 +6,7 @@ import { AXES } from "./rotor.ts";
 /** Degrees from bottom to top: a long lens, under which a figure looks as in a book. */
 const LENS = 24;
 /** The radius of a ball that is wholly in view, in drawn units. */
-const FIT = 1.82;
+const FIT = 1.72;
 /** How near and far one may go, in units of the distance at which that ball fits. */
 const NEAREST = 0.2;
 const FARTHEST = 4;
@@ -30,7 +30,10 @@ interface Move {
   passed: number;
 }
 
-/** Where the viewer stands: looking at the middle of the figure from a place that pointer and keys change. */
+/**
+ * Where the viewer stands: looking at the middle of the figure from a place that pointer and keys change. `home` is
+ * asked for the place of the preset.
+ */
 export class Viewpoint {
   readonly camera = new PerspectiveCamera(LENS, 1, 0.1, 100);
   /** How far space turns back so that the body stands still: from 0, not at all, to 1. */
@@ -38,11 +41,11 @@ export class Viewpoint {
   private readonly controls: OrbitControls;
   private fit = 1;
   private move: Move | null = null;
-  private preset: { name: CameraName; momentum: Vector3 } = { name: "oblique", momentum: AXES[2] };
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly changed: () => void,
+    private readonly home: () => void,
   ) {
     this.camera.up.copy(AXES[2]);
     this.camera.position.copy(OBLIQUE);
@@ -56,8 +59,7 @@ export class Viewpoint {
 
   /** Goes to a preset; `momentum` is the axial vector of L. */
   go(name: CameraName, momentum: Vector3, atOnce: boolean): void {
-    this.preset = { name, momentum: momentum.clone() };
-    const to = this.spherical(this.direction().multiplyScalar(this.fit));
+    const to = this.spherical(direction(name, momentum).multiplyScalar(this.fit));
     const from = this.spherical(this.camera.position.clone().sub(this.controls.target));
     // The shorter way round.
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI));
@@ -69,11 +71,6 @@ export class Viewpoint {
 
   get moving(): boolean {
     return this.move !== null;
-  }
-
-  /** Goes back to the preset, from where all is in view. */
-  home(): void {
-    this.go(this.preset.name, this.preset.momentum, false);
   }
 
   /** Moves on for some seconds. */
@@ -157,20 +154,21 @@ export class Viewpoint {
   private spherical(from: Vector3): Spherical {
     return new Spherical().setFromVector3(from.applyQuaternion(TO_Y)).makeSafe();
   }
+}
 
-  private direction(): Vector3 {
-    switch (this.preset.name) {
-      case "along e1":
-        return AXES[0].clone();
-      case "along e2":
-        return AXES[1].clone();
-      case "along e3":
-        return AXES[2].clone();
-      case "along L":
-        return this.preset.momentum.length() > 0 ? this.preset.momentum.clone().normalize() : AXES[2].clone();
-      case "oblique":
-      case "with the body":
-        return OBLIQUE.clone();
-    }
+/** From where a preset looks, a unit vector of space. */
+function direction(name: CameraName, momentum: Vector3): Vector3 {
+  switch (name) {
+    case "along e1":
+      return AXES[0].clone();
+    case "along e2":
+      return AXES[1].clone();
+    case "along e3":
+      return AXES[2].clone();
+    case "along L":
+      return momentum.length() > 0 ? momentum.clone().normalize() : AXES[2].clone();
+    case "oblique":
+    case "with the body":
+      return OBLIQUE.clone();
   }
 }

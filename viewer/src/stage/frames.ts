@@ -80,7 +80,7 @@ export class SpaceFrame extends Frame {
   readonly inSpace = this.group;
 
   constructor(screen: Screen, labels: Labels) {
-    super(screen, labels, "e", 1.62, { width: 1.4, dash: 0.05 });
+    super(screen, labels, "e", 1.55, { width: 1.4, dash: 0.05 });
   }
 
   update(_: Instant, shown: Shown): void {

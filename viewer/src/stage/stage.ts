@@ -64,6 +64,7 @@ export class Stage {
   private motion: Motion | null = null;
   private painted: Palette | null = null;
   private camera: CameraName | null = null;
+  private fitting = false;
   private request = 0;
   private last: number | null = null;
   private played = 0;
@@ -86,7 +87,7 @@ export class Stage {
     });
     if (!context) throw new NoWebGL("this browser draws no WebGL 2");
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
-    this.viewpoint = new Viewpoint(this.canvas, this.draw);
+    this.viewpoint = new Viewpoint(this.canvas, this.draw, this.fit);
     this.paths = new Paths(this.screen);
     const calm = () => this.calm.matches;
     this.parts = [
@@ -139,9 +140,10 @@ export class Stage {
   }
 
   /** Goes back to the place of the model's camera, from where all is in view. */
-  fit(): void {
-    this.viewpoint.home();
-  }
+  readonly fit = (): void => {
+    this.fitting = true;
+    this.draw();
+  };
 
   /** Puts canvas, labels and message into the host. */
   private furnish(): void {
@@ -289,12 +291,13 @@ export class Stage {
     for (const part of this.parts) part.paint(palette);
   }
 
-  /** The camera of the model, when it is another than before. */
+  /** The camera of the model, when it is another than before or shall stand there again. */
   private stand(momentum: Vector3): void {
     const name = this.model.camera.peek();
-    if (name === this.camera) return;
+    if (name === this.camera && !this.fitting) return;
     this.viewpoint.go(name, momentum, this.camera === null || this.calm.matches);
     this.camera = name;
+    this.fitting = false;
   }
 
   private instant(row: Float64Array): Instant {

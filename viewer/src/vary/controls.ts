@@ -5,7 +5,7 @@ import { type BodyChoice, bodyOf, bodyTable, spreadOf } from "./body.ts";
 import { type LawForm, type LawsChoice, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";
 import { rateUnit, timeUnit } from "../panels/units.ts";
-import { table } from "./toml.ts";
+import { fields, table } from "./toml.ts";
 
 type Group = "body" | "start" | "laws" | "run";
 
@@ -120,6 +120,7 @@ export class Controls {
     const [body, start, laws] = [this.body.value, this.start.value, this.laws.value];
     if (!about || !body || !start) return "";
     const parts: string[] = [];
+    if (this.touched.has("run")) parts.push(runFields(this.duration.value, about.samples));
     const chosen = this.touched.has("laws") && laws.from === "here";
     if (this.touched.has("body") && body.form !== "scene") {
       parts.push(bodyTable(body));
@@ -135,11 +136,6 @@ export class Controls {
       const held = laws.on.has("gravity") || laws.on.has("heavy");
       if (held && start.path) parts.push(table("force"));
     }
-    if (this.touched.has("run")) {
-      const unit = timeUnit(this.duration.value);
-      const size = Number((this.duration.value / unit.size).toPrecision(12));
-      parts.push(table("run", { duration: `${size} ${unit.scene}`, samples: about.samples }));
-    }
     return parts.join("\n");
   }
 
@@ -148,6 +144,13 @@ export class Controls {
     const on = new Set([this.forms.value[0]!.name]);
     return lawTables({ from: "here", on, values: {} }, this.forms.value, about);
   }
+}
+
+/** The duration, in as many samples as before: an interval need not divide it. */
+function runFields(duration: number, samples: number): string {
+  const unit = timeUnit(duration);
+  const size = Number((duration / unit.size).toPrecision(12));
+  return fields("run", { duration: `${size} ${unit.scene}`, samples, interval: {} });
 }
 
 /** About how large a body is, in m. */

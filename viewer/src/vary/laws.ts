@@ -169,11 +169,11 @@ export function lawTables(choice: LawsChoice, laws: LawForm[], about: About): st
   return table("torque", torque) + gravity;
 }
 
-/** Where the fixed point is on e3: in the solid's axes, or as far below the centre of mass. */
+/** Where the fixed point is on e3: in the axes of the solid or mesh, or as far below the centre of mass. */
 function pivotOf({ held, body }: About): number | null {
   const arm = Math.hypot(...body.center_of_mass);
   if (!held || arm === 0) return null;
-  return body.solid ? -body.solid_at[2] : -arm;
+  return body.solid || body.mesh ? -body.solid_at[2] : -arm;
 }
 
 /** A suggestion needs no more than two digits. */

@@ -8,6 +8,13 @@ export function table(name: string, fields: Record<string, Field> = {}): string 
   return [`[${name}]`, ...lines, ""].join("\n");
 }
 
+/** Fields of a table of which the others stay, to stand before any `[name]`; an empty one takes the scene's own away. */
+export function fields(name: string, values: Record<string, Field>): string {
+  return Object.entries(values)
+    .map(([field, value]) => `${name}.${field} = ${written(value)}\n`)
+    .join("");
+}
+
 function written(value: Field): string {
   if (typeof value === "number") return String(value);
   if (typeof value === "string") return JSON.stringify(value);

@@ -128,7 +128,7 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
     page.until("model.time.value === 1.25")
     # Now by hand, in the page.
     lab.get_by_label("Time, s").fill("3.5")
-    lab.get_by_label("Time, s").press("Tab")
+    lab.get_by_label("Time, s").press("Enter")
     page.until("model.time.value === 3.5")
     rates = page.data("omega-body").tolist()
     told = run_until(3, "shown 3.5")

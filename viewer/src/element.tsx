@@ -8,7 +8,7 @@ import { paletteOf, variables } from "./model/theme.ts";
 import type { Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
-import { bindKeys } from "./panels/keys.ts";
+import { bindKeys, takeAtEnter } from "./panels/keys.ts";
 import { openPreset, PRESETS } from "./presets/index.ts";
 import styles from "./theme.css?inline";
 
@@ -175,6 +175,7 @@ export class PolhodeViewer extends HTMLElement {
       }),
       effect(() => this.publish(model)),
       bindKeys(this, model),
+      takeAtEnter(this),
     ];
   }
 

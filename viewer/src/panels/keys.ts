@@ -49,6 +49,22 @@ export function bindKeys(host: HTMLElement, model: Model): () => void {
   return () => document.removeEventListener("keydown", listen);
 }
 
+/**
+ * Takes the number in a field at Enter. Browsers do so by themselves, but not within JupyterLab, where they only do when
+ * the field is left. Returns what ends it.
+ */
+export function takeAtEnter(host: HTMLElement): () => void {
+  const listen = (event: KeyboardEvent): void => {
+    const field = event.composedPath()[0];
+    if (event.key !== "Enter" || !(field instanceof HTMLInputElement) || field.type !== "number") return;
+    event.preventDefault();
+    field.blur();
+    field.focus();
+  };
+  host.addEventListener("keydown", listen);
+  return () => host.removeEventListener("keydown", listen);
+}
+
 function act(event: KeyboardEvent, host: HTMLElement, model: Model): boolean {
   const camera = CAMERAS[Number(event.key) - 1];
   if (camera) {

@@ -32,7 +32,7 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
-    options = _parser().parse_args(_with_formulas(sys.argv[1:] if arguments is None else arguments))
+    options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
         code = int(options.command(options))
         print(end="", flush=True)
@@ -167,11 +167,14 @@ def _definition(text: str) -> str:
     return text
 
 
-def _with_formulas(arguments: list[str]) -> list[str]:
-    """Return arguments among which ``-a∧b`` is taken for a formula: argparse takes no option with a space."""
-    if arguments[:1] != ["eval"]:
-        return arguments
-    return [f" {x}" if re.match(r"-[^-fh]", x) else x for x in arguments]
+# What begins with a minus and yet is no option: a formula -a∧b, a view -20,35.
+_VALUES = {"eval": r"-[^-fh]", "figure": r"-[.\d]", "film": r"-[.\d]"}
+
+
+def _with_values(arguments: list[str]) -> list[str]:
+    """Return arguments among which these are taken for values: argparse takes no option with a space."""
+    value = _VALUES.get(arguments[0]) if arguments else None
+    return arguments if value is None else [f" {x}" if re.match(value, x) else x for x in arguments]
 
 
 def _eval(options: argparse.Namespace) -> int:

@@ -104,7 +104,7 @@ def _count(seconds: float, fps: float) -> int:
     count = round(seconds * fps)
     if not 2 <= count <= _MOST:
         raise ValueError(
-            f"{seconds:g} s at {fps:g} pictures a second are {count} pictures; a film has 2 to {_MOST}"
+            f"seconds times fps is {count}; a film has 2 to {_MOST} pictures"
         )
     return count
 

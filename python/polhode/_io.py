@@ -217,7 +217,8 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     """Return the arrays and the attributes of a file."""
     library = optional("h5py", "io", "a netCDF file")
     if not os.path.isfile(path):
-        raise FileNotFoundError(f"{path}: no such file")
+        missing = "is no regular file" if os.path.exists(path) else "no such file"
+        raise FileNotFoundError(f"{path}: {missing}")
     try:
         with library.File(path, "r") as file:
             attributes = {name: _attribute(x) for name, x in file.attrs.items()}

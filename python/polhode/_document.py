@@ -90,8 +90,8 @@ def document(
     if isinstance(x, (str, os.PathLike)):
         return of_file(Path(x))
     raise TypeError(
-        f"cannot show what is of type {type(x).__name__}; give a Scene, a Trajectory, a motion in closed form, the path of "
-        "a scene or of a netCDF file, or a Body and its State"
+        f"cannot show what is of type {type(x).__name__}; give a Scene, a Trajectory, a motion in closed "
+        "form, the path of a scene or of a netCDF file, or a Body and its State"
     )
 
 

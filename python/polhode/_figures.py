@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import Array
+from polhode._camera import view_of
 from polhode._extras import optional
 from polhode._files import write_atomically
 from polhode._kinds import kind_of, weight, wheel
@@ -37,14 +38,20 @@ _UNDATED: dict[str, dict[str, Any]] = {
 
 def figure(trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None) -> Figure:
     """Return a figure of one body; see `Trajectory.plot`."""
+    check(kind, view, time)
+    require_times(trajectory)
+    return KINDS[kind](trajectory, view, time)
+
+
+def check(kind: str, view: Any, time: float | None) -> None:
+    """Raise a ValueError for a figure that no motion has."""
     if kind not in KINDS:
         raise ValueError(f"unknown kind of figure {kind!r}, expected one of {', '.join(KINDS)}")
     if view is not None and kind not in _SEEN:
         raise ValueError(f"view is for the kinds {', '.join(_SEEN)}; {kind!r} has no depth")
     if time is not None and kind != "scene":
         raise ValueError(f"time is for the kind 'scene'; {kind!r} shows all times")
-    require_times(trajectory)
-    return KINDS[kind](trajectory, view, time)
+    view_of(view)
 
 
 def encoded(figure: Figure, form: str) -> bytes:

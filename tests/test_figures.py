@@ -155,6 +155,18 @@ def test_batches_are_refused_and_bodies_of_them_told_apart():
         pickle.loads(pickle.dumps(top())).plot("locus")
 
 
+@pytest.mark.parametrize(("weight", "spin"), [(2.0, 8.0), (-2.0, 0.0)], ids=["sleeping", "hanging"])
+@pytest.mark.filterwarnings("error")
+def test_a_top_that_stands_still_has_a_portrait(weight, spin):
+    inertia = ph.Inertia.from_principal_moments(1, 1, 0.5)
+    state = ph.State(ph.Rotor.identity(), [0, 0, spin])
+    motion = ph.simulate(inertia, state, np.linspace(0, 10, 11), ph.torque.heavy([0, 0, weight]))
+    figure = motion.plot("phase")
+    dot = figure.axes[0].lines[-1].get_xydata()
+    np.testing.assert_array_equal(dot, [[0.0 if weight > 0 else 180.0, 0.0]])
+    assert "stands still" in " ".join(figure.get_supxlabel().split())
+
+
 def test_bodies_at_rest_are_drawn():
     motion = free(omega=(0, 0, 0))
     for kind in ("motion", "polhode", "herpolhode", "drift", "phase", "scene"):

@@ -456,6 +456,16 @@ def test_a_file_of_a_scene_brings_it(tmp_path):
     assert "t-handle.stl" in _document.document(tmp_path / "a.nc")["files"]
 
 
+def test_a_motion_of_other_than_finite_numbers_is_refused(saved):
+    h5py = pytest.importorskip("h5py")
+    trajectory, path = saved
+    with h5py.File(path, "r+") as file:
+        file["energy"][3] = np.nan
+    told = f"this motion has others at t = {trajectory.time[3]:g} s"
+    with pytest.raises(ValueError, match=told):
+        _document.document(path)
+
+
 def test_files_that_are_cut_off_are_refused(saved):
     _, path = saved
     content = path.read_bytes()
@@ -470,9 +480,16 @@ def test_other_files_are_refused(tmp_path):
     pytest.importorskip("h5netcdf")
     with pytest.raises(FileNotFoundError, match=r"absent.nc: no such file"):
         ph.Trajectory.read(tmp_path / "absent.nc")
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(OSError, match=r"folder.nc: is no regular file"):
+        ph.Trajectory.read(tmp_path / "folder.nc")
     (tmp_path / "noise.nc").write_bytes(b"noise")
     with pytest.raises(OSError, match=r"noise.nc is no netCDF file"):
         ph.Trajectory.read(tmp_path / "noise.nc")
+    with pytest.importorskip("h5py").File(tmp_path / "groups.nc", "w") as file:
+        file.create_group("attitude")
+    with pytest.raises(OSError, match=r"groups.nc is no netCDF file .*: `attitude` is no variable"):
+        ph.Trajectory.read(tmp_path / "groups.nc")
     xarray.Dataset({"time": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(ValueError, match=r"other.nc is no motion that polhode wrote: it has no"):
         ph.Trajectory.read(tmp_path / "other.nc")

@@ -349,10 +349,12 @@ def test_what_cannot_be_shown_is_said():
             _document.document(*arguments, **named)
 
     scene = ph.Scene.read(EXAMPLES / "toutatis.toml")
-    refused(TypeError, "cannot show a int", 3)
+    refused(TypeError, "cannot show what is of type int", 3)
     refused(TypeError, "give its state", MOMENTS)
-    refused(TypeError, "torque and a Scene", scene, torque=T.damping(1))
-    refused(TypeError, "duration and a Scene", scene, duration=3)
+    refused(TypeError, "torque cannot be given for a Scene", scene, torque=T.damping(1))
+    refused(TypeError, "duration cannot be given for a Scene, which has its own", scene, duration=3)
+    refused(TypeError, "state and torque cannot be given for 'a.toml'", "a.toml", START, T.damping(1))
+    refused(TypeError, "state must be a State, got list", MOMENTS, [0, 0, 1])
     refused(ValueError, "duration is -1", MOMENTS, START, duration=-1)
     refused(ValueError, "batch", MOMENTS, ph.State(START.rotor, np.ones((2, 3))), duration=1)
     refused(ValueError, "batch", MOMENTS, START, T.damping(np.array([1.0, 2.0])))
@@ -454,6 +456,16 @@ def test_a_file_of_a_scene_brings_it(tmp_path):
     assert "t-handle.stl" in _document.document(tmp_path / "a.nc")["files"]
 
 
+def test_a_motion_of_other_than_finite_numbers_is_refused(saved):
+    h5py = pytest.importorskip("h5py")
+    trajectory, path = saved
+    with h5py.File(path, "r+") as file:
+        file["energy"][3] = np.nan
+    told = f"this motion has others at t = {trajectory.time[3]:g} s"
+    with pytest.raises(ValueError, match=told):
+        _document.document(path)
+
+
 def test_files_that_are_cut_off_are_refused(saved):
     _, path = saved
     content = path.read_bytes()
@@ -468,9 +480,16 @@ def test_other_files_are_refused(tmp_path):
     pytest.importorskip("h5netcdf")
     with pytest.raises(FileNotFoundError, match=r"absent.nc: no such file"):
         ph.Trajectory.read(tmp_path / "absent.nc")
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(OSError, match=r"folder.nc: is no regular file"):
+        ph.Trajectory.read(tmp_path / "folder.nc")
     (tmp_path / "noise.nc").write_bytes(b"noise")
     with pytest.raises(OSError, match=r"noise.nc is no netCDF file"):
         ph.Trajectory.read(tmp_path / "noise.nc")
+    with pytest.importorskip("h5py").File(tmp_path / "groups.nc", "w") as file:
+        file.create_group("attitude")
+    with pytest.raises(OSError, match=r"groups.nc is no netCDF file .*: `attitude` is no variable"):
+        ph.Trajectory.read(tmp_path / "groups.nc")
     xarray.Dataset({"time": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(ValueError, match=r"other.nc is no motion that polhode wrote: it has no"):
         ph.Trajectory.read(tmp_path / "other.nc")

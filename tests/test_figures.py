@@ -155,6 +155,18 @@ def test_batches_are_refused_and_bodies_of_them_told_apart():
         pickle.loads(pickle.dumps(top())).plot("locus")
 
 
+@pytest.mark.parametrize(("weight", "spin"), [(2.0, 8.0), (-2.0, 0.0)], ids=["sleeping", "hanging"])
+@pytest.mark.filterwarnings("error")
+def test_a_top_that_stands_still_has_a_portrait(weight, spin):
+    inertia = ph.Inertia.from_principal_moments(1, 1, 0.5)
+    state = ph.State(ph.Rotor.identity(), [0, 0, spin])
+    motion = ph.simulate(inertia, state, np.linspace(0, 10, 11), ph.torque.heavy([0, 0, weight]))
+    figure = motion.plot("phase")
+    dot = figure.axes[0].lines[-1].get_xydata()
+    np.testing.assert_array_equal(dot, [[0.0 if weight > 0 else 180.0, 0.0]])
+    assert "stands still" in " ".join(figure.get_supxlabel().split())
+
+
 def test_bodies_at_rest_are_drawn():
     motion = free(omega=(0, 0, 0))
     for kind in ("motion", "polhode", "herpolhode", "drift", "phase", "scene"):
@@ -530,6 +542,10 @@ def test_the_command_draws_figures(scene, tmp_path):
         (["polhode", "small.toml", "-o", "a.svg", "--view", "up"], 2, "as 35,22, found 'up'"),
         (["pohlode", "small.toml", "-o", "a.svg"], 2, "invalid choice: 'pohlode'"),
         (["locus", "small.toml", "-o", "a.svg"], 1, "kind 'locus' is for a body held at a fixed point"),
+        # Before the scene is read and run.
+        (["drift", "none.toml", "-o", "a.svg", "--view", "1,2"], 1, "'drift' has no depth"),
+        (["scene", "none.toml", "-o", "a.svg", "--view", "nan,2"], 1, "view is (nan, 2.0); it must be"),
+        (["scene", "small.toml", "-o", "a.svg", "--view", "-30,-20", "--time", "-1"], 1, "time is -1 s"),
         (["polhode", "none.toml", "-o", "a.svg"], 3, "none.toml"),
         (["polhode", "small.toml", "-o", "none/a.svg"], 1, "there is no directory none"),
     ],

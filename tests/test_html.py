@@ -52,6 +52,8 @@ def test_a_title_is_text():
     page = Page(_html.page(shown))
     assert page.texts["title"].strip() == NASTY
     assert len(page.all("script")) == 2
+    # A file may have a name that is no text.
+    assert "<title>caf?</title>" in _html.page({"format": 1, "scene": "", "name": "caf\udce9.toml"})
 
 
 @pytest.mark.usefixtures("bundle")

@@ -135,7 +135,8 @@ def test_the_scene_is_read_again(served, scene):
         assert shown["scene"] == text
         assert ("recorded" in shown) == (text == STEPPED)
     scene.unlink()
-    assert answer(served, "/document.json")[0] == 404
+    status, _, told = answer(served, "/document.json")
+    assert (status, told) == (404, f"{scene}: error: no such file\n".encode())
     scene.write_bytes(b'title = "caf\xe9"')
     assert json.loads(answer(served, "/document.json")[2])["scene"] == 'title = "caf\ufffd"'
 

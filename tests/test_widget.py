@@ -102,7 +102,12 @@ def test_what_makes_no_sense_is_refused():
         ("camera", "from afar"),
         ("theme", "pink"),
         ("time", "soon"),
+        ("time", float("nan")),
+        ("speed", float("inf")),
         ("shown", {"body": "no"}),
+        ("shown", {"bodies": True}),
+        ("problem", "none"),
+        ("state", START),
     ):
         with pytest.raises(traitlets.TraitError):
             setattr(viewer, name, value)
@@ -191,7 +196,8 @@ def test_the_names_are_those_of_the_page(line):
     assert tuple(re.findall(r"^  (\w+):", view, flags=re.MULTILINE)) == _widget._VIEW
     drawn = re.search(r"interface Shown {(.*?)\n}", text, flags=re.DOTALL)[1]
     told = re.search(r"What is drawn, by name: (.*?)\.", _widget.Viewer.__doc__, flags=re.DOTALL)[1]
-    assert re.split(r",\s+", told) == re.findall(r"^  (\w+):", drawn, flags=re.MULTILINE)
+    names = re.findall(r"^  (\w+):", drawn, flags=re.MULTILINE)
+    assert re.split(r",\s+", told) == names == list(_widget.DRAWN)
     # What the page tells is taken, and what it hears is sent.
     widget = (ROOT / "viewer/src/widget.ts").read_text()
     says = re.search(r"function told\(.*?return {(.*?)\n  };", widget, flags=re.DOTALL)[1]

@@ -19,8 +19,6 @@ from polhode._native import SceneError, __version__
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from matplotlib.figure import Figure
-
     from polhode._scene import Scene
     from polhode._trajectory import Trajectory
 
@@ -32,7 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
-    options = _parser().parse_args(_with_formulas(sys.argv[1:] if arguments is None else arguments))
+    options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
         code = int(options.command(options))
         print(end="", flush=True)
@@ -167,11 +165,14 @@ def _definition(text: str) -> str:
     return text
 
 
-def _with_formulas(arguments: list[str]) -> list[str]:
-    """Return arguments among which ``-a∧b`` is taken for a formula: argparse takes no option with a space."""
-    if arguments[:1] != ["eval"]:
-        return arguments
-    return [f" {x}" if re.match(r"-[^-fh]", x) else x for x in arguments]
+# What begins with a minus and yet is no option: a formula -a∧b, a view -20,35.
+_VALUES = {"eval": r"-[^-fh]", "figure": r"-[.\d]", "film": r"-[.\d]"}
+
+
+def _with_values(arguments: list[str]) -> list[str]:
+    """Return arguments among which these are taken for values: argparse takes no option with a space."""
+    value = _VALUES.get(arguments[0]) if arguments else None
+    return arguments if value is None else [f" {x}" if re.match(value, x) else x for x in arguments]
 
 
 def _eval(options: argparse.Namespace) -> int:
@@ -325,13 +326,14 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     if output is None:
         return []
     from polhode._extras import optional
+    from polhode._figures import ON_ELLIPSOID
     from polhode._files import check_target
     from polhode._io import require_libraries
     from polhode._kinds import kind_of
 
     require_libraries()
     optional("matplotlib", "plot", "a figure")
-    figures = ("motion", "polhode" if kind_of(scene) in _WITH_POLHODE else "axis")
+    figures = ("motion", "polhode" if kind_of(scene) in ON_ELLIPSOID else "axis")
     if scene.ensemble is not None:
         figures = ("ensemble", "directions")
     targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in figures)]
@@ -356,10 +358,11 @@ def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Tra
 
     contents: dict[Path, bytes] = {}
     if targets:
+        from polhode._figures import characteristic_figure
         from polhode._io import netcdf
         from polhode._plot import as_png, motion_figure
 
-        second = _second_figure(scene, trajectory)
+        second = characteristic_figure(scene, trajectory)
         made = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
         contents |= dict(zip(targets, made, strict=True))
     if html:
@@ -367,28 +370,6 @@ def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Tra
 
         contents[html] = motion_page(trajectory)
     write_atomically(contents)
-
-
-# The kinds of motion whose angular velocity stays on an ellipsoid in the body.
-_WITH_POLHODE = ("free", "damped", "gyrostat")
-
-
-def _second_figure(scene: Scene, trajectory: Trajectory) -> Figure:
-    """Draw what a kind of motion is known by: its polhode, or the path of an axis."""
-    from polhode._kinds import kind_of, long_axis, orbit_of, weight, wheel
-    from polhode._plot import main_axis
-    from polhode._spheres import axis_figure, orbit_figure, polhode_figure
-
-    kind = kind_of(scene)
-    if kind in _WITH_POLHODE:
-        return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
-    if kind == "satellite":
-        path = long_axis(orbit_of(scene.torque), trajectory)
-        return orbit_figure(trajectory, path, "the axis of the least moment")
-    if scene.held and (c := weight(scene.torque)).any():
-        return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
-    number, axis = main_axis(trajectory)
-    return axis_figure(trajectory, axis, f"principal axis {number}")
 
 
 @contextmanager

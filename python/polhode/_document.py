@@ -74,16 +74,15 @@ def document(
     """
     if isinstance(x, (Body, Inertia)):
         if state is None:
-            raise TypeError(f"a {type(x).__name__} alone does not move; give its state too")
+            raise TypeError("a body alone does not move; give its state too")
+        if not isinstance(state, State):
+            raise TypeError(f"state must be a State, got {type(state).__name__}")
         law, push = as_torque(torque), None if force is None else as_force(force)
         return _of_problem(_problem(x, state, law, push, duration))
-    given = {"state": state, "torque": torque, "force": force}
-    if extra := [name for name, value in given.items() if value is not None]:
-        raise TypeError(f"{', '.join(extra)} and a {type(x).__name__}: it has its own")
+    _refuse(x, state=state, torque=torque, force=force)
     if isinstance(x, (FreeMotion, _ClosedForm)):
         return _of_problem(_solved(x, duration))
-    if duration is not None:
-        raise TypeError(f"duration and a {type(x).__name__}: it has its own")
+    _refuse(x, duration=duration)
     if isinstance(x, Scene):
         return of_scene(x)
     if isinstance(x, Trajectory):
@@ -91,9 +90,16 @@ def document(
     if isinstance(x, (str, os.PathLike)):
         return of_file(Path(x))
     raise TypeError(
-        f"cannot show a {type(x).__name__}; give a Scene, a Trajectory, a motion in closed form, the path of "
-        "a scene or of a netCDF file, or a Body and its State"
+        f"cannot show what is of type {type(x).__name__}; give a Scene, a Trajectory, a motion in closed "
+        "form, the path of a scene or of a netCDF file, or a Body and its State"
     )
+
+
+def _refuse(x: Any, **given: Any) -> None:
+    """Raise a TypeError for arguments that what is shown has by itself."""
+    if extra := [name for name, value in given.items() if value is not None]:
+        what = repr(str(x)) if isinstance(x, (str, os.PathLike)) else f"a {type(x).__name__}"
+        raise TypeError(f"{' and '.join(extra)} cannot be given for {what}, which has its own")
 
 
 def of_scene(scene: Scene) -> Document:

@@ -81,6 +81,9 @@ def _figure(options: argparse.Namespace, shown: Shown, parser: argparse.Argument
 
         drawn = handout_figure(int(options.what))
     else:
+        from polhode._figures import check
+
+        check(options.what, options.view, options.time)
         scene = _scene_of_one(options.scene)
         with shown(scene.path.name) as report:
             trajectory = scene.run(report)
@@ -94,11 +97,11 @@ def _figure(options: argparse.Namespace, shown: Shown, parser: argparse.Argument
 
 def _film(options: argparse.Namespace, shown: Shown) -> int:
     from polhode._extras import optional
-    from polhode._files import check_target
+    from polhode._film import planned
 
     optional("matplotlib", "plot", "a film")
     path = Path(options.output)
-    check_target(path)
+    planned(path, options.seconds, options.fps, options.size, options.view)
     scene = _scene_of_one(options.scene)
     with shown(scene.path.name) as report:
         trajectory = scene.run(report)

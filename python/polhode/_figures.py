@@ -10,18 +10,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._arrays import Array
+from polhode._camera import view_of
 from polhode._extras import optional
 from polhode._files import write_atomically
-from polhode._kinds import kind_of, weight, wheel
-from polhode._plot import motion_figure, require_times
-from polhode._spheres import polhode_figure
+from polhode._kinds import kind_of, long_axis, orbit_of, weight, wheel
+from polhode._plot import main_axis, motion_figure, require_times
+from polhode._spheres import axis_figure, orbit_figure, polhode_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from polhode._scene import Scene
     from polhode._trajectory import Trajectory
 
 FORMATS = ("svg", "pdf", "png")
+# Kinds of motion whose angular velocity stays on an ellipsoid in the body.
+ON_ELLIPSOID = ("free", "damped", "gyrostat")
 # Kinds in which depth is drawn, seen from a direction.
 _SEEN = ("polhode", "locus", "phase", "scene")
 
@@ -37,14 +41,34 @@ _UNDATED: dict[str, dict[str, Any]] = {
 
 def figure(trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None) -> Figure:
     """Return a figure of one body; see `Trajectory.plot`."""
+    check(kind, view, time)
+    require_times(trajectory)
+    return KINDS[kind](trajectory, view, time)
+
+
+def check(kind: str, view: Any, time: float | None) -> None:
+    """Raise a ValueError for a figure that no motion has."""
     if kind not in KINDS:
         raise ValueError(f"unknown kind of figure {kind!r}, expected one of {', '.join(KINDS)}")
     if view is not None and kind not in _SEEN:
         raise ValueError(f"view is for the kinds {', '.join(_SEEN)}; {kind!r} has no depth")
     if time is not None and kind != "scene":
         raise ValueError(f"time is for the kind 'scene'; {kind!r} shows all times")
-    require_times(trajectory)
-    return KINDS[kind](trajectory, view, time)
+    view_of(view)
+
+
+def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
+    """Draw what a kind of motion is known by: its polhode, or the path of an axis."""
+    kind = kind_of(scene)
+    if kind in ON_ELLIPSOID:
+        return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
+    if kind == "satellite":
+        path = long_axis(orbit_of(scene.torque), trajectory)
+        return orbit_figure(trajectory, path, "the axis of the least moment")
+    if scene.held and (c := weight(scene.torque)).any():
+        return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
+    number, axis = main_axis(trajectory)
+    return axis_figure(trajectory, axis, f"principal axis {number}")
 
 
 def encoded(figure: Figure, form: str) -> bytes:
@@ -74,7 +98,7 @@ def _motion(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
 
 def _polhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
     kind = _kind(trajectory)
-    if kind not in ("free", "damped", "gyrostat"):
+    if kind not in ON_ELLIPSOID:
         raise ValueError(
             "kind 'polhode' is for bodies that no torque but damping in proportion to L turns, or with a "
             f"wheel, whose Ω stays on an ellipsoid; {_acting(trajectory)}"
@@ -112,7 +136,7 @@ def _phase(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
 
     _require_path(trajectory, "phase")
     kind = _kind(trajectory)
-    if kind in ("free", "damped", "gyrostat"):
+    if kind in ON_ELLIPSOID:
         return _phase.phase_figure(trajectory, _wheel(trajectory), view)
     if view is not None:
         raise ValueError("view is for the phase portraits of bodies without torque; this one has no depth")

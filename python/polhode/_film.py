@@ -7,11 +7,12 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from polhode._arrays import Array, as_count, as_float
+from polhode._camera import view_of
 from polhode._extras import optional
 from polhode._files import check_target, unfinished, write_atomically
 from polhode._plot import in_our_look, require_times, time_unit, title_of
@@ -43,26 +44,41 @@ def write(
     progress: Progress | None = None,
 ) -> None:
     """Write a film, whole or not at all; see `Trajectory.film`."""
-    form = form_of(path)
-    width, height = _checked_size(_SIZES[form] if size is None else size, form)
-    count = _count(seconds, fps)
+    plan = planned(path, seconds, fps, size, view)
     require_times(trajectory)
     if len(trajectory.time) < 2:
         raise ValueError("a film needs a motion of 2 output times or more; this one has 1")
+    save = _save_mp4 if plan.form == "mp4" else _save_gif
+    with unfinished(path) as target:
+        save(target, _pictures(trajectory, plan.pictures, plan.size, view, progress), plan.fps, plan.size)
+        write_atomically({path: target})
+
+
+class Plan(NamedTuple):
+    """What a film is to be: its form, pictures in a second and in all, width and height in pixels."""
+
+    form: str
+    fps: float
+    pictures: int
+    size: tuple[int, int]
+
+
+def planned(path: Path, seconds: float, fps: float, size: Any, view: Any) -> Plan:
+    """Return what a film is to be; all that needs no motion is refused here, as by `Trajectory.film`."""
+    form = form_of(path)
+    plan = Plan(
+        form,
+        as_float(fps, "fps"),
+        _count(seconds, fps),
+        _checked_size(_SIZES[form] if size is None else size, form),
+    )
+    view_of(view)
     check_target(path)
-    save = _save_mp4 if form == "mp4" else _save_gif
     if form == "mp4":
         ffmpeg()
     else:
         optional("PIL", "plot", "a GIF")
-    with unfinished(path) as target:
-        save(
-            target,
-            _pictures(trajectory, count, (width, height), view, progress),
-            as_float(fps, "fps"),
-            (width, height),
-        )
-        write_atomically({path: target})
+    return plan
 
 
 def form_of(path: Path) -> str:
@@ -103,9 +119,7 @@ def _count(seconds: float, fps: float) -> int:
             raise ValueError(f"{name} is {value}; it must be positive and finite")
     count = round(seconds * fps)
     if not 2 <= count <= _MOST:
-        raise ValueError(
-            f"{seconds:g} s at {fps:g} pictures a second are {count} pictures; a film has 2 to {_MOST}"
-        )
+        raise ValueError(f"seconds times fps is {count}; a film has 2 to {_MOST} pictures")
     return count
 
 

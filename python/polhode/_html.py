@@ -58,7 +58,7 @@ def page(shown: Document) -> str:
     data = json.dumps(shown, allow_nan=False).replace("<", "\\u003c")
     return _PAGE.format(
         policy=f'\n<meta http-equiv="Content-Security-Policy" content="{_INLINE_POLICY}">',
-        title=html.escape(title_of(shown)),
+        title=_title(title_of(shown)),
         element=f'<polhode-viewer><script type="application/json">{data}</script></polhode-viewer>',
         script=f'<script type="module">\n{_inline(bundle_path().read_text(encoding="utf-8"))}</script>',
     )
@@ -68,10 +68,15 @@ def served_page(title: str) -> str:
     """Return a page that fetches the viewer and its document from where it came from."""
     return _PAGE.format(
         policy="",
-        title=html.escape(title),
+        title=_title(title),
         element='<polhode-viewer src="/document.json"></polhode-viewer>',
         script='<script type="module" src="/viewer.js"></script>',
     )
+
+
+def _title(text: str) -> str:
+    """Return a title as HTML; the bytes of a file's name that are no text have no UTF-8 either."""
+    return html.escape(text.encode(errors="replace").decode())
 
 
 def _inline(script: str) -> str:

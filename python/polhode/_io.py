@@ -179,6 +179,8 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
 
 # --- back again
 
+# Of the files of others, which may be of any size, no more is read.
+_READ = {"time", "attitude", "omega_body", "momentum_space", "energy", "position", "velocity", "inertia"}
 # Attributes that are ours, or the library's.
 _OWN = {
     *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
@@ -217,12 +219,14 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
     """Return the arrays and the attributes of a file."""
     library = optional("h5py", "io", "a netCDF file")
     if not os.path.isfile(path):
-        raise FileNotFoundError(f"{path}: no such file")
+        missing = "is no regular file" if os.path.exists(path) else "no such file"
+        raise FileNotFoundError(f"{path}: {missing}")
     try:
         with library.File(path, "r") as file:
             attributes = {name: _attribute(x) for name, x in file.attrs.items()}
             many = "batch_shape" in attributes or "body" in file
-            fields = {} if many else {name: _array(name, variable) for name, variable in file.items()}
+            names = [] if many else [name for name in file if name in _READ or name.startswith("event_")]
+            fields = {name: _array(name, file[name]) for name in names}
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
         # A file that is damaged fails at any depth of the library, which has no error of its own.
         raise OSError(f"{path} is no netCDF file that can be read: {error}") from error
@@ -237,8 +241,8 @@ def _attribute(x: Any) -> Any:
 
 
 def _array(name: str, variable: Any) -> Any:
-    if variable is None:
-        raise OSError(f"`{name}` is damaged")
+    if not hasattr(variable, "dtype"):
+        raise OSError(f"`{name}` is no variable")
     return variable.asstr()[...] if variable.dtype.kind == "O" else variable[...]
 
 

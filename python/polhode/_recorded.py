@@ -47,13 +47,16 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool)
     Raises
     ------
     ValueError
-        If the motion does not begin at time 0, or ends there.
+        If the motion does not begin at time 0, ends there, or has numbers that are not finite.
     """
     points = _points(trajectory)
+    rows = _rows(points)
+    if not (finite := np.isfinite(rows).all(axis=1)).all():
+        when = points.time[np.argmin(finite)]
+        raise ValueError(f"the viewer shows finite numbers, and this motion has others at t = {when:g} s")
     about = _about(trajectory, origin, points)
     about["body"]["mesh"] = mesh
-    rows = _rows(points).astype("<f8").tobytes()
-    return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows)}
+    return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows.astype("<f8").tobytes())}
 
 
 def _points(trajectory: Trajectory) -> _Points:

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 _GRID = (321, 241)
 # How far beyond the tilts of a motion its phase portrait reaches, over their span, and at least, in rad.
 _BEYOND, _LEAST = 0.35, 1e-5
+# An axis that tilts less quickly keeps its tilt, in rad/s.
+_STILL = 1e-9
 
 
 def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
@@ -66,12 +68,16 @@ def top_figure(trajectory: Trajectory, c: Array) -> Figure:
     figure, axes = _portrait(trajectory)
     top = _lagrange(trajectory, c)
     caption = "Tilt θ of the axis from the fixed point to the centre of mass from up, e₃, and its rate"
+    told = {} if top is None else top.describe()
+    fastest = float(np.nanmax(np.abs(rate), initial=0.0))
     if top is None:
         _draw(axes, np.degrees(theta), np.degrees(rate))
         caption += ", from the dot."
+    elif fastest <= _STILL and not told["precession_rate"]:
+        _draw(axes, np.degrees(theta), np.nan_to_num(np.degrees(rate)))
+        caption += ": the axis stands still."
     else:
-        told = top.describe()
-        _draw_energy(axes, trajectory, c, told, float(np.nanmax(np.abs(rate))))
+        _draw_energy(axes, trajectory, c, told, fastest)
         _draw(axes, np.degrees(theta), np.degrees(rate))
         for bound in (told["tilt_min"], told["tilt_max"]):
             axes.axvline(np.degrees(bound), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
@@ -180,7 +186,7 @@ def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, told: dict[str, A
     low, high = told["tilt_min"], told["tilt_max"]
     beyond = max(_BEYOND * (high - low), _LEAST)
     theta = np.linspace(max(low - beyond, 1e-4), min(high + beyond, np.pi - 1e-4), _GRID[0])
-    reach = 1.45 * fastest if fastest > 1e-9 else beyond * told["precession_rate"]
+    reach = 1.45 * fastest if fastest > _STILL else beyond * told["precession_rate"]
     rate = np.linspace(-abs(reach), abs(reach), _GRID[1])
     energy = _energy(trajectory, c, told, theta, rate[:, np.newaxis])
     least, present = float(energy.min()), told["energy"]

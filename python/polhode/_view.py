@@ -125,8 +125,12 @@ class Source:
             return self.document()
         except UnreadableError:
             raise
-        except ValueError:
-            return of_text(self.path.read_text(encoding="utf-8", errors="replace"), self.path)
+        except ValueError as error:
+            try:
+                text = self.path.read_text(encoding="utf-8", errors="replace")
+            except OSError:
+                raise UnreadableError(str(error)) from None
+            return of_text(text, self.path)
 
 
 class Server(ThreadingHTTPServer):

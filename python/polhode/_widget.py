@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,10 @@ else:
 # As in viewer/src/document.ts.
 CAMERAS = ("oblique", "along e1", "along e2", "along e3", "along L", "with the body")
 THEMES = ("auto", "light", "dark")
+DRAWN = (
+    *("body", "bodyFrame", "spaceFrame", "omega", "momentum", "axial", "poinsot", "polhode", "herpolhode"),
+    *("trace", "gravity", "labels"),
+)
 
 _VIEW = ("time", "playing", "speed", "camera", "theme", "shown")
 
@@ -49,8 +54,8 @@ class Viewer(anywidget.AnyWidget):
     Attributes
     ----------
     scene
-        The scene in TOML, as it was edited in the page; None where the motion is a recording alone. A scene
-        that is wrong is not taken: `problem` says why.
+        The scene in TOML, as it was edited in the page; None where the motion is a recording alone. The page
+        does not take one that is wrong: `problem` says why.
     time
         Time shown, in s.
     playing
@@ -81,21 +86,29 @@ class Viewer(anywidget.AnyWidget):
     speed = traitlets.CFloat(None, allow_none=True).tag(sync=True)
     camera = traitlets.Enum(CAMERAS, None, allow_none=True).tag(sync=True)
     theme = traitlets.Enum(THEMES, None, allow_none=True).tag(sync=True)
-    shown = traitlets.Dict(value_trait=traitlets.Bool()).tag(sync=True)
-    state = traitlets.Instance(State, allow_none=True).tag(
+    shown = traitlets.Dict(key_trait=traitlets.Enum(DRAWN), value_trait=traitlets.Bool()).tag(sync=True)
+    state = traitlets.Instance(State, allow_none=True, read_only=True).tag(
         sync=True, from_json=_state_of, to_json=lambda state, _: None
     )
-    problem = traitlets.Unicode(None, allow_none=True).tag(sync=True)
+    problem = traitlets.Unicode(None, allow_none=True, read_only=True).tag(sync=True)
 
     def __init__(self, shown: Document) -> None:
         super().__init__(document=shown, scene=shown.get("scene"))
+
+    @traitlets.validate("time", "speed")
+    def _finite(self, proposal: Any) -> float | None:
+        value, name = proposal["value"], proposal["trait"].name
+        if value is not None and not math.isfinite(value):
+            raise traitlets.TraitError(f"{name} is {value}; it must be finite")
+        return value  # type: ignore[no-any-return]
 
     def show(self, x: Any, *arguments: Any, **named: Any) -> None:
         """Show something else, from its start; the arguments are those of `polhode.view`."""
         shown = document(x, *arguments, **named)
         with self.hold_sync():
             self.document, self.scene = shown, shown.get("scene")
-            self.time = self.speed = self.problem = None
+            self.time = self.speed = None
+            self.set_trait("problem", None)
 
     def run(self) -> Trajectory:
         """Return the motion of the scene as it is now in the page, computed here.

@@ -9,7 +9,7 @@ import type { Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
 import { bindKeys } from "./panels/keys.ts";
-import { openPreset, PRESETS } from "./presets/index.ts";
+import { mayMove, openPreset, PRESETS } from "./presets/index.ts";
 import styles from "./theme.css?inline";
 
 /** From this width on, in px, panels stand beside the picture: the same as in theme.css. */
@@ -98,13 +98,15 @@ export class PolhodeViewer extends HTMLElement {
     }
   }
 
-  /** Shows what the element was given; what is wrong with it is told by the page. */
+  /** Shows what the element was given, playing if nothing else is said; what is wrong with it is told by the page. */
   private async first(model: Model): Promise<void> {
     try {
       const given = this.given ?? (await this.child()) ?? (await this.source());
       this.given ??= given;
       if (given) await model.show(given);
       if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
+      else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
+        model.look({ playing: mayMove() });
     } catch (error) {
       model.problem.value = words(error);
     }

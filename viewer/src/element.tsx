@@ -90,6 +90,8 @@ export class PolhodeViewer extends HTMLElement {
       this.model = model;
       if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
       await this.first(model);
+      // Meanwhile it may have been taken out of the page.
+      if (this.model !== model) return;
       this.watch(model);
       this.draw(model);
       this.resolve(model);

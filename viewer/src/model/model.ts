@@ -179,7 +179,12 @@ export class Model {
   }
 
   dispose(): void {
-    this.motion.value?.close();
+    const motion = this.motion.value;
+    batch(() => {
+      this.playing.value = false;
+      this.motion.value = null;
+    });
+    motion?.close();
   }
 
   private follow(scene: string, name: string, files: Files): boolean {

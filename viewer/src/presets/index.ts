@@ -9,6 +9,7 @@ import handle from "../../../examples/t-handle.toml?raw";
 import handleMesh from "../../../examples/t-handle.stl?base64";
 import toutatis from "../../../examples/toutatis.toml?raw";
 import cusps from "./cusps.toml?raw";
+import poinsot from "./poinsot.toml?raw";
 import racket from "./racket.toml?raw";
 import sleeping from "./sleeping.toml?raw";
 import waves from "./waves.toml?raw";
@@ -55,7 +56,7 @@ export const PRESETS: Preset[] = [
   {
     name: "poinsot.toml",
     title: "Poinsot: rolling without slipping",
-    scene: racket,
+    scene: poinsot,
     view: {
       speed: 0.5,
       shown: {

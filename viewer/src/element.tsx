@@ -34,6 +34,8 @@ export class PolhodeViewer extends HTMLElement {
   private palette: ReadonlySignal<Palette> | null = null;
   private leave: (() => void)[] = [];
   private readonly place: HTMLElement;
+  /** Not in the attribute `style`, which is the embedding page's. */
+  private readonly colours = document.createElement("style");
 
   constructor() {
     super();
@@ -43,7 +45,7 @@ export class PolhodeViewer extends HTMLElement {
     style.textContent = styles;
     this.place = document.createElement("div");
     this.place.className = "place";
-    root.append(style, this.place);
+    root.append(style, this.colours, this.place);
   }
 
   get document(): PageDocument | null {
@@ -175,7 +177,8 @@ export class PolhodeViewer extends HTMLElement {
     this.leave = [
       dispose,
       effect(() => {
-        for (const [name, colour] of variables(palette.value)) this.style.setProperty(name, colour);
+        const set = variables(palette.value).map(([name, colour]) => `${name}: ${colour};`);
+        this.colours.textContent = `:host { ${set.join(" ")} }`;
       }),
       effect(() => this.publish(model)),
       bindKeys(this, model),

@@ -17,7 +17,7 @@ export const KEYS: [string, string][] = [
 /** A step is a thirtieth of a second of the clock. */
 const STEP = 1 / 30;
 
-/** Nothing is that slow or fast, a gas or a galaxy. */
+/** What is looked at is between an atom and a galaxy, in seconds of motion in one of the clock. */
 const SLOWEST = 1e-15;
 const FASTEST = 1e15;
 
@@ -81,7 +81,7 @@ function act(event: KeyboardEvent, host: HTMLElement, model: Model): boolean {
 }
 
 function isDark(host: HTMLElement): boolean {
-  return host.style.colorScheme === "dark";
+  return getComputedStyle(host).colorScheme === "dark";
 }
 
 /** Whether the key means something to what has the focus. */

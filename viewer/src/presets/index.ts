@@ -55,13 +55,17 @@ export const PRESETS: Preset[] = [
   },
   {
     name: "poinsot.toml",
-    title: "Poinsot: rolling without slipping",
+    title: "Poinsot’s rolling ellipsoid",
     scene: poinsot,
     view: {
       speed: 0.5,
       shown: {
-        ...{ poinsot: true, polhode: true, herpolhode: true },
-        ...{ trace: false, omega: false, momentum: false, bodyFrame: false },
+        poinsot: true,
+        herpolhode: true,
+        trace: false,
+        omega: false,
+        momentum: false,
+        bodyFrame: false,
       },
     },
     caption:

@@ -71,7 +71,9 @@ def pages(browser):
     """
 
     def opened(**options):
-        context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options})
+        context = browser.new_context(
+            **{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options}
+        )
         context.set_offline(True)
         return ViewerPage(context.new_page())
 

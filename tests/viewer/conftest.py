@@ -72,10 +72,15 @@ def browser():
 
 @pytest.fixture(scope="package")
 def pages(browser):
-    """What opens a page without a network, in a profile of its own; all are closed with the browser."""
+    """What opens a page without a network, in a profile of its own; all are closed with the browser.
+
+    It asks for less motion, so that a page stays at its start until it is told to play.
+    """
 
     def opened(**options):
-        context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
+        context = browser.new_context(
+            **{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options}
+        )
         context.set_offline(True)
         return ViewerPage(context.new_page())
 

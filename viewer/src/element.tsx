@@ -9,7 +9,7 @@ import type { Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
 import { bindKeys, takeAtEnter } from "./panels/keys.ts";
-import { openPreset, PRESETS } from "./presets/index.ts";
+import { mayMove, openPreset, PRESETS } from "./presets/index.ts";
 import styles from "./theme.css?inline";
 
 /** From this width on, in px, panels stand beside the picture: the same as in theme.css. */
@@ -34,6 +34,8 @@ export class PolhodeViewer extends HTMLElement {
   private palette: ReadonlySignal<Palette> | null = null;
   private leave: (() => void)[] = [];
   private readonly place: HTMLElement;
+  /** Not in the attribute `style`, which is the embedding page's. */
+  private readonly colours = document.createElement("style");
 
   constructor() {
     super();
@@ -43,7 +45,7 @@ export class PolhodeViewer extends HTMLElement {
     style.textContent = styles;
     this.place = document.createElement("div");
     this.place.className = "place";
-    root.append(style, this.place);
+    root.append(style, this.colours, this.place);
   }
 
   get document(): PageDocument | null {
@@ -90,6 +92,8 @@ export class PolhodeViewer extends HTMLElement {
       this.model = model;
       if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
       await this.first(model);
+      // Meanwhile it may have been taken out of the page.
+      if (this.model !== model) return;
       this.watch(model);
       this.draw(model);
       this.resolve(model);
@@ -98,13 +102,15 @@ export class PolhodeViewer extends HTMLElement {
     }
   }
 
-  /** Shows what the element was given; what is wrong with it is told by the page. */
+  /** Shows what the element was given, playing if nothing else is said; what is wrong with it is told by the page. */
   private async first(model: Model): Promise<void> {
     try {
       const given = this.given ?? (await this.child()) ?? (await this.source());
       this.given ??= given;
       if (given) await model.show(given);
       if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
+      else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
+        model.look({ playing: mayMove() });
     } catch (error) {
       model.problem.value = words(error);
     }
@@ -171,7 +177,8 @@ export class PolhodeViewer extends HTMLElement {
     this.leave = [
       dispose,
       effect(() => {
-        for (const [name, colour] of variables(palette.value)) this.style.setProperty(name, colour);
+        const set = variables(palette.value).map(([name, colour]) => `${name}: ${colour};`);
+        this.colours.textContent = `:host { ${set.join(" ")} }`;
       }),
       effect(() => this.publish(model)),
       bindKeys(this, model),

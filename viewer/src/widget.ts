@@ -85,7 +85,8 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
 export function present(traits: Traits): PageDocument {
   const given = traits.get("document") as PageDocument;
   const scene = traits.get("scene") as string | null;
-  const view = known(traits, VIEW);
+  // A notebook has many of them: none plays before it is asked to.
+  const view = { playing: false, ...known(traits, VIEW) };
   if (scene === null || scene === given.scene) return { ...given, view };
   const { recorded: _, ...others } = given;
   return { ...others, scene, view };

@@ -179,7 +179,12 @@ export class Model {
   }
 
   dispose(): void {
-    this.motion.value?.close();
+    const motion = this.motion.value;
+    batch(() => {
+      this.playing.value = false;
+      this.motion.value = null;
+    });
+    motion?.close();
   }
 
   private follow(scene: string, name: string, files: Files): boolean {
@@ -228,12 +233,16 @@ export function span(about: About): [number, number] {
   return [-horizon, horizon];
 }
 
-/** The speed at which the body turns about once in three seconds, of the form 1, 2, 5 times a power of ten. */
+/**
+ * The speed at which the body turns about once in three seconds, of the form 1, 2, 5 times a power of ten; up to three
+ * times as fast where it would else take long to turn over.
+ */
 function usualSpeed(motion: Motion | null): number {
   const row = motion?.states([0]);
   if (!motion || !row || row.length < ROW) return 1;
   const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
-  const wanted = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;
+  const calm = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;
+  const wanted = Math.min(Math.max((motion.about.free?.flip_time ?? 0) / 6, calm), 3 * calm);
   const power = 10 ** Math.floor(Math.log10(wanted));
   const first = wanted / power;
   return (first < 1.5 ? 1 : first < 3.5 ? 2 : first < 7.5 ? 5 : 10) * power;

@@ -75,20 +75,22 @@ function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
       <Playback model={model} />
       <aside class="panels" aria-label="Read-outs and controls">
         {known && (
-          <>
-            <Panel id="state" title="State" open={!compact || wide} folds={folds}>
-              <Readout model={model} />
-            </Panel>
-            <Panel id="motion" title="Motion" open={wide && !compact} folds={folds}>
-              <Facts model={model} />
-            </Panel>
-          </>
+          <Panel id="state" title="State" open={!compact || wide} folds={folds}>
+            <Readout model={model} />
+          </Panel>
+        )}
+        {!compact && controls.about.value && (
+          <Panel id="start" title="Spin and attitude" open={wide} folds={folds}>
+            <StartPanel controls={controls} />
+          </Panel>
+        )}
+        {known && (
+          <Panel id="motion" title="Motion" open={wide && !compact} folds={folds}>
+            <Facts model={model} />
+          </Panel>
         )}
         {!compact && controls.about.value && (
           <>
-            <Panel id="start" title="Spin and attitude" open={wide} folds={folds}>
-              <StartPanel controls={controls} />
-            </Panel>
             <Panel id="body" title="Body" open={false} folds={folds}>
               <BodyPanel controls={controls} />
             </Panel>

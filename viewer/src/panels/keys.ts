@@ -17,6 +17,10 @@ export const KEYS: [string, string][] = [
 /** A step is a thirtieth of a second of the clock. */
 const STEP = 1 / 30;
 
+/** What is looked at is between an atom and a galaxy, in seconds of motion in one of the clock. */
+const SLOWEST = 1e-15;
+const FASTEST = 1e15;
+
 /** Steps forward, or back. */
 export function step(model: Model, count: number): void {
   model.playing.value = false;
@@ -29,7 +33,8 @@ export function faster(model: Model, direction: 1 | -1): void {
   const power = 10 ** Math.floor(Math.log10(speed) + 1e-9);
   const row = [0.5, 1, 2, 5, 10].map((first) => first * power);
   const next = direction > 0 ? row.find((s) => s > speed * 1.01) : row.findLast((s) => s < speed * 0.99);
-  if (next !== undefined) model.speed.value = Number(next.toPrecision(3));
+  if (next !== undefined && next >= SLOWEST && next <= FASTEST)
+    model.speed.value = Number(next.toPrecision(3));
 }
 
 /**
@@ -92,7 +97,7 @@ function act(event: KeyboardEvent, host: HTMLElement, model: Model): boolean {
 }
 
 function isDark(host: HTMLElement): boolean {
-  return host.style.colorScheme === "dark";
+  return getComputedStyle(host).colorScheme === "dark";
 }
 
 /** Whether the key means something to what has the focus. */

@@ -9,6 +9,8 @@ import handle from "../../../examples/t-handle.toml?raw";
 import handleMesh from "../../../examples/t-handle.stl?base64";
 import toutatis from "../../../examples/toutatis.toml?raw";
 import cusps from "./cusps.toml?raw";
+import poinsot from "./poinsot.toml?raw";
+import racket from "./racket.toml?raw";
 import sleeping from "./sleeping.toml?raw";
 import waves from "./waves.toml?raw";
 
@@ -41,6 +43,34 @@ export const PRESETS: Preset[] = [
     caption:
       "Spun about the axis of its middle moment, the handle turns over, again and again. L stays where it is; on the " +
       "body, Ω leaves one end of the axis and arrives at the other along the polhode.",
+  },
+  {
+    name: "racket.toml",
+    title: "The tennis racket: a book",
+    scene: racket,
+    view: { speed: 0.5, shown: { polhode: true, trace: true, omega: true, momentum: true } },
+    caption:
+      "About its longest or its shortest side a book spins steadily; about the middle one it turns over, however small " +
+      "the push off that axis. Choose where it spins under “Spin in”, and how far off by the slider.",
+  },
+  {
+    name: "poinsot.toml",
+    title: "Poinsot’s rolling ellipsoid",
+    scene: poinsot,
+    view: {
+      speed: 0.5,
+      shown: {
+        poinsot: true,
+        herpolhode: true,
+        trace: false,
+        omega: false,
+        momentum: false,
+        bodyFrame: false,
+      },
+    },
+    caption:
+      "The ellipsoid of inertia rolls on a plane that never moves, at right angles to the axis of L. It touches where Ω is: " +
+      "the point draws the polhode on the body and the herpolhode on the plane.",
   },
   {
     name: "symmetric-top.toml",
@@ -112,7 +142,12 @@ export const PRESETS: Preset[] = [
   },
 ];
 
-/** Shows a preset, playing, unless the machine's owner wants things still. */
+/** Whether a motion may play by itself: not where the machine's owner wants things still. */
+export function mayMove(): boolean {
+  return !matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
+/** Shows a preset, playing if it may. */
 export function openPreset(model: Model, preset: Preset): void {
   const files: Files = new Map(Object.entries(preset.files ?? {}).map(([name, text]) => [name, bytes(text)]));
   model.open(preset.scene, { name: preset.name, files });
@@ -121,7 +156,7 @@ export function openPreset(model: Model, preset: Preset): void {
   model.shown.value = SHOWN;
   model.look({
     camera: "oblique",
-    playing: !matchMedia("(prefers-reduced-motion: reduce)").matches,
+    playing: mayMove(),
     ...preset.view,
   });
 }

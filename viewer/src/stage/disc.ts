@@ -64,6 +64,7 @@ export class Disc implements Part {
   private readonly arrow: Arrow;
   private readonly label: Label;
   private reference = 1;
+  private radius = 1;
   private valued = true;
   private arrowLength = (_: number): number => 0;
 
@@ -95,6 +96,8 @@ export class Disc implements Part {
 
   follow(figure: Figure): void {
     this.reference = figure[this.style.bivector];
+    // Inside the sphere on which the axis of a top draws its path.
+    this.radius = (figure.about.held ? 0.7 : 1) * this.style.radius;
     // Moments without a mass are often ratios, of which L has no unit.
     this.valued = this.style.bivector === "omega" || figure.about.body.mass !== null;
     // The arrow of ω ends on polhode and herpolhode; that of L beyond its disc.
@@ -126,7 +129,7 @@ export class Disc implements Part {
     if (this.label.hidden) return;
     this.label.say(this.valued ? quantity(size, this.style.unit) : "");
     const normal = axial.clone().divideScalar(size);
-    const radius = Math.min(this.style.radius * Math.sqrt(size / this.reference), 3);
+    const radius = Math.min(this.radius * Math.sqrt(size / this.reference), 3);
     this.disc.quaternion.setFromUnitVectors(AXES[2], normal);
     this.fill.scale.setScalar(radius);
     this.rim.object.scale.setScalar(radius);

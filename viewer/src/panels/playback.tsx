@@ -77,8 +77,8 @@ function TimeSlider({ model, about }: { model: Model; about: About }) {
 
 function TimeField({ model, about }: { model: Model; about: About }) {
   const unit = timeUnit(about.duration);
-  // Some ten thousand different times in a duration, each a decimal number.
-  const decimals = Math.min(Math.max(0, 5 - Math.ceil(Math.log10(about.duration / unit.size))), 20);
+  // Some thousand different times in a duration, each a decimal number.
+  const decimals = Math.min(Math.max(0, 4 - Math.ceil(Math.log10(about.duration / unit.size / 1.6))), 20);
   const shown = typed(Number((model.time.value / unit.size).toFixed(decimals)), 15);
   // Room for all times of a duration, so that nothing moves while time passes.
   const width = Math.max(4, (about.duration / unit.size).toFixed(decimals).length, shown.length);

@@ -19,7 +19,7 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
     "trivector",
     "A trivector is swept out",
     "The vector a sweeps out the bivector a∧b when it moves along b; that sweeps out the trivector (a∧b)∧c when it " +
-      "moves along c. In what order one multiplies does not matter, and an exchange of two vectors turns the sense over.",
+      "moves along c. The brackets do not matter; an exchange of two vectors turns the sense over.",
     "a = 1.5 e1 - 0.3 e2",
     "b = 0.4 e1 + 1.5 e2",
     "c = 0.3 e1 + 0.4 e2 + 1.2 e3",

@@ -15,7 +15,7 @@ export function Facts({ model }: { model: Model }) {
         {free && (
           <Fact name="Regime" id="regime">
             {free.regime}
-            {free.period !== null && `, about axis ${free.axis}`}
+            {free.period !== null && circled(about.body.moments, free.axis)}
           </Fact>
         )}
         {about.top && (
@@ -25,7 +25,9 @@ export function Facts({ model }: { model: Model }) {
         )}
         {about.laws.map((law) => (
           <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
-            <code>{about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : law.text}</code>
+            <code>
+              {about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : shortened(law.text)}
+            </code>
           </Fact>
         ))}
         {free && <Times free={free} />}
@@ -108,6 +110,18 @@ function Top({ top }: { top: NonNullable<About["top"]> }) {
 /** What kind of motion it is, in words; empty where none has a name. */
 export function regimeOf(about: About | null): string {
   return about?.free?.regime ?? about?.top?.regime ?? "";
+}
+
+/** Which axis Ω circles. */
+function circled(moments: Triple, axis: 1 | 2 | 3): string {
+  const which = moments[axis - 1] === Math.max(...moments) ? "largest" : "smallest";
+  return `: Ω circles axis ${axis}, that of the ${which} moment`;
+}
+
+/** The numbers of a law with some digits; a formula as it stands. */
+function shortened(text: string): string {
+  if (/[^-+\d.e(), ]/.test(text)) return text;
+  return text.replace(/\d[\d.]*(e[-+]?\d+)?/g, (number) => significant(Number(number), 5));
 }
 
 /** How the motion was found, and how far it may be off. */

@@ -110,7 +110,7 @@ function TimeField({ model, about }: { model: Model; about: About }) {
 function Trust({ about }: { about: About }) {
   return (
     <span class={about.exact ? "badge exact" : "badge"} title={trust(about)} id="method">
-      {about.exact ? "exact" : about.method}
+      {about.exact ? "exact" : about.method === "recorded" ? "recorded" : "in steps"}
     </span>
   );
 }

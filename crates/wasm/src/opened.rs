@@ -44,7 +44,9 @@ impl Opened {
     /// the core compute. An error says what is wrong, with places; or that the time allowed was not enough.
     pub fn new(text: &str, name: &str, files: &Files, go_on: GoOn) -> Result<Opened, String> {
         let scene = Scene::parse(text, Path::new(name)).map_err(|problems| told(&problems))?;
-        let source = |path: &Path| mesh_among(files, path);
+        // Asked for to make the body and to draw it, and read once: a scene names one mesh.
+        let read = OnceCell::new();
+        let source = |path: &Path| read.get_or_init(|| mesh_among(files, path)).clone();
         let (body, laws) = scene.build_with(&source).map_err(|problems| told(&problems))?;
         // `build_with` has read it without an error.
         let mesh = scene.mesh_with(&source).and_then(Result::ok).map(|mesh| mesh.moved(scene.shift()));

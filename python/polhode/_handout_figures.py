@@ -180,14 +180,7 @@ def _told(value: Multivector) -> str:
 
 def _arrow(axes: Axes, view: View, start: Array, end: Array, colour: str, width: float = 1.7) -> None:
     flat = view.project(np.stack([start, end]))
-    arrow = {
-        "arrowstyle": "-|>",
-        "color": colour,
-        "lw": width,
-        "shrinkA": 0,
-        "shrinkB": 0,
-        "mutation_scale": 13,
-    }
+    arrow = _arrowprops(colour, width, 13)
     axes.annotate("", xy=flat[1], xytext=flat[0], arrowprops=arrow, zorder=6)
 
 
@@ -230,19 +223,24 @@ def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
                 axes.plot(*ends.T, color=_BLACK, zorder=3, solid_capstyle="round", **style)
 
 
+def _arrowprops(colour: str, width: float, head: float) -> dict[str, Any]:
+    """Return how matplotlib draws an arrow from end to end."""
+    return {
+        "arrowstyle": "-|>",
+        "color": colour,
+        "lw": width,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": head,
+    }
+
+
 def _draw_turn(axes: Axes, view: View, center: Array, first: Array, second: Array, colour: str) -> None:
     """Draw the sense of a bivector: an arrow about a point from `first` towards `second`."""
     s = np.linspace(0.35, 2 * np.pi - 0.35, 90)[:, np.newaxis]
     flat = view.project(center + 1.35 * (np.cos(s) * first + np.sin(s) * second))
     axes.plot(*flat.T, color=colour, lw=1.5, zorder=5)
-    arrow = {
-        "arrowstyle": "-|>",
-        "color": colour,
-        "lw": 1.5,
-        "shrinkA": 0,
-        "shrinkB": 0,
-        "mutation_scale": 12,
-    }
+    arrow = _arrowprops(colour, 1.5, 12)
     axes.annotate("", xy=flat[-1], xytext=flat[-8], arrowprops=arrow, zorder=5)
 
 
@@ -256,7 +254,7 @@ def _draw_plane(axes: Axes, view: View, plane: Multivector, radius: float) -> No
     rim = _rim(plane, radius)
     flat = view.project(rim)
     axes.fill(*flat.T, facecolor="#EEF1F5", edgecolor=FAINT, lw=1.0, zorder=0)
-    arrow = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.2, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 15}
+    arrow = _arrowprops(FAINT, 1.2, 15)
     for k in (20, 80, 140):
         axes.annotate("", xy=flat[k + 3], xytext=flat[k], arrowprops=arrow, zorder=1)
     lowest = int(np.argmin(flat[:, 1] - 0.6 * flat[:, 0]))
@@ -268,12 +266,5 @@ def _draw_sector(axes: Axes, view: View, points: Array) -> None:
     flat = view.project(points)
     axes.fill(*np.concatenate([flat, [[0, 0]]]).T, facecolor=_ORANGE, edgecolor="none", alpha=0.18, zorder=2)
     axes.plot(*flat.T, color=_BLACK, lw=1.1, zorder=3)
-    arrow = {
-        "arrowstyle": "-|>",
-        "color": _BLACK,
-        "lw": 1.1,
-        "shrinkA": 0,
-        "shrinkB": 0,
-        "mutation_scale": 10,
-    }
+    arrow = _arrowprops(_BLACK, 1.1, 10)
     axes.annotate("", xy=flat[-1], xytext=flat[-6], arrowprops=arrow, zorder=3)

@@ -7,7 +7,7 @@ import numpy as np
 import polhode as ph
 
 EPS = np.finfo(float).eps
-REFERENCE = Path(__file__).parents[2] / "shared" / "reference" / "motion_cases.json"
+REFERENCE = Path(__file__).parent / "reference" / "motion_cases.json"
 # Without a name a free body moves exactly; this asks for the steps that torques need.
 STEPS = "kahan_li8"
 METHODS = {

@@ -37,7 +37,6 @@ def test_all_that_is_installed_agrees(topic, monkeypatch):
 EXTENDED = np.finfo(np.longdouble).eps
 
 
-@pytest.mark.skipif(not work_precision.REFERENCES.is_file(), reason="needs the reference data")
 @pytest.mark.parametrize(
     ("top", "name"), [(FREE, "dzhanibekov_001"), (LAGRANGE, "lagrange_loop"), (KOVALEVSKAYA, "kovalevskaya")]
 )

@@ -141,7 +141,6 @@ def test_threads_do_not_matter(monkeypatch, bodies, each):
         assert_same(one, three)
 
 
-@pytest.mark.skipif(not REFERENCE.exists(), reason="the reference motions are not beside this checkout")
 def test_reference_motions_side_by_side():
     """Error 5e-15 as of each alone, all together and each at its own times."""
     cases = json.loads(REFERENCE.read_text())["free_top"]

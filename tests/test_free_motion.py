@@ -2,15 +2,12 @@
 
 import itertools
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import polhode as ph
-
-EPS = np.finfo(float).eps
-REFERENCES = Path(__file__).parent.parent.parent / "shared/reference/motion_cases.json"
+from motions import EPS, REFERENCE
 
 # Moments, body angular velocity, rotor (not normalised), time; then rotor and angular velocity at that
 # time to 17 digits, from two independent computations of 40 digits. Inputs are exact in binary.
@@ -66,13 +63,10 @@ def errors(motion, times, rotors, omegas):
 
 
 def reference_cases():
-    if not REFERENCES.exists():
-        return []
-    cases = json.loads(REFERENCES.read_text())["free_top"]
+    cases = json.loads(REFERENCE.read_text())["free_top"]
     return [pytest.param(case, id=case["name"]) for case in cases]
 
 
-@pytest.mark.skipif(not REFERENCES.exists(), reason="the reference motions are not beside this checkout")
 @pytest.mark.parametrize("case", reference_cases())
 def test_reference_motions(case):
     """Error 5e-15, near the separatrix too; decimal inputs add their rounding, which grows with time."""
@@ -86,7 +80,6 @@ def test_reference_motions(case):
         assert omega <= 5e-15 + 10 * inputs
 
 
-@pytest.mark.skipif(not REFERENCES.exists(), reason="the reference motions are not beside this checkout")
 @pytest.mark.parametrize("case", reference_cases())
 def test_reference_periods(case):
     """Period, modulus and mean precession to 8 roundings."""

@@ -46,8 +46,6 @@ def rotor(*components):
 
 def referenced():
     """The torqued cases of the reference file, at each of their times but the first."""
-    if not REFERENCE.exists():
-        return {}
     data = json.loads(REFERENCE.read_text())
     found = {}
     for case in data["torqued"]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,14 +27,17 @@ class Certificate:
         The method's name (``exact`` for the exact solution), its longest step in s, and the steps and the
         evaluations of the torque of all passes.
     error_estimate
-        Cautious estimate of the relative error in rotor and angular velocity, from the last two passes; None
-        for a step that was given; NaN in a batch.
+        Cautious estimate of the relative error in rotor and angular velocity: truncation, from the last two
+        passes, and the rounding that the motion magnifies, measured by passes with added noise. None for a
+        step that was given; NaN in a batch.
     conserved
         Each conserved quantity's initial value in SI; NaN for a body of a batch that does not conserve it.
     drift
         Its largest change over the run, relative to the terms that make it up.
     norm_drift
         Largest ``abs(|R| − 1)``.
+    warnings
+        What the numbers do not show, such as a law that changes too fast for a fixed step.
     """
 
     method: Any
@@ -44,6 +48,7 @@ class Certificate:
     conserved: dict[str, Any]
     drift: dict[str, Any]
     norm_drift: Any
+    warnings: Sequence[str] = ()
 
     @property
     def worst(self) -> float:
@@ -75,6 +80,7 @@ class Certificate:
             {name: picked(self.conserved[name]) for name in kept},
             {name: picked(self.drift[name]) for name in kept},
             picked(self.norm_drift),
+            self.warnings,
         )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -24,6 +25,9 @@ _BYTES_OF_POINT = 8 * (4 + 3 + 3 + 1)
 _BYTES_OF_CENTER = 8 * (3 + 3)
 # Of a body: its inertia and start on the way, and what the certificate tells of it.
 _BYTES_OF_BODY = 800
+
+# The longest step in s, how many steps a pass may take, and times at which steps end.
+StepLimits = tuple[float | None, float | None, list[float]]
 
 _VECTOR, _BIVECTOR = 0b0010, 0b0100
 _NOWHERE: Any = (None, None)
@@ -50,6 +54,7 @@ class Ensemble:
     method: str
     step: float | None
     rtol: float | None
+    limits: StepLimits
 
     @property
     def bodies(self) -> int:
@@ -111,12 +116,15 @@ class Ensemble:
             self.method,
             self.step,
             self.rtol,
+            self.limits,
             threads,
             progress,
         )
         n = len(self.times)
         arrays = [frozen(x.reshape(*self.shape, *x.shape[1:])[..., :n, :]) for x in arrays]
-        return self._trajectory(arrays, self._certificate(told), self._failures(told))
+        certificate = self._certificate(told)
+        warn_of(certificate)
+        return self._trajectory(arrays, certificate, self._failures(told))
 
     def _nothing(self) -> Trajectory:
         sizes = (4, 3, 3, 1, 3, 3) if self.forces else (4, 3, 3, 1)
@@ -175,6 +183,7 @@ class Ensemble:
             {name: column(numbers) for name, numbers in told["conserved"].items()},
             {name: finished(numbers) for name, numbers in told["drift"].items()},
             finished(told["norm_drift"]),
+            tuple(told["warnings"]),
         )
 
     def _failures(self, told: dict[str, Any]) -> tuple[Failure, ...]:
@@ -195,6 +204,12 @@ def _rows_of(argument: Any, rows: slice) -> Any:
 
 
 # --- what is given
+
+
+def warn_of(certificate: Certificate) -> None:
+    """Report what the certificate warns of to the caller of `simulate`."""
+    for warning in certificate.warnings:
+        warnings.warn(warning, RuntimeWarning, stacklevel=3)
 
 
 def bodies_of(body: Any) -> Any:

@@ -327,6 +327,7 @@ def simulate(
     method: str,
     step: float | None,
     rtol: float | None,
+    limits: tuple[float | None, float | None, list[float]],
     events: list[Event],
     progress: Callable[[int, float], object] | None,
 ) -> Motion: ...
@@ -353,6 +354,7 @@ def simulate_many(
     method: str,
     step: float | None,
     rtol: float | None,
+    limits: tuple[float | None, float | None, list[float]],
     threads: int | None,
     progress: Callable[[int, float], object] | None,
 ) -> tuple[list[Array], dict[str, Any]]: ...

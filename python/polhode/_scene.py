@@ -58,7 +58,7 @@ class Scene:
         What moves the centre of mass; None where nothing does.
     times
         Output times in s.
-    method, step, rtol, atol
+    method, step, rtol, atol, max_step, max_steps
         As for `polhode.simulate`; step and tolerances may be None.
     drift_bound
         Largest relative drift of a conserved quantity that counts as success.
@@ -82,6 +82,8 @@ class Scene:
     step: float | None
     rtol: float | None
     atol: float | None
+    max_step: float | None
+    max_steps: float | None
     drift_bound: float
     ensemble: EnsembleSpec | None
 
@@ -117,6 +119,8 @@ class Scene:
             step=fields["step"],
             rtol=fields["rtol"],
             atol=fields["atol"],
+            max_step=fields["max_step"],
+            max_steps=fields["max_steps"],
             drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
             ensemble=None if fields["ensemble"] is None else EnsembleSpec._of(fields["ensemble"]),
         )
@@ -242,6 +246,8 @@ class Scene:
             step=self.step,
             rtol=self.rtol,
             atol=self.atol,
+            max_step=self.max_step,
+            max_steps=self.max_steps,
             threads=threads,
             progress=progress,
         )

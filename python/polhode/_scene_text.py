@@ -38,6 +38,8 @@ class Problem:
         Output times in s, (n,).
     method, step, tolerance
         As for `polhode.simulate`; the larger one of rtol and atol.
+    limits
+        `max_step`, `max_steps` and `breaks`.
     """
 
     body: Body | Inertia
@@ -48,6 +50,7 @@ class Problem:
     method: str = "auto"
     step: float | None = None
     tolerance: float | None = None
+    limits: tuple[float | None, float | None, list[float]] = (None, None, [])
 
     @property
     def held(self) -> bool:
@@ -113,8 +116,13 @@ class Problem:
             fields["step"] = self.step
         if self.tolerance is not None:
             if self.tolerance >= 1:
-                raise UnwritableError(f"a tolerance of {self.tolerance} is none that a scene takes")
+                raise UnwritableError(f"tolerance must be less than 1 in a scene, got {self.tolerance}")
             fields["rtol"] = self.tolerance
+        max_step, max_steps, breaks = self.limits
+        if breaks:
+            raise UnwritableError("a scene has no breaks; give max_step instead")
+        given = {"max_step": max_step, "max_steps": max_steps}
+        fields |= {name: value for name, value in given.items() if value is not None}
         return fields
 
 

@@ -14,7 +14,15 @@ from polhode._arrays import as_count, as_float, as_floats
 from polhode._bodies import Body, Inertia
 from polhode._certificate import Certificate
 from polhode._coefficients import as_coefficients
-from polhode._ensemble import Ensemble, bodies_of, check_state, mapped_objects, shape_of
+from polhode._ensemble import (
+    Ensemble,
+    StepLimits,
+    bodies_of,
+    check_state,
+    mapped_objects,
+    shape_of,
+    warn_of,
+)
 from polhode._multivector import Multivector
 from polhode._scene_text import Problem
 from polhode._state import State
@@ -41,6 +49,9 @@ def simulate(
     atol: float | None = None,
     step: float | None = None,
     *,
+    max_step: float | None = None,
+    max_steps: float | None = None,
+    breaks: Any = (),
     events: Event | Sequence[Event] = (),
     threads: int | None = None,
     progress: Callable[[int, float], object] | None = None,
@@ -74,15 +85,27 @@ def simulate(
         rate of turning, and for forces, ``dop853``, a Runge–Kutta method of order 8 on the group of rotors
         that adapts its steps. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,
         ``kahan_li6``, ``rk4``. A batch without a `step` is ``exact`` where known, else ``dop853``, each body
-        by its own steps.
+        by its own steps. Where `dop853` would need steps far shorter than the motion itself, as under strong
+        damping, ``"auto"`` takes ``midpoint``.
     rtol, atol
         Without a `step`, runs with ever shorter steps until the estimated error of the last is less than the
-        larger of the two: in the rotor, in the angular velocity relative to its largest size, and so for the
-        centre of mass, where forces move it; at output times and events. With neither given the aim is
-        1e-10; where rounding, magnified by the motion, allows only up to 1e-6, that is accepted and the
-        certificate tells the estimate.
+        larger of the two: in the rotor; in the angular velocity, relative to its largest size or, if that is
+        larger, to the rate √(N/i) at which the torque N makes the largest moment i swing; and so for the
+        centre of mass, where forces move it; at output times and events. The estimate includes the rounding
+        that the motion magnifies, which is measured. Nothing is returned whose estimate exceeds the
+        tolerance. With neither given the aim is 1e-10; where rounding allows only up to 1e-6, that is
+        accepted and the certificate has the estimate.
     step
-        A fixed step in s; shortened a little so that steps end on the output times.
+        A fixed step in s; shortened a little so that steps end on the output times. A law that changes too
+        fast for it is reported as a `RuntimeWarning`.
+    max_step
+        The longest step in s. Laws that depend on time are sampled at 4096 times beforehand, and steps
+        shorten where they change; a push that lasts less than 1/4096 of the run needs `max_step` or `breaks`.
+    max_steps
+        How many steps a pass may take; 1e8 by default, 1e10 where a `step` is given. A run that is foreseen
+        to exceed it is refused.
+    breaks
+        Times in s, (k,), at which steps end: where a law jumps, or before and after a short push.
     events
         What to look for on the way, from `polhode.event`: one or several; found in ``trajectory.events``.
         Not for a batch.
@@ -95,12 +118,13 @@ def simulate(
     Raises
     ------
     ValueError
-        For input that is not usable, or a tolerance that was not reached; in a batch, for what no body
-        could be followed with.
+        For input that is not usable, a tolerance that was not reached, or too many steps; in a batch, for
+        what no body could be followed with.
     MemoryError
         If the results of a batch do not fit into memory: before anything is computed.
     """
-    given = _given(body, state, times, torque, force, method, rtol, atol, step)
+    limits = _limits(max_step, max_steps, breaks)
+    given = _given(body, state, times, torque, force, method, rtol, atol, step, limits)
     _check_progress(progress)
     looked_for = _events(events)
     count = _threads(threads)
@@ -124,10 +148,12 @@ def simulate(
         given.method,
         given.step,
         given.rtol,
+        given.limits,
         [event.law for event in looked_for],
         progress,
     )
     certificate = Certificate(**motion.certificate())
+    warn_of(certificate)
     problem = Problem(
         bodies_of(body)[()],
         state,
@@ -137,6 +163,7 @@ def simulate(
         given.method,
         given.step,
         given.rtol,
+        given.limits,
     )
     return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for], problem)
 
@@ -152,6 +179,9 @@ def simulate_blocks(
     atol: float | None = None,
     step: float | None = None,
     *,
+    max_step: float | None = None,
+    max_steps: float | None = None,
+    breaks: Any = (),
     block: int | None = None,
     threads: int | None = None,
     progress: Callable[[int, float], object] | None = None,
@@ -175,7 +205,8 @@ def simulate_blocks(
     The others, and the errors, are those of `simulate`: at once where arguments do not fit together, and else
     with the first block.
     """
-    given = _given(body, state, times, torque, force, method, rtol, atol, step)
+    limits = _limits(max_step, max_steps, breaks)
+    given = _given(body, state, times, torque, force, method, rtol, atol, step, limits)
     _check_progress(progress)
     if not given.shape:
         raise ValueError("simulate_blocks is for a batch of bodies, this is one; use simulate")
@@ -214,6 +245,7 @@ def _given(
     rtol: float | None,
     atol: float | None,
     step: float | None,
+    limits: StepLimits,
 ) -> Ensemble:
     """Return what is to be simulated, checked."""
     torque = as_torque(torque)
@@ -245,6 +277,19 @@ def _given(
         method,
         None if step is None else as_float(step, "step"),
         _tolerance(rtol, atol),
+        limits,
+    )
+
+
+def _limits(max_step: Any, max_steps: Any, breaks: Any) -> StepLimits:
+    """Return what bounds the steps, checked as far as the core does not."""
+    times = as_floats(breaks, "breaks")
+    if times.ndim != 1:
+        raise ValueError(f"breaks must be one-dimensional, got shape {times.shape}")
+    return (
+        None if max_step is None else as_float(max_step, "max_step"),
+        None if max_steps is None else as_float(max_steps, "max_steps"),
+        times.tolist(),
     )
 
 

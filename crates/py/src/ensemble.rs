@@ -6,7 +6,7 @@ use crate::columns::spread;
 use crate::laws::Force;
 use crate::made::{Made, interrupted};
 use crate::pool;
-use crate::simulation::{method_of, run};
+use crate::simulation::{Limits, method_of, run};
 use crate::torque::Law;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use polhode_ga::threads::Threads;
@@ -26,7 +26,7 @@ type Told<'py> = PyResult<(Vec<Array<'py>>, Bound<'py, PyDict>)>;
 /// velocities (…, 6) and masses (…), NaN where they are not known, broadcast to it. No batch is empty, nor are the times.
 #[pyfunction]
 #[pyo3(signature = (
-    shape, inertias, rotors, omegas, laws, centers, masses, forces, times, method, step, rtol, threads, progress
+    shape, inertias, rotors, omegas, laws, centers, masses, forces, times, method, step, rtol, limits, threads, progress
 ))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn simulate_many<'py>(
@@ -43,6 +43,7 @@ pub(crate) fn simulate_many<'py>(
     method: &str,
     step: Option<f64>,
     rtol: Option<f64>,
+    limits: Limits,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> Told<'py> {
@@ -72,7 +73,9 @@ pub(crate) fn simulate_many<'py>(
         return Err(bad(format!("{}{error}", place(body, &shape))));
     }
     let threads = threads.map_or_else(all_threads, |count| Ok(Threads::new(count)))?;
-    let options = Options { method, step, rtol, exact, events: Vec::new() };
+    let (max_step, max_steps, breaks) = limits;
+    let events = Vec::new();
+    let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
     let (bodies, times) = (ensemble.starts.len(), numbers(&times)?);
     let sizes: &[usize] = if ensemble.forces.is_empty() { &[4, 3, 3, 1] } else { &[4, 3, 3, 1, 3, 3] };
     let arrays = sizes.iter().map(|&size| pool::array(py, &[bodies, times.len(), size]));
@@ -159,5 +162,6 @@ fn told<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> 
     result.set_item("failure_times", failures.iter().map(|failure| failure.time).collect::<Vec<_>>())?;
     let messages: Vec<String> = failures.iter().map(|failure| failure.error.to_string()).collect();
     result.set_item("messages", messages)?;
+    result.set_item("warnings", summary.warnings)?;
     Ok(result)
 }

@@ -56,6 +56,8 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("step", scene.run.choice.step)?;
     result.set_item("rtol", scene.run.choice.rtol)?;
     result.set_item("atol", scene.run.choice.atol)?;
+    result.set_item("max_step", scene.run.choice.max_step)?;
+    result.set_item("max_steps", scene.run.choice.max_steps)?;
     result.set_item("drift_bound", scene.run.drift_bound)?;
     result.set_item("ensemble", Draws::of(py, scene, body, laws)?)?;
     Ok(result)

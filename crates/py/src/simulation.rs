@@ -116,6 +116,7 @@ impl Motion {
         certificate.set_item("conserved", conserved)?;
         certificate.set_item("drift", drift)?;
         certificate.set_item("norm_drift", proof.norm_drift)?;
+        certificate.set_item("warnings", &proof.warnings)?;
         Ok(certificate)
     }
 }
@@ -152,9 +153,12 @@ pub(crate) fn method_of(name: &str) -> PyResult<(Option<Method>, bool)> {
     }
 }
 
+/// The longest step in s, how many steps a pass may take, and times at which steps end.
+pub(crate) type Limits = (Option<f64>, Option<f64>, Vec<f64>);
+
 /// Simulates. `center` is the place and velocity of the centre of mass, the mass NaN where it is not known.
 #[pyfunction]
-#[pyo3(signature = (inertia, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, events, progress))]
+#[pyo3(signature = (inertia, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, limits, events, progress))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
@@ -169,6 +173,7 @@ pub(crate) fn simulate<'py>(
     method: &str,
     step: Option<f64>,
     rtol: Option<f64>,
+    limits: Limits,
     events: Vec<Bound<'py, Event>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Motion> {
@@ -187,7 +192,8 @@ pub(crate) fn simulate<'py>(
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques)
         .with_center(center, mass, &forces);
     let times = numbers(&times)?;
-    let options = Options { method, step, rtol, exact, events };
+    let (max_step, max_steps, breaks) = limits;
+    let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
     let motion = run(py, &made, progress.as_ref(), |progress| problem.simulate(times, options, progress))?;
     Ok(Motion { motion, made })
 }

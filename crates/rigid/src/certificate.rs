@@ -23,6 +23,8 @@ pub struct Certificate {
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// Largest `abs(|R| − 1)` at the output times.
     pub norm_drift: f64,
+    /// What the numbers do not show: a law that fixed steps are too long for.
+    pub warnings: Vec<String>,
 }
 
 /// `abs(|R| − 1)`.

@@ -19,7 +19,7 @@ mod steppers;
 use crate::force::{Center, Force};
 use crate::inertia::Inertia;
 use crate::simulate::{NO_CLOSED_FORM, Options, Problem, Progress, check_moments};
-use crate::simulate_error::{MAX_STEPS, SimulateError};
+use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
 use block::Crew;
 pub(crate) use output::Own;
@@ -136,8 +136,9 @@ impl Ensemble {
         }
         let span = times.last().map_or(0.0, |t| t.max(0.0)) - times.first().map_or(0.0, |t| t.min(0.0));
         let steps = span / step + times.len() as f64;
-        if steps > MAX_STEPS {
-            return Err(SimulateError::TooManySteps { steps, step });
+        let limit = options.most_steps();
+        if steps > limit {
+            return Err(SimulateError::TooManySteps { steps, step, limit });
         }
         Ok(())
     }

@@ -33,6 +33,9 @@ const CONVERGED: f64 = 4.0 * f64::EPSILON;
 /// Below this the corrections end where they no longer fall.
 const ROUNDING: f64 = 1e-12;
 
+/// A smaller momentum, in kg m²/s, is rest: its rounding is not relative to it.
+const LEAST: f64 = 1e-290;
+
 /// A body and what turns it.
 #[derive(Clone, Debug)]
 pub struct Midpoint {
@@ -80,7 +83,7 @@ impl Midpoint {
             let correction = solved(&frozen.unwrap_or_else(|| self.jacobian(mean, h)), residual);
             mean = mean - correction;
             let size = state.momentum.norm().max(mean.norm());
-            let relative = if size > 0.0 { correction.norm() / size } else { correction.norm() };
+            let relative = if size > LEAST { correction.norm() / size } else { correction.norm() };
             if relative <= CONVERGED || relative < ROUNDING && relative >= 0.5 * last {
                 return Ok(mean);
             }
@@ -140,7 +143,7 @@ impl Midpoint {
     ) -> Result<[[f64; 3]; 3], SimulateError> {
         let mut jacobian = [[0.0; 3]; 3];
         let size = mean.norm();
-        let change = 1e-7 * if size > 0.0 { size } else { 1.0 };
+        let change = 1e-7 * if size > LEAST { size } else { 1.0 };
         for k in 0..3 {
             let mut moved = mean;
             moved.0[k] += change;

@@ -46,12 +46,19 @@ pub struct Carried {
     pub momentum_space: Bivector,
     /// The centre of mass, where forces move it.
     pub center: Center,
+    /// What rounding has left out of the momentum, a sum over all steps: that of the body or in space, as steps carry it.
+    pub lost: Bivector,
 }
 
 impl Carried {
     /// From a point of the motion.
     pub fn new(phase: Phase, center: Center) -> Carried {
-        Carried { phase, momentum_space: phase.rotor.apply_bivector(phase.momentum), center }
+        Carried {
+            phase,
+            momentum_space: phase.rotor.apply_bivector(phase.momentum),
+            center,
+            lost: Bivector::default(),
+        }
     }
 }
 
@@ -86,6 +93,12 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>
     }
     let change = combined(tableau.weights, &slopes, h);
     let mut to = moved(from, &change, h);
+    for k in 0..3 {
+        // Kahan's sum (1965): a steady torque would be rounded alike in every step.
+        let kick = change[3 + k] + from.lost[k];
+        to.momentum[k] = from.momentum[k] + kick;
+        to.lost[k] = kick - (to.momentum[k] - from.momentum[k]);
+    }
     let turned = part(&change, 0);
     let square = dot(&turned, &turned);
     widest = square.max(widest);

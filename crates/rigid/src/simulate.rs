@@ -4,7 +4,8 @@
 use crate::certificate::{Certificate, Watch, off_unit};
 use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::{Conserved, energy};
-use crate::converge::{Aim, Convergence};
+use crate::converge::{Aim, Convergence, Order, Scales};
+use crate::course::{Course, samples, span};
 use crate::ensemble::Own;
 use crate::event::{Event, Happened};
 use crate::force::{Center, Force, Translation};
@@ -13,6 +14,8 @@ use crate::method::{Engine, Method, fastest_rate};
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::Carried;
 use crate::simulate_error::SimulateError;
+use crate::stops::{aliasing, is_aliased};
+use crate::stride::Limit;
 use crate::torque::{Torque, wheel};
 pub use crate::walk::Progress;
 use crate::walk::{Pace, Pass, Walker, is_finite};
@@ -44,11 +47,25 @@ pub struct Options {
     pub rtol: Option<f64>,
     /// Whether nothing but the closed form will do.
     pub exact: bool,
+    /// The longest step in s.
+    pub max_step: Option<f64>,
+    /// How many steps a pass may take; `None` is [`MAX_STEPS`], or a hundred times that where a step is given.
+    pub max_steps: Option<f64>,
+    /// Times at which steps end, in any order: where the laws are not smooth, or push shortly.
+    pub breaks: Vec<f64>,
     /// What to look for on the way, with body components in body axes.
     pub events: Vec<Event>,
 }
 
+/// The default limit of the steps in a pass: minutes of work.
+pub const MAX_STEPS: f64 = 1e8;
+
 impl Options {
+    /// How many steps a pass may take.
+    pub(crate) fn most_steps(&self) -> f64 {
+        self.max_steps.unwrap_or(if self.step.is_some() { 100.0 * MAX_STEPS } else { MAX_STEPS })
+    }
+
     /// What is wrong with them, or with the times, for any body.
     pub(crate) fn check(&self, times: &[f64]) -> Result<(), SimulateError> {
         for (index, &time) in times.iter().enumerate() {
@@ -56,10 +73,19 @@ impl Options {
                 return Err(SimulateError::BadTime { index, time });
             }
         }
-        for (what, value) in [("step", self.step.unwrap_or(1.0)), ("rtol", self.rtol.unwrap_or(1.0))] {
-            if !(value > 0.0 && value.is_finite()) {
+        let given = [
+            ("step", self.step),
+            ("rtol", self.rtol),
+            ("max_step", self.max_step),
+            ("max_steps", self.max_steps),
+        ];
+        for (what, value) in given.into_iter().filter_map(|(what, value)| Some((what, value?))) {
+            if !(value > 0.0 && value.is_finite()) || what == "max_steps" && value < 1.0 {
                 return Err(SimulateError::BadValue { what, value });
             }
+        }
+        if let Some(&value) = self.breaks.iter().find(|time| !time.is_finite()) {
+            return Err(SimulateError::BadValue { what: "a time in breaks", value });
         }
         Ok(())
     }
@@ -75,6 +101,7 @@ pub struct Motion {
     problem: Problem,
     engine: Engine,
     pace: Pace,
+    course: Course,
     /// In principal axes, at the output times, fewer if an event ended the motion.
     states: Vec<Carried>,
     /// The events, in the order in which they were met.
@@ -179,6 +206,40 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         self.check(times, &options)?;
+        let automatic = options.method.is_none() && options.step.is_none();
+        let start = self.start().phase;
+        let samples = samples(&self.torques, &self.body, &start, times, &options)?;
+        let mut course = Course::new(&self.torques, &samples, &self.body, &start, &options);
+        course.limit.reports_stiffness =
+            automatic && options.max_step.is_none() && self.translation.is_none();
+        let limit = course.limit;
+        match self.run(times, &options, course.clone(), progress) {
+            Err(SimulateError::Stiff { steps }) => {
+                // Steps of the implicit rule are cheaper and need not be as short. Where it fails or takes as many, stiff
+                // steps have to do.
+                let implicit = Options { method: Some(Method::Midpoint), ..options.clone() };
+                course.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
+                match self.run(times, &implicit, course.clone(), progress) {
+                    Err(SimulateError::Interrupted) => Err(SimulateError::Interrupted),
+                    Err(_) => {
+                        course.limit = Limit { reports_stiffness: false, ..limit };
+                        self.run(times, &options, course, progress)
+                    }
+                    found => found,
+                }
+            }
+            found => found,
+        }
+    }
+
+    /// The motion by one method.
+    fn run(
+        &self,
+        times: &[f64],
+        options: &Options,
+        course: Course,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Motion, SimulateError> {
         let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
         if options.exact && closed.is_none() {
             return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
@@ -198,19 +259,22 @@ impl Problem {
         };
         let rate = self.rate();
         let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
-        let long = |turn: f64| Pace::Step(if rate > 0.0 { turn / rate } else { longest.max(1.0) });
-        let events: Vec<Event> = options.events.into_iter().map(|event| event.in_axes(self.frame)).collect();
+        let long = |turn: f64| {
+            Pace::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(course.longest))
+        };
+        let events: Vec<Event> =
+            options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
         let (pace, pass, error) = match (&engine, options.step) {
             (Engine::ClosedForm(closed), _) if events.is_empty() => {
                 (long(1.0), self.sampled(closed, times), None)
             }
             (Engine::ClosedForm(_), _) => {
                 let pace = long(1.0);
-                (pace, self.pass(&engine, times, (pace, 1), &events, progress)?, None)
+                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, None)
             }
             (_, Some(step)) => {
-                let pace = Pace::Step(step);
-                (pace, self.pass(&engine, times, (pace, 1), &events, progress)?, None)
+                let pace = Pace::equal(step.min(course.longest));
+                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, None)
             }
             (_, None) => {
                 let aim = Aim::new(method.order(), options.rtol);
@@ -220,11 +284,16 @@ impl Problem {
                     fall.iter().for_each(|fall| to.center = fall.at(time));
                     to
                 };
-                let mut passes = Convergence::new(self.start(), first, aim);
+                let scales = Scales {
+                    body: self.body,
+                    rounding: engine.rounding(),
+                    in_space: engine.is_in_space(),
+                    is_smooth: course.is_smooth,
+                };
+                let mut passes = Convergence::new(first, aim, scales);
                 let found = loop {
-                    let (pace, start, number) = passes.next();
-                    let pass = self.pass_from(start, &engine, times, (pace, number), &events, progress)?;
-                    if let Some(found) = passes.take(pass, &self.body, &follow)? {
+                    let pass = self.pass(&engine, times, (passes.next(), &course), &events, progress)?;
+                    if let Some(found) = passes.take(pass, &follow)? {
                         break found;
                     }
                 };
@@ -243,15 +312,25 @@ impl Problem {
             error_estimate: error,
             drifts: pass.drifts,
             norm_drift: pass.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
+            warnings: options.step.map_or(Vec::new(), |step| self.aliased(times, step)),
         };
         Ok(Motion {
             problem: self.clone(),
             engine,
             pace,
+            course,
             states: pass.states,
             events: pass.events,
             certificate,
         })
+    }
+
+    /// Which laws change too fast for fixed steps.
+    fn aliased(&self, times: &[f64], step: f64) -> Vec<String> {
+        let start = self.start().phase;
+        let (first, last) = span(times, start.time);
+        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, [first, last], step);
+        self.torques.iter().filter(is_aliased).map(|law| aliasing(law, step)).collect()
     }
 
     /// The best method of steps.
@@ -264,11 +343,11 @@ impl Problem {
         &self,
         engine: &Engine,
         times: &[f64],
-        rules: (Pace, u32),
+        order: (Order, &Course),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Pass, SimulateError> {
-        self.pass_from(self.start(), engine, times, rules, events, progress)
+        self.pass_from(self.start(), engine, times, order, events, progress)
     }
 
     fn pass_from(
@@ -276,12 +355,10 @@ impl Problem {
         start: Carried,
         engine: &Engine,
         times: &[f64],
-        (pace, number): (Pace, u32),
+        (Order { pace, number, noise }, course): (Order, &Course),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Pass, SimulateError> {
-        let mut breaks: Vec<f64> = self.torques.iter().flat_map(|t| t.breaks()).copied().collect();
-        breaks.sort_by(f64::total_cmp);
         let watch = Watch::new(self.body, &self.torques, self.start().phase);
         let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
         let walker = Walker {
@@ -290,7 +367,11 @@ impl Problem {
             watch,
             pace,
             first,
-            breaks: &breaks,
+            least_rate: course.least_rate,
+            noise,
+            longest: course.longest,
+            limit: course.limit,
+            breaks: &course.breaks,
             events,
             fall: self.fall(),
             mass: self.mass,
@@ -408,7 +489,14 @@ impl Motion {
         for group in order.chunk_by(|&i, &j| self.nearest(times[i]) == self.nearest(times[j])) {
             let from = self.nearest(times[group[0]]).map_or(self.problem.start(), |k| self.states[k]);
             let wanted: Vec<f64> = group.iter().map(|&i| times[i]).collect();
-            let pass = self.problem.pass_from(from, &self.engine, &wanted, (self.pace, 1), &[], progress)?;
+            let pass = self.problem.pass_from(
+                from,
+                &self.engine,
+                &wanted,
+                (Order::only(self.pace), &self.course),
+                &[],
+                progress,
+            )?;
             group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
         }
         Ok(self.problem.states(&found))

@@ -3,9 +3,6 @@
 use polhode_ga::Vector;
 use std::fmt;
 
-/// Most steps that a run may take: hours of work, and beyond it rounding adds up.
-pub(crate) const MAX_STEPS: f64 = 1e10;
-
 /// Why a run failed.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
@@ -29,7 +26,9 @@ pub enum SimulateError {
     /// A motion is known between its first and last output times.
     OutsideMotion { index: usize, time: f64, first: f64, last: f64 },
     /// More steps than could be taken.
-    TooManySteps { steps: f64, step: f64 },
+    TooManySteps { steps: f64, step: f64, limit: f64 },
+    /// Steps are much shorter than the motion asks, and so many would be needed: a method for stiff laws is to take over.
+    Stiff { steps: f64 },
     /// Two runs with halved step still differ, and halving no longer helps.
     NotConverged { rtol: f64, reached: f64, step: f64 },
     /// The method cannot serve these laws.
@@ -91,7 +90,8 @@ impl fmt::Display for SimulateError {
                 f,
                 "{what} is {value}; it must be finite{}",
                 match *what {
-                    "step" | "rtol" => " and positive",
+                    "step" | "rtol" | "max_step" => " and positive",
+                    "max_steps" => " and at least 1",
                     "the damping g" => " and below 1e150",
                     _ => "",
                 }
@@ -106,11 +106,14 @@ impl fmt::Display for SimulateError {
                 "times[{index}] = {time} lies outside the motion, which was computed from {first} s to {last} s; simulate it \
                  up to there"
             ),
-            SimulateError::TooManySteps { steps, step } => write!(
+            SimulateError::TooManySteps { steps, step, limit } => write!(
                 f,
-                "the run would take {steps:.1e} steps of {step:.3e} s, more than {MAX_STEPS:.0e}; shorten it or ask \
-                 for a longer step"
+                "the run would take {steps:.1e} steps of {step:.3e} s, more than max_steps = {limit:.0e}; simulate a \
+                 shorter time, ask for a longer step or a larger rtol, or raise max_steps"
             ),
+            SimulateError::Stiff { steps } => {
+                write!(f, "the laws are stiff: {steps:.1e} steps would be needed; use the method midpoint")
+            }
             SimulateError::NotConverged { rtol, reached, step } if *reached > 0.1 => write!(
                 f,
                 "rtol = {rtol:.1e} was not reached: with steps of {step:.3e} s and shorter ones the motion still comes out \

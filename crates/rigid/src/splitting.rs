@@ -84,9 +84,17 @@ impl Splitting {
 
     /// One step of length `h`, which may be negative.
     pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
+        self.carry(state, &mut Bivector::default(), h)
+    }
+
+    /// The same step, with what rounding has left out of the sum of kicks.
+    pub(crate) fn carry(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
         let mut acting = Alone::new(&self.body, &self.torques, None);
-        let mut spin =
-            Spin { rotor: One::each(state.rotor.components()), momentum: One::each(state.momentum.0) };
+        let mut spin = Spin {
+            rotor: One::each(state.rotor.components()),
+            momentum: One::each(state.momentum.0),
+            lost: One::each(lost.0),
+        };
         if self.exact_drift {
             let (stages, last) = &self.stages;
             let mut time = state.time;
@@ -104,7 +112,14 @@ impl Splitting {
         state.time += h;
         state.rotor = Rotor::from_unit_components(One::alone(spin.rotor));
         state.momentum = Bivector(One::alone(spin.momentum));
+        *lost = Bivector(One::alone(spin.lost));
         Ok(())
+    }
+
+    /// Turns in a step; an exact free motion rounds like some dozens of them.
+    pub fn turns_per_step(&self) -> f64 {
+        let stages = self.stages.0.len() as f64;
+        if self.exact_drift { 60.0 * stages } else { 3.0 * stages }
     }
 
     /// Evaluations of the torque in a step.

@@ -1,7 +1,20 @@
 //! The lengths of steps that keep to a tolerance, and where they stop: for single bodies and for those side by side.
 
-use crate::simulate_error::{MAX_STEPS, SimulateError};
-use crate::walk::Pass;
+use crate::simulate_error::SimulateError;
+
+/// The steps of a pass after which its number of steps is foreseen: these, and every doubling.
+const FIRST_FORECAST: u64 = 20_000;
+
+/// A forecast is believed where it exceeds the limit by this over the steps taken, and by a factor of 2: a body may slow
+/// down.
+const DOUBT: f64 = 2e7;
+
+/// Below this turn, in rad, of the fastest rate in a step of many, the steps are as short as stability asks: the law is
+/// stiff.
+const STIFF_TURN: f64 = 0.02;
+
+/// Fewer steps than so many are taken, stiff or not.
+const MANY: f64 = 1e5;
 
 /// How long the next of the steps that keep to a tolerance is.
 #[derive(Clone, Copy, Debug)]
@@ -10,20 +23,23 @@ pub(crate) struct Stride {
     next: f64,
     /// That of the step under way, in s.
     cut: f64,
+    /// The longest that is allowed, in s.
+    longest: f64,
     /// Whether the step before was too long.
     refused: bool,
 }
 
 impl Stride {
-    /// With a guess of the first step, in s.
-    pub fn new(first: f64) -> Stride {
-        Stride { next: first, cut: first, refused: false }
+    /// With a guess of the first step and the longest allowed, in s.
+    pub fn new(first: f64, longest: f64) -> Stride {
+        let first = first.min(longest);
+        Stride { next: first, cut: first, longest, refused: false }
     }
 
     /// Where a step ends on the way from one time to another.
     pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
         let rest = (time - from).abs();
-        // A last step that is much shorter than the one before helps nobody.
+        // Two steps of half the way avoid a tiny last one.
         let cut = if self.next >= rest { rest } else { self.next.min(0.5 * rest.max(self.next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
         // Output times may be as close as numbers are.
@@ -34,7 +50,7 @@ impl Stride {
         Ok(to)
     }
 
-    /// Whether a step of length h may stand, by its error relative to the tolerance. The next one is the longest whose
+    /// Whether a step of length h is accepted, by its error relative to the tolerance. The next one is the longest whose
     /// error should be 0.9⁸ of the tolerance.
     pub fn judge(&mut self, h: f64, error: f64) -> bool {
         let h = h.abs();
@@ -47,8 +63,46 @@ impl Stride {
         let growth = (0.9 * error.powf(-0.125)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
         // A step cut short by an output time says little of how long it might be.
         self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
+        self.next = self.next.min(self.longest);
         self.refused = false;
         true
+    }
+}
+
+/// How many steps a pass may take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    pub steps: f64,
+    /// Whether stiffness is reported, so that another method can take over.
+    pub reports_stiffness: bool,
+}
+
+impl Limit {
+    /// An error where a pass has taken too many steps, or is foreseen to: after a step of length h that turned the body
+    /// by so much, at a fraction of the way.
+    pub fn check(
+        &self,
+        taken: u64,
+        h: f64,
+        turn: f64,
+        fraction: impl FnOnce() -> f64,
+    ) -> Result<(), SimulateError> {
+        let steps = taken as f64;
+        let step = h.abs();
+        if steps > self.steps {
+            return Err(SimulateError::TooManySteps { steps, step, limit: self.steps });
+        }
+        if !(taken.is_multiple_of(FIRST_FORECAST) && (taken / FIRST_FORECAST).is_power_of_two()) {
+            return Ok(());
+        }
+        let foreseen = steps / fraction().max(f64::MIN_POSITIVE);
+        if self.reports_stiffness && turn.abs() < STIFF_TURN && foreseen > MANY {
+            return Err(SimulateError::Stiff { steps: foreseen });
+        }
+        if foreseen > self.steps * (DOUBT / steps).max(2.0) {
+            return Err(SimulateError::TooManySteps { steps: foreseen, step, limit: self.steps });
+        }
+        Ok(())
     }
 }
 
@@ -60,13 +114,4 @@ pub(crate) fn next_stop(breaks: &[f64], from: f64, time: f64) -> f64 {
         breaks[..breaks.partition_point(|&b| b < from)].last().filter(|&&b| b > time)
     };
     between.copied().unwrap_or(time)
-}
-
-/// Whether a pass may go on.
-pub(crate) fn check_count(pass: &Pass) -> Result<(), SimulateError> {
-    let steps = pass.steps as f64;
-    if steps > MAX_STEPS {
-        return Err(SimulateError::TooManySteps { steps, step: pass.longest });
-    }
-    Ok(())
 }

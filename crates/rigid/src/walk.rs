@@ -6,11 +6,12 @@ use crate::conserved::Conserved;
 use crate::event::{Event, Happened, crossing, dip, root};
 use crate::force::Center;
 use crate::method::Engine;
+use crate::noise::Noise;
 use crate::phase::Gyrostat;
 use crate::point::Point;
 use crate::runge_kutta::Carried;
-use crate::simulate_error::{MAX_STEPS, SimulateError};
-use crate::stride::{Stride, check_count, next_stop};
+use crate::simulate_error::SimulateError;
+use crate::stride::{Limit, Stride, next_stop};
 use crate::torque::TorqueError;
 
 /// The fraction of the work done at some time.
@@ -37,10 +38,45 @@ pub struct Progress {
 /// What rules the steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Pace {
-    /// Equal steps of at most this length in s, ending on the output times.
-    Step(f64),
+    /// Equal steps of at most this length in s between stops.
+    Step(EqualSteps),
     /// Steps whose estimated error is at most this.
     Tolerance(f64),
+}
+
+/// Equal steps, and what they were in the first pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EqualSteps {
+    /// The longest, in s.
+    pub step: f64,
+    /// That of the first pass.
+    first: f64,
+    /// Into how many parts a step between close stops is divided since then.
+    parts: f64,
+}
+
+/// A stretch of fewer steps than this in the first pass is refined by whole parts of them: by fractions it might have as
+/// many steps as before, and passes that take the same steps show nothing.
+const FEW: f64 = 4.0;
+
+impl EqualSteps {
+    /// Steps that are so many times shorter.
+    pub fn refined(self, by: f64) -> EqualSteps {
+        EqualSteps { step: self.step / by, parts: (self.parts * by).ceil(), ..self }
+    }
+
+    /// How many steps there are between stops so far apart, in s.
+    fn count(&self, span: f64) -> f64 {
+        let first = (span / self.first).ceil().max(1.0);
+        if first < FEW { first * self.parts } else { (span / self.step).ceil() }
+    }
+}
+
+impl Pace {
+    /// Equal steps of at most this length in s.
+    pub fn equal(step: f64) -> Pace {
+        Pace::Step(EqualSteps { step, first: step, parts: 1.0 })
+    }
 }
 
 /// What a pass found.
@@ -53,7 +89,7 @@ pub(crate) struct Pass {
     pub ends: u32,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
-    /// The largest angular velocity (rad/s), distance (m) and velocity (m/s) on the way.
+    /// The largest angular velocity (rad/s), the least that counts included, distance (m) and velocity (m/s) on the way.
     pub largest: [f64; 3],
     /// The longest step.
     pub longest: f64,
@@ -77,7 +113,14 @@ pub(crate) struct Walker<'a> {
     pub pace: Pace,
     /// A guess of the first step, in s.
     pub first: f64,
-    /// Times at which the laws are not smooth, rising.
+    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    pub least_rate: f64,
+    /// What shakes the points after each step.
+    pub noise: Option<Noise>,
+    /// The longest step, in s.
+    pub longest: f64,
+    pub limit: Limit,
+    /// Times at which steps end, rising: there the laws are not smooth, or change fast.
     pub breaks: &'a [f64],
     pub events: &'a [Event],
     /// The motion of the centre of mass, where its acceleration is constant.
@@ -108,10 +151,12 @@ impl Walker<'_> {
         let begin = times.first().map_or(origin, |t| t.min(origin));
         let end = times.last().map_or(origin, |t| t.max(origin));
         let total = end - begin;
-        if let Pace::Step(step) = self.pace {
-            let steps = total / step + times.len() as f64;
-            if steps > MAX_STEPS {
-                return Err(SimulateError::TooManySteps { steps, step });
+        if let Pace::Step(EqualSteps { step, parts, .. }) = self.pace {
+            let stops = (times.len() + self.breaks.len()) as f64;
+            let steps = total / step + parts * stops;
+            let limit = self.limit.steps;
+            if steps > limit {
+                return Err(SimulateError::TooManySteps { steps, step, limit });
             }
         }
         let mut pass = Pass::default();
@@ -134,14 +179,15 @@ impl Walker<'_> {
         pass: &mut Pass,
         done: Done,
     ) -> Result<Vec<Carried>, SimulateError> {
-        let fastest = self.body.omega(start.phase.momentum).norm();
+        let fastest = self.body.omega(start.phase.momentum).norm().max(self.least_rate);
         pass.meet(fastest, &start.center);
         let mut times = times.peekable();
         if times.peek().is_none() {
             return Ok(Vec::new());
         }
         let values = self.values(&start)?;
-        let mut walk = Walk { at: start, stride: Stride::new(self.first), fastest, values, ended: false };
+        let mut walk =
+            Walk { at: start, stride: Stride::new(self.first, self.longest), fastest, values, ended: false };
         let mut states = Vec::new();
         for &time in times {
             self.walk(&mut walk, time, pass, done)?;
@@ -161,7 +207,7 @@ impl Walker<'_> {
         loop {
             let to = next_stop(self.breaks, walk.at.phase.time, time);
             match self.pace {
-                Pace::Step(step) => self.equal_steps(walk, to, step, pass, done)?,
+                Pace::Step(steps) => self.equal_steps(walk, to, steps, pass, done)?,
                 Pace::Tolerance(tolerance) => self.adapted_steps(walk, to, tolerance, pass, done)?,
             }
             if to == time || walk.ended {
@@ -174,12 +220,12 @@ impl Walker<'_> {
         &mut self,
         walk: &mut Walk,
         time: f64,
-        step: f64,
+        steps: EqualSteps,
         pass: &mut Pass,
         done: Done,
     ) -> Result<(), SimulateError> {
         let (from, span) = (walk.at.phase.time, time - walk.at.phase.time);
-        let count = (span.abs() / step).ceil().max(1.0);
+        let count = steps.count(span.abs());
         if span == 0.0 {
             return Ok(());
         }
@@ -212,7 +258,8 @@ impl Walker<'_> {
             if walk.stride.judge(to - from, error / tolerance) {
                 pass.longest = pass.longest.max((to - from).abs());
                 self.arrive(walk, next, pass, done)?;
-                check_count(pass)?;
+                let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
+                self.limit.check(pass.steps, to - from, turn, || done(to))?;
             }
         }
         Ok(())
@@ -251,9 +298,12 @@ impl Walker<'_> {
         if !self.events.is_empty() {
             next = self.look_for_events(walk, next, pass)?;
         }
-        walk.at = next;
-        self.watch.look(&walk.at.phase);
-        walk.fastest = walk.fastest.max(self.body.omega(walk.at.phase.momentum).norm());
+        self.watch.look(&next.phase);
+        walk.fastest = walk.fastest.max(self.body.omega(next.phase.momentum).norm());
+        walk.at = match &mut self.noise {
+            Some(noise) => noise.shake(&next),
+            None => next,
+        };
         pass.meet(walk.fastest, &walk.at.center);
         if pass.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
             let fraction = done(time).min(1.0);

@@ -172,6 +172,11 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
             self.at.take(&stands, &next);
             self.fastest = rates.max(self.fastest).or(&stands, self.fastest);
             for l in 0..W {
+                if stands[l]
+                    && let Some(noise) = self.seats[l].as_mut().and_then(|seat| seat.noise.as_mut())
+                {
+                    self.at.set(l, &noise.shake(&self.at.get(l)));
+                }
                 let stops = |seat: &Seat| seat.stop == self.at.time.0[l];
                 if stands[l] && self.seats[l].as_ref().is_some_and(stops) {
                     self.proceed(l, &torques[l], crew);
@@ -183,9 +188,6 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
                     let time = self.at.time.0[l];
                     let Some(seat) = &mut self.seats[l] else { continue };
                     seat.count(time, crew);
-                    if let Err(error) = seat.check_pace(time, crew) {
-                        self.fail(l, error, crew);
-                    }
                 }
                 if !crew.report(progress) {
                     return false;
@@ -234,7 +236,7 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
                 continue;
             }
             if seat.stride.judge(h, error) {
-                match seat.arrive(h, next, l) {
+                match seat.arrive(h, next, l, crew) {
                     Ok(()) => stands[l] = true,
                     Err(error) => self.fail(l, error, crew),
                 }

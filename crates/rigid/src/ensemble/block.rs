@@ -8,6 +8,7 @@ use super::{Ensemble, Failure};
 use crate::certificate::Certificate;
 use crate::closed_form::{ClosedForm, Fall};
 use crate::conserved::Conserved;
+use crate::course::{Course, Samples, samples};
 use crate::force::{Center, Force};
 use crate::method::Method;
 use crate::phase::{Gyrostat, Phase};
@@ -22,7 +23,7 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use std::borrow::Cow;
 use std::iter::Enumerate;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -46,6 +47,8 @@ pub(super) struct Member<'a> {
     /// At the start, rad/s.
     pub omega: Bivector,
     pub start: Phase,
+    /// What bounds its own steps.
+    pub course: Course,
     pub own: Own<'a>,
 }
 
@@ -103,6 +106,8 @@ pub(super) struct Crew<'a> {
     ended: Condvar,
     /// The laws in principal axes, where all bodies share them and an inertia.
     shared: Option<Vec<Torque>>,
+    /// Those along time.
+    samples: OnceLock<Samples>,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -131,6 +136,7 @@ impl<'a> Crew<'a> {
             running: Mutex::new(0),
             ended: Condvar::new(),
             shared: alike.then(turned),
+            samples: OnceLock::new(),
         }
     }
 
@@ -162,7 +168,7 @@ impl<'a> Crew<'a> {
     /// Takes bodies and follows them, until there are no more.
     fn take_turns(&self, progress: &mut dyn FnMut(Progress) -> bool) {
         match self.options.step {
-            Some(step) => self.equal_steps(step, progress),
+            Some(step) => self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), progress),
             None => fastest(AdaptedSteps { crew: self, progress }),
         }
         *lock(&self.running) -= 1;
@@ -219,9 +225,12 @@ impl<'a> Crew<'a> {
                 self.alone(body, own, progress);
                 continue;
             }
-            let member = self.member(body, own);
+            let mut member = self.member(body, own);
             match self.way(&member) {
-                Way::Lanes => return Some(member),
+                Way::Lanes => {
+                    member.course = self.course(&member);
+                    return Some(member);
+                }
                 Way::Free => {
                     self.free(member);
                     self.report(progress);
@@ -290,11 +299,28 @@ impl<'a> Crew<'a> {
         let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(start.omega);
         let start = Phase { rotor: start.rotor * frame, momentum: gyrostat.momentum(omega), time: 0.0 };
-        Member { body, frame, gyrostat, torques, omega, start, own }
+        Member { body, frame, gyrostat, torques, omega, start, course: Course::default(), own }
+    }
+
+    /// What bounds the steps of a body. Laws in lanes are no functions, so that sampling them does not fail.
+    fn course(&self, member: &Member) -> Course {
+        let Member { gyrostat, torques, start, .. } = member;
+        let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();
+        let own;
+        // They depend on the law alone, which the bodies may share.
+        let samples = if self.shared.is_some() {
+            self.samples.get_or_init(sample)
+        } else {
+            own = sample();
+            &own
+        };
+        let mut course = Course::new(torques, samples, gyrostat, start, self.options);
+        course.limit.reports_stiffness = self.options.method.is_none() && self.options.max_step.is_none();
+        course
     }
 
     /// Follows a body alone.
-    fn alone(&self, body: usize, mut own: Own<'a>, progress: &mut dyn FnMut(Progress) -> bool) {
+    pub fn alone(&self, body: usize, mut own: Own<'a>, progress: &mut dyn FnMut(Progress) -> bool) {
         let problem = self.ensemble.problem(body);
         let mut so_far = 0;
         let mut go_on = |at: Progress| {
@@ -364,6 +390,11 @@ fn summary(mut told: Vec<Told>) -> Summary {
         all.longest.push(certificate.step);
         all.estimates.push(certificate.error_estimate.unwrap_or(f64::NAN));
         all.norm_drifts.push(certificate.norm_drift);
+        for warning in certificate.warnings {
+            if !all.warnings.contains(&warning) {
+                all.warnings.push(warning);
+            }
+        }
         for (quantity, start, change) in certificate.drifts {
             let name = Conserved::name(quantity);
             let place = all.drifts.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {

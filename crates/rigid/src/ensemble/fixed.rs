@@ -14,6 +14,7 @@ use crate::runge_kutta::Carried;
 use crate::simulate::Progress;
 use crate::simulate_error::SimulateError;
 use crate::splitting::turns::Turns;
+use crate::stops::{aliasing, is_aliased};
 use crate::torque::Torque;
 use crate::walk::is_finite;
 use polhode_ga::lanes::Work;
@@ -65,7 +66,7 @@ impl FixedSteps<'_, '_> {
         let mut failures: [Option<(f64, SimulateError)>; SIDE_BY_SIDE] = [const { None }; SIDE_BY_SIDE];
         let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
-        let breaks = breaks(torques);
+        let breaks = breaks(torques, &crew.options.breaks);
         let begin = times.first().map_or(0.0, |t| t.min(0.0));
         let total = (times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
         let early = times.partition_point(|&t| t < 0.0);
@@ -117,6 +118,11 @@ impl FixedSteps<'_, '_> {
             }
         }
         crew.count(&mut so_far, 1.0, members.len());
+        // Laws are of one kind for all bodies: the first ones show it.
+        let span = [begin, begin + total];
+        let (body, start) = (&members[0].gyrostat, &members[0].start);
+        let aliased = torques[0].iter().filter(|law| is_aliased(law, body, start, span, step));
+        let mut warnings: Vec<String> = aliased.map(|law| aliasing(law, step)).collect();
         let failures = failures.into_iter();
         let told = members.iter().zip(watches).zip(failures).zip(norm_drifts);
         crew.tell(told.map(|(((member, watch), failure), norm_drift)| Told {
@@ -129,6 +135,7 @@ impl FixedSteps<'_, '_> {
                 error_estimate: None,
                 drifts: watch.finish(),
                 norm_drift,
+                warnings: std::mem::take(&mut warnings),
             },
             failure,
         }));
@@ -136,8 +143,9 @@ impl FixedSteps<'_, '_> {
 }
 
 /// Where the laws are not smooth, rising; all bodies share such laws.
-fn breaks(torques: &[Vec<Torque>]) -> Vec<f64> {
-    let mut breaks: Vec<f64> = torques[0].iter().flat_map(|law| law.breaks()).copied().collect();
+fn breaks(torques: &[Vec<Torque>], asked: &[f64]) -> Vec<f64> {
+    let laws = torques[0].iter().flat_map(|law| law.breaks());
+    let mut breaks: Vec<f64> = laws.chain(asked).copied().collect();
     breaks.sort_by(f64::total_cmp);
     breaks
 }

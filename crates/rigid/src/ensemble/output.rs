@@ -42,6 +42,8 @@ pub struct Summary {
     pub drifts: Vec<(&'static str, Vec<[f64; 2]>)>,
     /// By rising numbers of bodies.
     pub failures: Vec<Failure>,
+    /// Each once: see [`crate::certificate::Certificate::warnings`].
+    pub warnings: Vec<String>,
 }
 
 /// Room for the points of one body.

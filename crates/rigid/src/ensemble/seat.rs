@@ -2,12 +2,14 @@
 
 use super::block::{Crew, Member, Told};
 use crate::certificate::{Certificate, Watch, off_unit};
-use crate::converge::{Aim, Converged, Convergence};
+use crate::converge::{Aim, Converged, Convergence, Order, Scales};
+use crate::course::Course;
 use crate::force::Center;
-use crate::method::{Method, fastest_rate};
+use crate::method::{Method, ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
+use crate::noise::Noise;
 use crate::runge_kutta::{Carried, DOP853, Points, RungeKutta};
-use crate::simulate_error::{MAX_STEPS, SimulateError};
-use crate::stride::{Stride, check_count, next_stop};
+use crate::simulate_error::SimulateError;
+use crate::stride::{Limit, Stride, next_stop};
 use crate::torque::Torque;
 use crate::walk::{Pace, Pass};
 use std::mem;
@@ -15,24 +17,25 @@ use std::mem;
 /// The method that the bodies are stepped by.
 pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
 
-/// So many steps of a pass tell its pace.
-const FEW_STEPS: f64 = 20_000.0;
-
-/// How many times more than [`MAX_STEPS`] is given up, for a body may slow down.
-const HOPELESS: f64 = 1e3;
-
 /// A body in a lane, on its way through its passes.
 pub(super) struct Seat<'a> {
     pub member: Member<'a>,
-    /// Times at which its laws are not smooth, rising.
+    /// Times at which steps end, rising: there its laws are not smooth, or change fast.
     breaks: Vec<f64>,
+    /// The longest step, in s.
+    longest: f64,
+    limit: Limit,
     /// A guess of the first step of a pass, in s.
     first: f64,
     passes: Convergence,
     /// The one under way, with its points in the order of the walk.
     pub pass: Pass,
-    /// Where it began.
+    /// What shakes its points.
+    pub noise: Option<Noise>,
+    /// Where all of them begin.
     begin: Carried,
+    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    least_rate: f64,
     pub stride: Stride,
     /// The largest estimate of the error of a step that may stand.
     pub tolerance: f64,
@@ -43,20 +46,25 @@ pub(super) struct Seat<'a> {
 }
 
 impl<'a> Seat<'a> {
-    pub fn new(member: Member<'a>, torques: &[Torque], crew: &Crew<'a>) -> Seat<'a> {
+    pub fn new(mut member: Member<'a>, torques: &[Torque], crew: &Crew<'a>) -> Seat<'a> {
         let start = Carried::new(member.start, Center::default());
-        let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
-        breaks.sort_by(f64::total_cmp);
+        let Course { breaks, is_smooth, longest, limit, least_rate } = mem::take(&mut member.course);
         let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
         let aim = Aim::new(METHOD.order(), crew.options.rtol);
+        let scales =
+            Scales { body: member.gyrostat, rounding: ROUNDING_OF_RUNGE_KUTTA, in_space: true, is_smooth };
         Seat {
             member,
             breaks,
+            longest,
+            limit,
             first,
-            passes: Convergence::new(start, aim.tolerance(), aim),
+            passes: Convergence::new(aim.tolerance(), aim, scales),
             pass: Pass::default(),
+            noise: None,
             begin: start,
-            stride: Stride::new(first),
+            least_rate,
+            stride: Stride::new(first, longest),
             tolerance: aim.goal,
             stop: 0.0,
             so_far: 0,
@@ -65,17 +73,17 @@ impl<'a> Seat<'a> {
 
     /// Begins the next pass: where it starts.
     pub fn begin_pass(&mut self) -> Carried {
-        let (pace, begin, _) = self.passes.next();
+        let Order { pace, noise, .. } = self.passes.next();
         if let Pace::Tolerance(tolerance) = pace {
             self.tolerance = tolerance;
         }
-        (self.begin, self.stride) = (begin, Stride::new(self.first));
-        begin
+        (self.noise, self.stride) = (noise, Stride::new(self.first, self.longest));
+        self.begin
     }
 
-    /// The size of the angular velocity, rad/s.
+    /// The size of the angular velocity, and no less than what counts, in rad/s.
     pub fn rate(&self, at: &Carried) -> f64 {
-        self.member.gyrostat.omega(at.phase.momentum).norm()
+        self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate)
     }
 
     /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and
@@ -93,7 +101,7 @@ impl<'a> Seat<'a> {
             if taken == times.len() {
                 let mut pass = mem::take(&mut self.pass);
                 pass.states[..early].reverse();
-                if let Some(found) = self.passes.take(pass, &self.member.gyrostat, &|from, _| *from)? {
+                if let Some(found) = self.passes.take(pass, &|from, _| *from)? {
                     return Ok(Some(found));
                 }
                 *at = self.begin_pass();
@@ -107,7 +115,7 @@ impl<'a> Seat<'a> {
             }
             self.pass.states.push(*at);
             if taken + 1 == early {
-                (*at, self.stride) = (self.begin, Stride::new(self.first));
+                (*at, self.stride) = (self.begin, Stride::new(self.first, self.longest));
                 *fastest = self.rate(at);
             }
         }
@@ -119,13 +127,16 @@ impl<'a> Seat<'a> {
         h: f64,
         next: &Points<W, F>,
         l: usize,
+        crew: &Crew<'a>,
     ) -> Result<(), SimulateError> {
         self.pass.steps += 1;
         self.pass.longest = self.pass.longest.max(h.abs());
         if !next.is_finite(l) {
             return Err(SimulateError::Diverged { time: next.time.0[l] });
         }
-        check_count(&self.pass)
+        let turn = self.member.gyrostat.omega(next.get(l).phase.momentum).norm() * h;
+        let time = next.time.0[l];
+        self.limit.check(self.pass.steps, h, turn, || self.fraction(time, crew))
     }
 
     /// Why a step has no error: it is too long, or a law has no torque on the way, which the step of a single body
@@ -138,21 +149,15 @@ impl<'a> Seat<'a> {
 
     /// Counts the way gone in a pass.
     pub fn count(&mut self, time: f64, crew: &Crew<'a>) {
-        let begin = crew.times.first().map_or(0.0, |t| t.min(0.0));
-        let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
-        let walked = if self.stop < 0.0 { -time } else { time - begin };
-        crew.count(&mut self.so_far, walked / total, 1);
+        let fraction = self.fraction(time, crew);
+        crew.count(&mut self.so_far, fraction, 1);
     }
 
-    /// An error where the steps so far lead nowhere: at this pace it would take thousands of times more than may be.
-    pub fn check_pace(&self, time: f64, crew: &Crew<'a>) -> Result<(), SimulateError> {
-        let steps = self.pass.steps as f64;
-        let end = if self.stop < 0.0 { crew.times.first() } else { crew.times.last() };
-        let part = end.map_or(1.0, |end| time / end);
-        if steps > FEW_STEPS && steps / part > HOPELESS * MAX_STEPS {
-            return Err(SimulateError::TooManySteps { steps: steps / part, step: self.pass.longest });
-        }
-        Ok(())
+    /// The fraction of a pass that is done at a time.
+    fn fraction(&self, time: f64, crew: &Crew<'a>) -> f64 {
+        let begin = crew.times.first().map_or(0.0, |t| t.min(0.0));
+        let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
+        (if self.stop < 0.0 { -time } else { time - begin }) / total
     }
 
     /// Writes and tells what was found.
@@ -173,12 +178,17 @@ impl<'a> Seat<'a> {
             error_estimate: Some(found.error),
             drifts: watch.finish(),
             norm_drift,
+            warnings: Vec::new(),
         };
         crew.count(&mut self.so_far, 1.0, 1);
         crew.tell([Told { body, certificate, failure: None }]);
     }
 
     pub fn failed(mut self, error: SimulateError, crew: &Crew<'a>) {
+        if let SimulateError::Stiff { .. } = error {
+            // As a single body it is followed by another method.
+            return crew.alone(self.member.body, self.member.own, &mut |_| true);
+        }
         crew.count(&mut self.so_far, 1.0, 1);
         crew.fail(self.member.body, &mut self.member.own, METHOD.name(), error);
     }

@@ -90,7 +90,7 @@ impl<const F: bool> Stepper<F> for Kicks<'_, F> {
     type State = Spin<W, F>;
 
     fn start(&self, members: &[Member]) -> Self::State {
-        let mut spin = Spin { rotor: [Lanes::ZERO; 4], momentum: [Lanes::ZERO; 3] };
+        let mut spin = Spin { rotor: [Lanes::ZERO; 4], momentum: [Lanes::ZERO; 3], lost: [Lanes::ZERO; 3] };
         for l in 0..W {
             let start = &of(members, l).start;
             let (rotor, momentum) = (start.rotor.components(), start.momentum.0);

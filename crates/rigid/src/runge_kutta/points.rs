@@ -16,6 +16,8 @@ pub(crate) struct Points<const W: usize, const F: bool> {
     pub momentum: [Lanes<W, F>; 3],
     /// Place and velocity of the centre of mass: m and m/s.
     pub center: [Lanes<W, F>; 6],
+    /// What rounding has left out of L.
+    pub lost: [Lanes<W, F>; 3],
     /// In s.
     pub time: Lanes<W, F>,
 }
@@ -26,6 +28,7 @@ impl<const W: usize, const F: bool> Points<W, F> {
         rotor: [Lanes::ZERO; 4],
         momentum: [Lanes::ZERO; 3],
         center: [Lanes::ZERO; 6],
+        lost: [Lanes::ZERO; 3],
         time: Lanes::ZERO,
     };
 
@@ -38,6 +41,7 @@ impl<const W: usize, const F: bool> Points<W, F> {
         }
         for k in 0..3 {
             self.momentum[k].0[l] = at.momentum_space.0[k];
+            self.lost[k].0[l] = at.lost.0[k];
             self.center[k].0[l] = position.0[k];
             self.center[3 + k].0[l] = velocity.0[k];
         }
@@ -58,7 +62,8 @@ impl<const W: usize, const F: bool> Points<W, F> {
         let momentum_space = Bivector([m[0], m[1], m[2]]);
         let momentum = rotor.reverse().apply_bivector(momentum_space);
         let center = Center { position: Vector([c[0], c[1], c[2]]), velocity: Vector([c[3], c[4], c[5]]) };
-        Carried { phase: Phase { rotor, momentum, time: self.time.0[l] }, momentum_space, center }
+        let lost = Bivector([0, 1, 2].map(|k| self.lost[k].0[l]));
+        Carried { phase: Phase { rotor, momentum, time: self.time.0[l] }, momentum_space, center, lost }
     }
 
     /// Whether all is finite in a lane.
@@ -79,6 +84,7 @@ impl<const W: usize, const F: bool> Points<W, F> {
         }
         for k in 0..3 {
             self.momentum[k] = other.momentum[k].or(mask, self.momentum[k]);
+            self.lost[k] = other.lost[k].or(mask, self.lost[k]);
         }
         for k in 0..6 {
             self.center[k] = other.center[k].or(mask, self.center[k]);

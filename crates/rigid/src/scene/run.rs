@@ -52,6 +52,10 @@ pub struct Choice {
     pub rtol: Option<f64>,
     /// The absolute error that it may make, of rotors and of rates relative to the largest.
     pub atol: Option<f64>,
+    /// The longest step in seconds.
+    pub max_step: Option<f64>,
+    /// How many steps a pass may take.
+    pub max_steps: Option<f64>,
 }
 
 fn method_names() -> Vec<&'static str> {
@@ -90,7 +94,7 @@ fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Ch
     let none = DeTable::new();
     let own = Table { title: "[method]", span: run.span.clone(), fields: &none };
     let own = method.unwrap_or(&own);
-    reader.only(own, &["name", "step", "rtol", "atol"]);
+    reader.only(own, &["name", "step", "rtol", "atol", "max_step", "max_steps"]);
     for (field, same) in [("name", "method"), ("step", "step"), ("rtol", "rtol")] {
         if run.get(same).is_some()
             && let Some(span) = own.name_span(field)
@@ -106,6 +110,11 @@ fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Ch
         reader.optional(table, "step", |reader, value| reader.positive(value, Quantity::Time))
     };
     let steps = (step(own), step(run));
+    let max_step = reader.optional(own, "max_step", |reader, value| reader.positive(value, Quantity::Time));
+    let max_steps = reader.optional(own, "max_steps", |reader, value| {
+        let count = reader.number(value)?;
+        reader.check_positive(value, count)
+    });
     let mut part = |table: &Table, name| reader.optional(table, name, fraction);
     let (rtol, older_rtol, atol) = (part(own, "rtol"), part(run, "rtol"), part(own, "atol"));
     Some(Choice {
@@ -113,6 +122,8 @@ fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Ch
         step: steps.0?.or(steps.1?),
         rtol: rtol?.or(older_rtol?),
         atol: atol?,
+        max_step: max_step?,
+        max_steps: max_steps?,
     })
 }
 

@@ -57,6 +57,13 @@ impl Scene {
     pub fn options(&self) -> Options {
         let choice = &self.run.choice;
         let rtol = choice.rtol.into_iter().chain(choice.atol).reduce(f64::max);
-        Options { method: Method::from_name(&choice.method), step: choice.step, rtol, ..Options::default() }
+        Options {
+            method: Method::from_name(&choice.method),
+            step: choice.step,
+            rtol,
+            max_step: choice.max_step,
+            max_steps: choice.max_steps,
+            ..Options::default()
+        }
     }
 }

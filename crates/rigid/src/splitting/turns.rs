@@ -11,6 +11,9 @@ use polhode_ga::lanes::{Lanes, composed, cross, dot, mapped, mapped_back, matrix
 pub(crate) struct Spin<const W: usize, const F: bool> {
     pub rotor: [Lanes<W, F>; 4],
     pub momentum: [Lanes<W, F>; 3],
+    /// What rounding left out of the sum of kicks: added to the next one (Kahan 1965). Without it a steady torque would
+    /// be rounded alike in every step, and the error would grow as their number and not as its root.
+    pub lost: [Lanes<W, F>; 3],
 }
 
 /// A turn of a splitting: about the axis a or b, or about that of a wheel.
@@ -205,7 +208,10 @@ impl<const W: usize, const F: bool> Turns<W, F> {
             }
         }
         for k in 0..3 {
-            m[k] = torque[k].times_plus(impulse, m[k]);
+            let kick = torque[k].times_plus(impulse, spin.lost[k]);
+            let sum = m[k] + kick;
+            spin.lost[k] = kick - (sum - m[k]);
+            m[k] = sum;
         }
     }
 

@@ -202,8 +202,14 @@ fn forces_need_a_mass_and_a_body_that_is_not_held() {
 #[test]
 fn the_method_may_have_a_table() {
     let method = "duration = 10\n[method]\nname = 'dop853'\nstep = '1 ms'\nrtol = 1e-9\natol = 1e-8";
-    let expected =
-        Choice { method: "dop853".to_owned(), step: Some(0.001), rtol: Some(1e-9), atol: Some(1e-8) };
+    let expected = Choice {
+        method: "dop853".to_owned(),
+        step: Some(0.001),
+        rtol: Some(1e-9),
+        atol: Some(1e-8),
+        max_step: None,
+        max_steps: None,
+    };
     assert_eq!(scene(&LEAST.replace("duration = 10", method)).run.choice, expected);
     let both = "duration = 10\nmethod = 'dop853'\nstep = 1\nrtol = 0.1\n[method]\nname = 'rk4'\nstep = 1\nrtol = 0.1";
     assert_eq!(

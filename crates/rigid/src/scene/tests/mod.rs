@@ -81,7 +81,14 @@ fn a_full_scene_is_read() {
         duration: 10.0,
         samples: 1001,
         first: None,
-        choice: Choice { method: "yoshida4".to_owned(), step: Some(0.001), rtol: Some(1e-10), atol: None },
+        choice: Choice {
+            method: "yoshida4".to_owned(),
+            step: Some(0.001),
+            rtol: Some(1e-10),
+            atol: None,
+            max_step: None,
+            max_steps: None,
+        },
         drift_bound: Some(1e-8),
     };
     assert_eq!(scene.run, run);

@@ -1,6 +1,7 @@
 """Many bodies at once: each as alone, one that fails told, blocks and threads without a trace in the bits."""
 
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -230,7 +231,7 @@ def test_one_that_fails_does_not_stop_the_others(how):
     (failure,) = motion.failures
     assert failure.index == (1,)
     assert 1.9 <= failure.time <= 2.0
-    assert "2" in failure.message
+    assert re.search(r"at t = (1\.9|2)", failure.message)
     assert motion.ok.tolist() == [True, False, True]
     assert np.isnan(motion.rotor.components[1, -1]).all()
     assert np.isnan(motion.energy[1, -1])
@@ -443,7 +444,7 @@ def test_a_table_may_start_at_the_start():
 def test_what_is_wrong_for_all_is_told_at_once():
     for wrong, match in (
         ({"method": "exact", "step": 0.1}, "exact"),
-        ({"method": "rk4", "step": 1e-300}, "more than 1e10"),
+        ({"method": "rk4", "step": 1e-300}, "more than max_steps = 1e10"),
         ({"step": -1.0}, "step"),
         ({"threads": 0}, "threads"),
     ):
@@ -459,7 +460,7 @@ def test_a_body_that_is_hopeless_does_not_hold_up_the_others():
     rates = [[0.1, 0.2, 1.0], [1e100, 1e100, 1.0]]
     motion = ph.simulate(ASYMMETRIC, ph.State(R0, rates), [1.0], ph.torque.heavy([0.1, 0.2, 0.3]))
     assert motion.ok.tolist() == [True, False]
-    assert "more than 1e10" in motion.failures[0].message
+    assert "more than max_steps = 1e8" in motion.failures[0].message
 
 
 def test_a_failure_before_the_start_leaves_what_comes_after():

@@ -1,0 +1,294 @@
+"""What an error estimate is worth: random motions of every kind against references of extended precision."""
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from extended_precision import Case, final_states
+from motions import moments
+
+# A right answer is within ten times the larger of what was asked for and of what is reported.
+MARGIN = 10
+TOLERANCES = [None, 1e-3, 1e-6, 1e-9, 1e-12]
+COUNT = 12
+
+
+def drawn(rng, size, count=3):
+    """Normal numbers in eighths, so that double and extended precision start alike."""
+    return tuple((np.round(rng.normal(size=count) * size * 8) / 8).tolist())
+
+
+def body(rng):
+    a, b = np.sort(rng.uniform(1, 2, 2))
+    return tuple((np.round([a * 64, b * 64, rng.uniform(b - a + 0.1, a + b - 0.05) * 64]) / 64).tolist())
+
+
+def attitude(rng):
+    rotor = drawn(rng, 1, 4)
+    return rotor if any(rotor) else (1, 0, 0, 0)
+
+
+def top(rng):
+    """Chaotic, most of them."""
+    return {"heavy": drawn(rng, 2)}, rng.uniform(5, 100)
+
+
+def wheel_in_a_field(rng):
+    """The motion magnifies rounding up to 1e10 times."""
+    return {"wheel": drawn(rng, 2), "larmor": drawn(rng, 2)}, rng.uniform(5, 60)
+
+
+def mixed(rng):
+    laws = {"heavy": drawn(rng, 1), "constant_body": drawn(rng, 0.3)}
+    return laws | {"larmor": drawn(rng, 1), "wheel": drawn(rng, 0.5)}, rng.uniform(5, 60)
+
+
+def regular(rng):
+    return {"heavy": drawn(rng, 0.1), "damping": rng.choice([0, 0.05, 0.2])}, rng.uniform(5, 60)
+
+
+def driven(rng):
+    return {"constant_space": drawn(rng, 0.5), "viscous": rng.uniform(0.1, 1)}, rng.uniform(5, 60)
+
+
+def stiff(rng):
+    return {"heavy": drawn(rng, 1), "viscous": rng.uniform(20, 100)}, rng.uniform(1, 5)
+
+
+def at_rest(rng):
+    laws = {"heavy": (0, 0, -2) if rng.random() < 0.5 else drawn(rng, 1), "omega": (0, 0, 0)}
+    return laws | {"viscous": rng.choice([0, 0.1])}, rng.uniform(5, 30)
+
+
+def hanging(rng):
+    """Beside its stable equilibrium by less than rounding, or by a little more."""
+    omega = tuple(rng.choice([0, 1e-14, 1e-9]) * x for x in drawn(rng, 1))
+    return {"heavy": (0, 0, -2), "omega": omega, "rotor": (1, 0, 0, 0)}, rng.uniform(5, 30)
+
+
+KINDS = [top, wheel_in_a_field, mixed, regular, driven, stiff, at_rest, hanging]
+
+
+def draw(kind, rng):
+    laws, duration = kind(rng)
+    return Case(**({"moments": body(rng), "omega": drawn(rng, 2), "rotor": attitude(rng)} | laws)), duration
+
+
+def law_of(case):
+    """The same laws as Polhode's."""
+    torque = ph.torque
+    makers = {
+        "heavy": torque.heavy,
+        "wheel": torque.gyrostat,
+        "larmor": torque.larmor,
+        "constant_body": torque.constant_body,
+        "constant_space": torque.constant_space,
+        "damping": torque.damping,
+        "viscous": torque.viscous_damping,
+    }
+    laws = [maker(getattr(case, name)) for name, maker in makers.items() if np.any(getattr(case, name))]
+    return sum(laws[1:], laws[0]) if laws else None
+
+
+def rate_scale(case, omega):
+    """The scale of errors of the angular velocity: the largest that is known, or the rate of swinging."""
+    torque = sum(np.linalg.norm(getattr(case, name)) for name in ("heavy", "constant_body", "constant_space"))
+    wheel = 1e-4 * np.linalg.norm(case.wheel) / min(case.moments)
+    return max(np.linalg.norm(omega), np.linalg.norm(case.omega), np.sqrt(torque / max(case.moments)), wheel)
+
+
+def answered(*problem, **how):
+    """The motion, or None where the tolerance is refused."""
+    try:
+        return ph.simulate(*problem, **how)
+    except ValueError as refusal:
+        if "not reached" not in str(refusal):
+            raise
+        return None
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_no_answer_is_worse_than_it_says(kind):
+    rng = np.random.default_rng([KINDS.index(kind), 7])
+    cases, durations = zip(*(draw(kind, rng) for _ in range(COUNT)), strict=True)
+    rotors, omegas = final_states(cases, durations)
+    wrong, answers = [], 0
+    for i, (case, duration) in enumerate(zip(cases, durations, strict=True)):
+        start = ph.State(
+            ph.Rotor.from_components(np.array(case.rotor, float)), [float(x) for x in case.omega]
+        )
+        for rtol in TOLERANCES:
+            found = answered(moments(*case.moments), start, [duration], law_of(case), rtol=rtol)
+            if found is None:
+                continue
+            answers += 1
+            estimate = found.certificate.error_estimate
+            if estimate is None:
+                continue
+            assert estimate <= (rtol or 1e-6)
+            turned = np.abs(found.rotor.components[-1] - rotors[i]).max()
+            omega = found.omega_body.components[-1]
+            spun = np.abs(omega - omegas[i]).max() / rate_scale(case, omega)
+            error = float(max(turned, spun))
+            if not error <= MARGIN * max(estimate, rtol or 1e-10):
+                wrong.append((i, rtol, error, estimate))
+    assert not wrong
+    assert answers > COUNT
+
+
+# --- motions that magnify rounding
+
+ONE = ph.Rotor.identity()
+ASYMMETRIC = moments(1, 2, 2.5)
+
+
+def test_a_wholly_wrong_motion_is_refused():
+    law = ph.torque.gyrostat([4.5, 0, 2]) + ph.torque.larmor([3, -2, -2])
+    with pytest.raises(ValueError, match=r"rtol = 1.0e-6 was not reached"):
+        ph.simulate(ASYMMETRIC, ph.State(ONE, [1, -1, 5]), [50.0], law, rtol=1e-6)
+    many = ph.simulate(ASYMMETRIC, ph.State(ONE, [[1, -1, 5], [0, 0, 0.1]]), [50.0], law, rtol=1e-6)
+    assert [failure.index for failure in many.failures] == [(0,)]
+
+
+def test_chaos_is_refused_or_reported():
+    """The default call returned an error of 3e-5 as 7e-11."""
+    state, law = ph.State(ONE, [3, 2, -1]), ph.torque.heavy([-0.5, 2, 1.5])
+    with pytest.raises(ValueError, match=r"magnifies rounding"):
+        ph.simulate(ASYMMETRIC, state, [100.0], law)
+    rotors, _ = final_states([Case((1, 2, 2.5), (3, 2, -1), heavy=(-0.5, 2, 1.5))], [100.0])
+    found = ph.simulate(ASYMMETRIC, state, [100.0], law, rtol=1e-3)
+    error = np.abs(found.rotor.components[-1] - rotors[0]).max()
+    assert 1e-6 < error < MARGIN * found.certificate.error_estimate
+    assert found.certificate.error_estimate <= 1e-3
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853"])
+def test_a_steady_torque_is_summed_without_drift(method):
+    """ω3 = ω0 + (N/i3) t, a quarter of a million radians: rounded alike in every step it was off by 9e-9."""
+    N, duration = 0.7, 1000.0
+    body = moments(1, 1, 1e-2)
+    state = ph.State(ONE, [0, 0, 0.25])
+    how = {"rtol": 1e-6} if method == "dop853" else {}
+    law = ph.torque.constant_body([0, 0, N * 1e-2])
+    found = ph.simulate(body, state, [duration], law, method=method, **how)
+    acceleration = np.longdouble(N * 1e-2) / np.longdouble(1e-2)
+    omega = np.longdouble(0.25) + acceleration * np.longdouble(duration)
+    # The sum itself is rounded once, the kicks by the products that they are.
+    assert abs(found.omega_body.components[-1, 2] / omega - 1) < 4 * np.finfo(float).eps
+    angle = np.longdouble(0.25) * duration + acceleration * np.longdouble(duration) ** 2 / 2
+    error = abs(found.rotor.components[-1, 0] - np.cos(angle / 2))
+    assert error < found.certificate.error_estimate
+
+
+# --- bodies at rest
+
+RESTING = {
+    "a pendulum": (ph.torque.heavy([0, 0, -2]), [0, 0, 0]),
+    "a pendulum by a formula": (ph.torque.formula("-(~R e3 R)∧(-2 e3)"), [0, 0, 0]),
+    "a pendulum that trembles": (ph.torque.heavy([0, 0, -2]), [1e-14, 0, 0]),
+    "a compass": (ph.torque.magnetic([0, 0, 1], [0, 0, 1]), [0, 0, 0]),
+    "a spring": (ph.torque.torsion_spring(2.0), [0, 0, 0]),
+    "a damped pendulum": (ph.torque.heavy([0, 0, -2]) + ph.torque.viscous_damping(0.1), [0, 0, 0]),
+}
+
+
+@pytest.mark.parametrize("name", RESTING)
+def test_a_body_rests_in_its_equilibrium(name):
+    law, omega = RESTING[name]
+    start = ph.State(ONE, omega)
+    batch = ph.State(ONE, [omega, omega])
+    for found in (ph.simulate(BODY, start, [10.0], law), ph.simulate(BODY, batch, [10.0], law)):
+        assert np.max(found.certificate.error_estimate) < 1e-10
+        # The swing of a rate of 1e-14 rad/s, and rounding.
+        assert np.abs(found.rotor.components[..., 1:]).max() < 2e-14
+
+
+BODY = moments(1, 1.5, 2)
+
+
+def test_a_body_that_hangs_askew_rests_to_rounding():
+    """Turned by a rotation that rounds, its torque is a rounding of that of gravity."""
+    hanging = ph.Rotor.from_vectors(ph.vector([1, 2, -2]), -ph.e3)
+    found = ph.simulate(BODY, ph.State(hanging, [0, 0, 0]), [10.0], ph.torque.heavy([1, 2, -2]))
+    assert found.certificate.error_estimate < 1e-10
+    assert np.abs(found.rotor.components[-1] - hanging.components).max() < 1e-14
+
+
+# --- laws that depend on time
+
+
+def push(law, how, duration=60.0):
+    body = moments(1, 1, 1)
+    return ph.simulate(body, ph.State(ONE, [0, 0, 0]), [duration], law, **how).omega_body.components[-1, 2]
+
+
+@pytest.mark.parametrize("how", [{}, {"rtol": 1e-6}, {"method": "kahan_li8"}], ids=str)
+@pytest.mark.parametrize(("at", "width"), [(37.3, 0.1), (11.123, 0.03), (50.7, 0.01)])
+def test_a_short_push_is_not_stepped_over(at, width, how):
+    """A Gaussian of the impulse 0.4 N m s, on a body at rest."""
+    height = 0.4 / (width * np.sqrt(np.pi))
+    # Errors are relative to the rate at which the largest torque makes the body swing.
+    scale = np.sqrt(height)
+    formula = ph.torque.formula("A exp(-((t-T)/s)²) e1e2", A=height, T=at, s=width)
+    assert push(formula, how) == pytest.approx(0.4, abs=how.get("rtol", 1e-10) * scale)
+    if "method" not in how:
+        law = ph.torque.function(
+            lambda t, R, omega: ph.bivector([0, 0, height * np.exp(-(((t - at) / width) ** 2))])
+        )
+        assert push(law, how) == pytest.approx(0.4, abs=how.get("rtol", 1e-10) * scale)
+
+
+@pytest.mark.parametrize("how", [{"max_step": 2e-3}, {"breaks": [20.0, 20.002]}], ids=str)
+def test_a_shorter_push_needs_a_word(how):
+    """A thousandth of a second in a minute is beyond sampling."""
+    width = 3e-4
+    law = ph.torque.formula("A exp(-((t-T)/s)²) e1e2", A=0.4 / (width * np.sqrt(np.pi)), T=20.001, s=width)
+    assert push(law, how) == pytest.approx(0.4, rel=1e-9)
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_a_fixed_step_too_long_for_its_law_is_reported(many):
+    omega = [[1, 2, 3], [1, 2, 3]] if many else [1, 2, 3]
+    state, law = ph.State(ONE, omega), ph.torque.formula("sin(100 t) e1e2")
+    with pytest.warns(RuntimeWarning, match=r"`sin\(100 t\) e1e2` changes too fast for step = 0.1 s"):
+        found = ph.simulate(BODY, state, [10.0], law, method="rk4", step=0.1)
+    assert len(found.certificate.warnings) == 1
+    # A sixteenth of a turn of the sine in a step is followed.
+    assert not ph.simulate(BODY, state, [10.0], law, method="rk4", step=0.004).certificate.warnings
+
+
+# --- runs that would not end
+
+
+def test_a_hopeless_run_is_refused():
+    state, law = ph.State(ONE, [1e100, 2e100, 1]), ph.torque.larmor([1, 2, 3])
+    with pytest.raises(ValueError, match=r"the run would take .* steps .* more than max_steps = 1e8"):
+        ph.simulate(BODY, state, [10.0], law, method="dop853")
+
+
+def test_the_limit_of_steps_is_kept():
+    state, law = ph.State(ONE, [1, 2, 3]), ph.torque.larmor([1, 2, 3])
+    with pytest.raises(ValueError, match="max_steps = 1e3"):
+        ph.simulate(BODY, state, [1000.0], law, max_steps=1000)
+    for how, match in (
+        ({"max_steps": 0}, "max_steps is 0"),
+        ({"max_step": -1}, "max_step is -1"),
+        ({"breaks": [1.0, np.nan]}, "breaks"),
+        ({"breaks": 1.0}, "breaks must be one-dimensional"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            ph.simulate(BODY, state, [1.0], law, **how)
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_stiff_damping_is_left_to_the_implicit_rule(many):
+    """With d/i ≫ 1/s the rate is that at which the torque of gravity and the damping balance: ω = N/d."""
+    d = 1e5
+    law = ph.torque.heavy([0, 1, 0]) + ph.torque.viscous_damping(d)
+    omega = [[1, 2, 3], [3, 2, 1]] if many else [1, 2, 3]
+    found = ph.simulate(BODY, ph.State(ONE, omega), [10.0], law)
+    assert found.certificate.method == "midpoint"
+    gamma = ph.vector([0, 0, 1])
+    weight = (~found.rotor)(gamma).wedge(ph.vector([0, 1, 0])).components[..., -1, :]
+    # The correction is of the relative size (N i/d²).
+    np.testing.assert_allclose(found.omega_body.components[..., -1, :], weight / d, rtol=0, atol=1e-12)

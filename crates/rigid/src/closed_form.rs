@@ -41,7 +41,7 @@ impl ClosedForm {
         Some(ClosedForm { body, rotation, fall })
     }
 
-    /// How far in time, in s, the phase is known backwards and forwards.
+    /// How far from the start, in s, the phase is known backwards and forwards.
     pub fn horizons(&self) -> [f64; 2] {
         match &self.rotation {
             Rotation::Free(motion) => [motion.horizon(); 2],
@@ -53,11 +53,13 @@ impl ClosedForm {
 
     /// The point of the motion at a time in s.
     pub fn at(&self, time: f64) -> Carried {
+        // None of the laws depends on time.
+        let elapsed = time - self.fall.time;
         let (rotor, omega) = match &self.rotation {
-            Rotation::Free(motion) => motion.at(time),
-            Rotation::Lagrange(motion) => motion.at(time),
-            Rotation::Damped(motion) => motion.at(time),
-            Rotation::Larmor(motion) => motion.at(time),
+            Rotation::Free(motion) => motion.at(elapsed),
+            Rotation::Lagrange(motion) => motion.at(elapsed),
+            Rotation::Damped(motion) => motion.at(elapsed),
+            Rotation::Larmor(motion) => motion.at(elapsed),
         };
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
         Carried::new(phase, self.fall.at(time))
@@ -94,7 +96,9 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
 /// A centre of mass under a constant force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fall {
-    /// At time 0.
+    /// The time of the start, in s.
+    pub time: f64,
+    /// The centre of mass at the start.
     pub start: Center,
     /// In m/s².
     pub acceleration: Vector,
@@ -103,7 +107,8 @@ pub(crate) struct Fall {
 impl Fall {
     /// Where it is at a time in s.
     pub fn at(&self, time: f64) -> Center {
-        let Fall { start, acceleration } = *self;
+        let Fall { time: begin, start, acceleration } = *self;
+        let time = time - begin;
         // t² may overflow where no force needs it.
         let fallen = |a: f64| if a == 0.0 { 0.0 } else { 0.5 * a * time * time };
         Center {

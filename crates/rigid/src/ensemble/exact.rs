@@ -4,9 +4,10 @@ use super::block::{Crew, Member, Told};
 use crate::certificate::{Certificate, Watch, off_unit};
 use crate::free::FreeMotion;
 use crate::phase::Phase;
-use crate::simulate::check_horizons;
+use crate::simulate::check_horizons_from;
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
+use std::borrow::Cow;
 
 impl<'a> Crew<'a> {
     /// Writes the motion of a free body, the times side by side in lanes; its momentum and energy are those of the start.
@@ -14,10 +15,14 @@ impl<'a> Crew<'a> {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
         let method = "exact";
-        if let Err(error) = check_horizons(self.times, [motion.horizon(); 2]) {
+        if let Err(error) = check_horizons_from(start.time, self.times, [motion.horizon(); 2]) {
             return self.fail(body, own, method, error);
         }
-        motion.at_many(Threads::ONE, self.times, own.rotors, own.omegas);
+        let elapsed: Cow<'_, [f64]> = match start.time {
+            0.0 => self.times.into(),
+            begin => self.times.iter().map(|time| time - begin).collect(),
+        };
+        motion.at_many(Threads::ONE, &elapsed, own.rotors, own.omegas);
         let momentum = start.rotor.apply_bivector(start.momentum);
         own.momenta.as_chunks_mut::<3>().0.fill(momentum.0);
         own.energies.fill(gyrostat.kinetic(start.momentum));

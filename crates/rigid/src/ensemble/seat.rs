@@ -1,6 +1,7 @@
 //! A body on its way through its passes, by the rules of a single one.
 
 use super::block::{Crew, Member, Told};
+use super::span;
 use crate::certificate::{Certificate, Watch, off_unit};
 use crate::converge::{Aim, Converged, Convergence};
 use crate::force::Center;
@@ -58,7 +59,7 @@ impl<'a> Seat<'a> {
             begin: start,
             stride: Stride::new(first),
             tolerance: aim.goal,
-            stop: 0.0,
+            stop: start.phase.time,
             so_far: 0,
         }
     }
@@ -86,7 +87,7 @@ impl<'a> Seat<'a> {
         fastest: &mut f64,
         times: &[f64],
     ) -> Result<Option<Converged>, SimulateError> {
-        let early = times.partition_point(|&t| t < 0.0);
+        let early = times.partition_point(|&t| t < self.begin.phase.time);
         loop {
             let taken = self.pass.states.len();
             self.pass.meet(*fastest, &at.center);
@@ -138,17 +139,19 @@ impl<'a> Seat<'a> {
 
     /// Counts the way gone in a pass.
     pub fn count(&mut self, time: f64, crew: &Crew<'a>) {
-        let begin = crew.times.first().map_or(0.0, |t| t.min(0.0));
-        let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
-        let walked = if self.stop < 0.0 { -time } else { time - begin };
+        let start = self.begin.phase.time;
+        let [first, last] = span(crew.times, start);
+        let total = (last - first).max(f64::MIN_POSITIVE);
+        let walked = if self.stop < start { start - time } else { time - first };
         crew.count(&mut self.so_far, walked / total, 1);
     }
 
     /// An error where the steps so far lead nowhere: at this pace it would take thousands of times more than may be.
     pub fn check_pace(&self, time: f64, crew: &Crew<'a>) -> Result<(), SimulateError> {
         let steps = self.pass.steps as f64;
-        let end = if self.stop < 0.0 { crew.times.first() } else { crew.times.last() };
-        let part = end.map_or(1.0, |end| time / end);
+        let start = self.begin.phase.time;
+        let end = if self.stop < start { crew.times.first() } else { crew.times.last() };
+        let part = end.map_or(1.0, |end| (time - start) / (end - start));
         if steps > FEW_STEPS && steps / part > HOPELESS * MAX_STEPS {
             return Err(SimulateError::TooManySteps { steps: steps / part, step: self.pass.longest });
         }

@@ -31,9 +31,9 @@ class RungeKutta:
     def __init__(self, body: Gyrostat, torque: Torque) -> None:
         self.body, self.torque = body, torque
 
-    def start(self, rotor: Four, omega: Three) -> Point:
-        """Return the point at time 0."""
-        return Point(rotor, omega, jnp.zeros((), rotor[0].dtype))
+    def start(self, rotor: Four, omega: Three, time: Array) -> Point:
+        """Return the point of the start."""
+        return Point(rotor, omega, time)
 
     def omega(self, point: Point) -> Three:
         """Return the angular velocity."""

@@ -181,7 +181,8 @@ def test_closed_forms_tell_the_time_of_their_states():
     many = ph.FreeMotion([ASYMMETRIC, SPHERE], R0, [0.25, -0.5, 1.0])
     top = ph.LagrangeTop(SYMMETRIC, R0, [0.25, -0.5, 1.0], [0, 0, 2])
     sphere = ph.LarmorSphere(SPHERE, R0, [0.25, -0.5, 1.0], [0, 0, 2])
-    for motion in (ph.FreeMotion(*given), ph.DampedTop(*given, 0.25), top, sphere):
+    symmetric = ph.SymmetricTop(SYMMETRIC, R0, [0.25, -0.5, 1.0])
+    for motion in (ph.FreeMotion(*given), ph.DampedTop(*given, 0.25), top, sphere, symmetric):
         assert motion.at(2).time == 2.0
         assert (motion.at([1, 3.0]).time == [1, 3]).all()
     assert many.at([1, 2.0, 3]).shape == (2, 3)
@@ -228,7 +229,7 @@ def test_events_are_met_at_their_own_times():
 
 def test_a_motion_that_an_event_ended_goes_on_from_there():
     torque, inertia = GIVEN["formula"]["torque"], ASYMMETRIC
-    event = ph.event.spin(ph.e1 ^ ph.e2, 0.9, terminal=True)
+    event = ph.event.spin(ph.e3 ^ ph.e1, terminal=True)
     whole = ph.simulate(inertia, START, [5.0], torque)
     first = ph.simulate(inertia, START, [5.0], torque, events=event)
     rest = ph.simulate(inertia, first.events[0].states[0], [5.0], torque)

@@ -277,7 +277,7 @@ class SymmetricTop(FreeMotion):
         rotor, omega = (row[0] for row in self._core.starts())
         rotors, omegas = _native.symmetric_top(self._inertia._core, rotor, omega, np.ravel(times))
         rotors = rotors.reshape(*times.shape, 4)
-        return State._at_origin(Rotor._from_rows(rotors), _bivectors(omegas, times.shape))
+        return State._at_origin(Rotor._from_rows(rotors), _bivectors(omegas, times.shape), times)
 
 
 def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:

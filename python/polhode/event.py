@@ -54,7 +54,7 @@ def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: 
         From 0 to π. The angle of an axis that only touches it, as at 0 and π, does not pass it.
     direction
         1: only where the axis comes nearer to `space` (the cosine rises), −1: only where it goes away, 0:
-        both. Of a motion that is followed back in time from 0, as it is followed.
+        both. Of a motion that is followed back in time from its start, as it is followed.
     terminal
         Whether the motion ends there: later output times are left out.
     """

@@ -33,8 +33,8 @@ _NOWHERE: Any = (None, None)
 class Ensemble:
     """Bodies, their starts and what acts on them; batch shapes that broadcast to `shape`.
 
-    `inertias` is an array of objects (...), `start_times` (...), `rotors` (..., 4), `omegas` (..., 3), `places` and `velocities`
-    (..., 3), `masses` (...), NaN where they are not known; `laws` may be batches.
+    `inertias` is an array of objects (...), `start_times` (...), `rotors` (..., 4), `omegas` (..., 3),
+    `places` and `velocities` (..., 3), `masses` (...), NaN where they are not known; `laws` may be batches.
     """
 
     shape: Shape

@@ -57,9 +57,10 @@ class Problem:
     def scene(self) -> str:
         """Return the scene, in TOML, whose body, start and laws are these to the last bit.
 
-        Its output times go from the start to the last one in equal intervals. Principal moments are found from the
-        same inertia matrix again, to its rounding, and rise where it is not diagonal. An `UnwritableError`
-        for Python functions, linear maps, a law that stands twice, and motions that do not go beyond their start.
+        Its output times go from the start to the last one in equal intervals. Principal moments are found
+        from the same inertia matrix again, to its rounding, and rise where it is not diagonal. An
+        `UnwritableError` for Python functions, linear maps, a law that stands twice, and motions that do not
+        go beyond their start.
         """
         laws = self.torque.laws if self.torque else ()
         tables = {

@@ -356,7 +356,7 @@ class Trajectory:
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """The uniform motion of centres of mass: times of the starts (*shape), places and velocities (*shape, 3)."""
+    """The uniform motion of centres of mass from their starts: times (*shape), the others (*shape, 3)."""
 
     start_times: Array
     places: Array
@@ -364,7 +364,11 @@ class Drift:
 
     def __getitem__(self, index: tuple[Any, ...]) -> Drift:
         rest: tuple[Any, ...] = (slice(None),) if any(part is Ellipsis for part in index) else ()
-        return Drift(np.asarray(self.start_times[index]), self.places[(*index, *rest)], self.velocities[(*index, *rest)])
+        return Drift(
+            np.asarray(self.start_times[index]),
+            self.places[(*index, *rest)],
+            self.velocities[(*index, *rest)],
+        )
 
     def position(self, times: Array) -> Multivector:
         """Places at times (n,), vectors of batch (*shape, n)."""

@@ -2,8 +2,9 @@
 
 Each is found to rounding by root finding along the motion, which is looked at every 0.2 rad that the body
 turns, at every step and in its middle, and where the values hint at a short visit to the other side. A
-quantity that only touches zero does not pass it, and one that is zero at the start has not passed it there. What
-changes much faster than the body turns, as a formula may, can pass zero unseen: a shorter `step` sees it.
+quantity that only touches zero does not pass it, and one that is zero at the start has not passed it there.
+What changes much faster than the body turns, as a formula may, can pass zero unseen: a shorter `step` sees
+it.
 """
 
 from __future__ import annotations

@@ -15,8 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from polhode import _native
 from polhode._arrays import Shape, as_float, as_floats
 from polhode._batch import (

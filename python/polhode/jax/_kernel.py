@@ -131,7 +131,8 @@ def _call(walk: Any, rows: list[Array], span: Array, table: Array) -> list[Array
     """Run it over the blocks, a program of the grid for each."""
     pallas = optional("jax.experimental.pallas", "jax", "the kernel of polhode.jax")
 
-    # The times of the start and the end, and what a method needs in its stages; of a length that is a power of two, as GPUs have it.
+    # The times of the start and the end, and what a method needs in its stages; of a length that is a power
+    # of two, as GPUs have it.
     numbers = jnp.concatenate([table, span])
     length = 1 << (numbers.size - 1).bit_length()
     numbers = jnp.pad(numbers, (0, length - numbers.size))

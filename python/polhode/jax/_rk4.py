@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 from polhode.jax._components import Four, Three, normalized, rotor_rate
 from polhode.jax._laws import Torque
-from polhode.jax._library import jnp
 from polhode.jax._phase import Gyrostat, Phase
 
 Array = Any

@@ -36,10 +36,10 @@ def simulate(
     """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times.
 
     One program of JAX, for ``jit``, ``vmap``, ``jacfwd`` and ``grad``, by everything that is an array:
-    moments, start, parameters of the torque, and with `steps` the times and the start time. It takes the steps of
-    `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between output
-    times only the state is kept, so that ``grad`` needs memory for one state a step, and computes each step
-    twice.
+    moments, start, parameters of the torque, and with `steps` the times and the start time. It takes the
+    steps of `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between
+    output times only the state is kept, so that ``grad`` needs memory for one state a step, and computes
+    each step twice.
 
     Parameters
     ----------
@@ -47,8 +47,8 @@ def simulate(
         Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`,
         about its centre of mass, with `heavy` about the origin of its axes.
     rotor
-        From body axes to space at the start: a `Rotor`, or its components (..., 4), which are divided by their
-        norm.
+        From body axes to space at the start: a `Rotor`, or its components (..., 4), which are divided by
+        their norm.
     omega_body
         Angular velocity in body axes at the start, a bivector or (..., 3), in rad/s. Batches broadcast.
     times
@@ -82,9 +82,7 @@ def simulate(
     )
     parts = []
     for way, backwards in both:
-        found = run(
-            given, force, way.targets, way.counts, begin, method=method, most=way.most, even=way.even
-        )
+        found = run(given, force, way.targets, way.counts, begin, method=method, most=way.most, even=way.even)
         places = list(way.places[::-1] if backwards else way.places)
         parts.append([x[..., places, :] for x in found])
     return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))

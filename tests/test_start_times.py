@@ -1,10 +1,14 @@
 """Motions that do not start at time 0: a motion continued from any of its states is the motion itself."""
 
+import json
+
 import numpy as np
 import pytest
 
 import polhode as ph
 from motions import ASYMMETRIC, EPS, METHODS, R0, START, apart, moments, random_walk
+from polhode._document import document
+from polhode._packed import unpacked
 
 BODY = ph.Body(2.0, ASYMMETRIC, [0.0, 0.0, 0.0])
 MOVING = ph.State(R0, [0.25, -0.5, 1.0], [1, 2, 0], [0, 0.5, 0.25])
@@ -368,3 +372,23 @@ def test_a_scene_with_a_wrong_time_is_refused(time, tmp_path):
     path.write_text(SCENE.replace('"0.5 min"', time), encoding="utf-8")
     with pytest.raises(ph.SceneError, match=r"late\.toml:6:8"):
         ph.Scene.read(path)
+
+
+def test_a_motion_is_written_as_the_scene_that_starts_there(tmp_path):
+    torque = GIVEN["table"]["torque"]
+    state = ph.State(R0, [0.25, -0.5, 1.0], time=-1.5)
+    motion = ph.simulate(ASYMMETRIC, state, [-2.0, 1.0, 3.0], torque)
+    shown = document(motion)
+    path = tmp_path / "motion.toml"
+    path.write_text(shown["scene"], encoding="utf-8")
+    scene = ph.Scene.read(path)
+    assert scene.state == state
+    np.testing.assert_array_equal(scene.times, [-1.5, 0.75, 3.0])
+    about = json.loads(shown["recorded"]["about"])
+    assert about["start"]["time"] == -1.5
+    assert about["duration"] == 4.5
+    rows = np.frombuffer(unpacked(shown["recorded"]["rows"])).reshape(-1, 24)
+    assert rows[[0, -1], 0].tolist() == [-1.5, 3.0]
+    np.testing.assert_array_equal(rows[0, 1:5], R0.components)
+    with pytest.raises(ValueError, match=r"from their start on, here -1.5 s, and this one has no later time"):
+        document(ph.simulate(ASYMMETRIC, state, [-2.0], torque))

@@ -82,6 +82,8 @@ def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
             return _Points.of(trajectory._motion.at(closer))
     # Output times may stand twice, and before the start.
     rising = np.flatnonzero((np.diff(times, prepend=-np.inf) > 0) & (times >= first))
+    if len(rising) < 2:
+        raise ValueError(f"the viewer shows motions of two output times or more from {first:g} s on")
     kept = rising[_evenly(len(rising))]
     return _Points(
         times[kept],
@@ -117,6 +119,9 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
     torque = None if origin is None else origin.torque
     held = torque is not None and torque.holds
     start = None if origin is None else origin.state
+    if start is not None and start.time != points.time[0]:
+        # Read from a file that does not hold the start.
+        start = None
     body = _body(origin)
     return {
         "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),

@@ -106,9 +106,9 @@ impl Ensemble {
             .starting_at(start.time)
     }
 
-    /// Follows all bodies to the times (s, not decreasing; before a body's start it goes backwards), with options as for one body, by so many
-    /// threads. `progress` is asked now and then by the calling thread; at false all ends with
-    /// [`SimulateError::Interrupted`]. An error for what none of the bodies could be followed with.
+    /// Follows all bodies to the times (s, not decreasing; those before a body's start are reached backwards), with
+    /// options as for one body, by so many threads. `progress` is asked now and then by the calling thread; at false all
+    /// ends with [`SimulateError::Interrupted`]. An error for what none of the bodies could be followed with.
     ///
     /// # Panics
     /// If numbers of rows do not fit together.

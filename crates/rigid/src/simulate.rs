@@ -416,8 +416,8 @@ impl Motion {
         self.problem.states(&states)
     }
 
-    /// The motion at any times between the first and the last, the start and the events included: by the same method and the same steps from the
-    /// nearest output time before.
+    /// The motion at any times between the first and the last, the start and the events included: by the same method
+    /// and the same steps from the nearest output time before.
     pub fn at(
         &self,
         times: &[f64],

@@ -350,7 +350,8 @@ impl Walker<'_> {
             let time = root((low, high), (at_low, at_high), least, &mut value)?;
             // A zero at the start that rounding has moved off it.
             let since = (time - self.origin).abs();
-            if walk.at.phase.time != self.origin || since > ROUNDING_OF_START * (high - low).abs() {
+            let rounding = ROUNDING_OF_START * (high - low).abs() + 4.0 * f64::EPSILON * self.origin.abs();
+            if walk.at.phase.time != self.origin || since > rounding {
                 times.push((direction, time));
             }
         }

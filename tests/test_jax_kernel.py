@@ -11,6 +11,7 @@ laws = ph.jax.torque
 
 # More than a block, and no whole number of them.
 BODIES, STEPS = 150, 12
+EPS = np.finfo(float).eps
 RNG = np.random.default_rng(0)
 MOMENTS, ROTORS = RNG.uniform(2, 3, size=(BODIES, 3)), RNG.normal(size=(BODIES, 4))
 OMEGAS = RNG.normal(size=(BODIES, 3))
@@ -43,6 +44,22 @@ def test_the_kernel_takes_the_steps_of_simulate(method, dtype, torque):
         assert a.dtype == dtype
         assert a.shape == b.shape
         assert np.abs(a - b).max() < 4 * STEPS * np.finfo(dtype).eps
+
+
+@pytest.mark.parametrize("method", ["rk4", "strang"])
+def test_the_kernel_starts_at_any_time(method):
+    law = laws.gravity_gradient(0.7, 0.3)
+    call = MOMENTS, ROTORS, OMEGAS, 1.5, law, method
+    found = ph.jax.advance(*call, steps=STEPS, kernel=True, start_time=0.4)
+    looped = ph.jax.advance(*call, steps=STEPS, kernel=False, start_time=0.4)
+    bodies = ph.State(ph.Rotor.from_components(ROTORS), OMEGAS, time=0.4)
+    inertias = [ph.Inertia.from_principal_moments(*row) for row in MOMENTS]
+    native = ph.torque.gravity_gradient(0.7, 0.3)
+    expected = ph.simulate(inertias, bodies, [1.5], native, method=method, step=1.1 / STEPS).final
+    for a, b in zip(found, looped, strict=True):
+        assert np.abs(a - b).max() < 4 * STEPS * EPS
+    assert np.abs(found[0] - expected.rotor.components).max() < 40 * STEPS * EPS
+    assert np.abs(found[1] - expected.omega_body.components).max() < 40 * STEPS * EPS
 
 
 def test_it_has_the_derivatives_of_the_steps():

@@ -98,6 +98,46 @@ def test_times_on_both_sides_of_the_start():
     assert apart(found, expected) < COUNT
 
 
+@pytest.mark.parametrize("name", ["gravity gradient, ellipse", "tabulated", "spline", "formula"])
+@pytest.mark.parametrize("method", ["strang", "rk4"])
+def test_a_motion_starts_at_its_time(method, name):
+    law, state = ATTITUDE[name], ph.State(R0, OMEGA, time=0.5)
+    expected = ph.simulate(INERTIA, state, TIMES, law, method=method, step=STEP)
+    found = ph.jax.simulate(INERTIA, R0, OMEGA, TIMES, law, method, step=STEP, start_time=0.5)
+    assert apart(found, expected) < 3 * COUNT
+    if name in ("tabulated", "spline"):
+        # Steps stop at the rows of a table, but where the start is traced.
+        return
+    # A traced start has one way, forth.
+    later = jax.jit(
+        lambda t: ph.jax.simulate(INERTIA, R0, OMEGA, TIMES[3:], law, method, steps=20, start_time=t)
+    )
+    known = ph.jax.simulate(INERTIA, R0, OMEGA, TIMES[3:], law, method, steps=20, start_time=0.25)
+    for a, b in zip(later(0.25), known, strict=True):
+        assert np.abs(a - b).max() < 4 * COUNT * EPS
+
+
+def test_a_motion_goes_on_where_it_stopped():
+    law = ATTITUDE["formula"]
+    whole = ph.jax.simulate(INERTIA, R0, OMEGA, [1.0, 2.0], law, step=STEP)
+    start = whole[0][0], whole[1][0]
+    rest = ph.jax.simulate(INERTIA, *start, [2.0], law, step=STEP, start_time=1.0)
+    for a, b in zip(rest, whole, strict=True):
+        assert np.abs(a[0] - b[1]).max() < 4 * COUNT * EPS
+    # The end is a function of the start time too: -d/dt of both ends together.
+    end = jax.jit(
+        lambda t: ph.jax.simulate(INERTIA, R0, OMEGA, jnp.array([2.0]), law, steps=20, start_time=t)[1][0]
+    )
+    slope, h = jax.jacfwd(end)(1.0), 1e-5
+    assert np.abs(slope - (end(1 + h) - end(1 - h)) / (2 * h)).max() < 1e-8
+
+
+@pytest.mark.parametrize("time", [np.nan, np.inf])
+def test_a_start_needs_a_time(time):
+    with pytest.raises(ValueError, match=f"start_time is {time}; it must be finite"):
+        ph.jax.simulate(INERTIA, R0, OMEGA, [1.0], step=STEP, start_time=time)
+
+
 def test_compositions_under_torque_and_damping_are_those_of_the_compiled_steps():
     law = ATTITUDE["heavy"] + ATTITUDE["damping"] + ATTITUDE["gyrostat"]
     expected = ph.simulate(INERTIA, ph.State(R0, OMEGA), [4.0], law, method="kahan_li8", step=STEP)

@@ -83,12 +83,14 @@ def test_the_state_of_the_page_is_a_state_here(line):
             "omega_body": state.omega_body.components.tolist(),
             "position": [1, 2, 3],
             "velocity": [0, 0, 1e-300],
+            "time": [0.7],
         }
     )
     assert viewer.state.rotor == state.rotor
     assert viewer.state.omega_body == state.omega_body
     assert viewer.state.position == ph.vector([1.0, 2, 3])
     assert viewer.state.velocity.components[2] == 1e-300
+    assert viewer.state.time == 0.7
     line(viewer).says(state=None)
     assert viewer.state is None
 

@@ -11,6 +11,7 @@ import numpy as np
 from polhode._arrays import Array
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
+from polhode._state import State
 
 
 @dataclass(frozen=True)
@@ -132,3 +133,8 @@ class Crossings:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    @property
+    def states(self) -> State:
+        """The states there, a batch (m,), from which `simulate` goes on."""
+        return State(self.rotor, self.omega_body, self.position, self.velocity, time=self.time)

@@ -35,6 +35,7 @@ class _ClosedForm:
         return State(
             Rotor._from_rows(rotors.reshape(*times.shape, 4)),
             bivector(omegas.reshape(*times.shape, 3), copy=False),
+            time=times,
         )
 
     def view(self, duration: float | None = None) -> Viewer:

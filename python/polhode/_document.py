@@ -215,13 +215,14 @@ def _problem(body: Body | Inertia, state: State, torque: Torque | None, force: A
     seconds = finite(as_float(duration, "duration"), "duration")
     if seconds <= 0:
         raise ValueError(f"duration is {seconds}; it must be positive")
-    return Problem(body, state, torque, force, np.linspace(0.0, seconds, _SAMPLES))
+    start = float(state.time) if not np.ndim(state.time) else 0.0
+    return Problem(body, state, torque, force, start + np.linspace(0.0, seconds, _SAMPLES))
 
 
 def _of_problem(problem: Problem) -> Document:
     """Return the document of a motion that was only asked for; what no scene can say is followed here."""
     state, torque = problem.state, problem.torque
-    if state.rotor.shape or state.omega_body.shape or (torque is not None and torque.shape):
+    if state.shape or (torque is not None and torque.shape):
         raise ValueError("the viewer shows one body, this is a batch; pick one of them")
     try:
         return {"format": 1, "scene": problem.scene(), "name": "motion.toml"}

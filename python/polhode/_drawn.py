@@ -54,7 +54,7 @@ class EnsembleSpec:
         Returns
         -------
         state
-            Their states at time 0, a batch of shape (count,).
+            Their states at the start, a batch of shape (count,).
         inertias
             The inertia of each, or the one that all have, about the fixed point if there is one.
         laws
@@ -70,7 +70,9 @@ class EnsembleSpec:
         if first < 0 or count < 0:
             raise ValueError(f"first = {first} and count = {count} must not be negative; see number")
         rotors, omegas, positions, velocities, inertias, laws = self._draws.draw(first, count)
-        state = State(Rotor._from_rows(rotors), bivector(omegas), vector(positions), vector(velocities))
+        places, rates = vector(positions), vector(velocities)
+        time = self._draws.time()
+        state = State(Rotor._from_rows(rotors), bivector(omegas), places, rates, time=time)
         return state, tuple(map(Inertia, inertias)), tuple(laws)
 
 

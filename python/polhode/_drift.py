@@ -40,7 +40,7 @@ def drift_figure(trajectory: Trajectory) -> Figure:
     for axes, (name, values) in zip(panels[1:-1], drifts.items(), strict=True):
         told, unit_of_it = QUANTITIES[name]
         start = trajectory.certificate.conserved[name]
-        _draw_change(axes, t, values, f"{told}, {start:.6g} {unit_of_it} at time 0", _ORANGE)
+        _draw_change(axes, t, values, f"{told}, {start:.6g} {unit_of_it} at the start", _ORANGE)
     _draw_change(panels[-1], t, np.asarray(trajectory.rotor.norm()) - 1, "size of the rotor, |R| − 1", _BLACK)
     panels[-1].set_xlabel(f"time, {unit}")
     for axes in panels:
@@ -84,10 +84,10 @@ def _draw_change(axes: Axes, t: Array, values: Array, name: str, colour: str) ->
 def _told(trajectory: Trajectory) -> str:
     certificate = trajectory.certificate
     if certificate.method == "exact":
-        return "Changes since time 0, relative to the terms of which each is made. The motion is exact."
+        return "Changes since the start, relative to the terms of which each is made. The motion is exact."
     estimate = certificate.error_estimate
     error = "" if estimate is None else f", estimated error {estimate:.1g}"
     return (
-        "Changes since time 0, relative to the terms of which each is made. "
+        "Changes since the start, relative to the terms of which each is made. "
         f"Method {certificate.method}, steps of at most {certificate.step:.3g} s{error}."
     )

@@ -37,12 +37,13 @@ _NOWHERE: Any = (None, None)
 class Ensemble:
     """Bodies, their starts and what acts on them; batch shapes that broadcast to `shape`.
 
-    `inertias` is an array of objects (...), `rotors` (..., 4), `omegas` (..., 3), `places` and `velocities`
-    (..., 3), `masses` (...), NaN where they are not known; `laws` may be batches.
+    `inertias` is an array of objects (...), `start_times` (...), `rotors` (..., 4), `omegas` (..., 3),
+    `places` and `velocities` (..., 3), `masses` (...), NaN where they are not known; `laws` may be batches.
     """
 
     shape: Shape
     inertias: Any
+    start_times: Array
     rotors: Array
     omegas: Array
     places: Array
@@ -83,6 +84,7 @@ class Ensemble:
             self,
             shape=(len(range(*rows.indices(self.shape[0]))), *self.shape[1:]),
             inertias=own(self.inertias, 0),
+            start_times=own(self.start_times, 0),
             rotors=own(self.rotors),
             omegas=own(self.omegas),
             places=own(self.places),
@@ -101,11 +103,12 @@ class Ensemble:
         if not self.bodies:
             return self._nothing()
         # The core takes one time at least.
-        times = self.times if len(self.times) else np.zeros(1)
+        times = self.times if len(self.times) else self.start_times.ravel()[:1]
         centers = np.concatenate(np.broadcast_arrays(self.places, self.velocities), axis=-1)
         arrays, told = _native.simulate_many(
             self.shape,
             ([inertia._core for inertia in self.inertias.flat], self.inertias.shape),
+            np.ascontiguousarray(self.start_times),
             self.rotors,
             self.omegas,
             list(self.laws),
@@ -157,7 +160,11 @@ class Ensemble:
 
     def _drift(self) -> Drift:
         shape = (*self.shape, 3)
-        return Drift(np.broadcast_to(self.places, shape), np.broadcast_to(self.velocities, shape))
+        return Drift(
+            np.broadcast_to(self.start_times, self.shape),
+            np.broadcast_to(self.places, shape),
+            np.broadcast_to(self.velocities, shape),
+        )
 
     def _certificate(self, told: dict[str, Any]) -> Certificate:
         """Return what the core tells of each body; of those that failed no drift and no error."""
@@ -236,14 +243,7 @@ def mapped_objects(f: Callable[[Any], Any], array: Any) -> Any:
 
 def shape_of(bodies: Any, state: State, torque_shape: Shape) -> Shape:
     """Return the shape to which body, state and torque broadcast."""
-    shapes = {
-        "the body": bodies.shape,
-        "the rotor": state.rotor.shape,
-        "the angular velocity": state.omega_body.shape,
-        "the position": state.position.shape,
-        "the velocity": state.velocity.shape,
-        "the torque": torque_shape,
-    }
+    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque_shape}
     return common(shapes, "body, state and torque")
 
 
@@ -254,3 +254,4 @@ def check_state(state: State) -> None:
     for name in ("position", "velocity"):
         check_finite(getattr(state, name).components, f"the {name}")
     check_finite(state.omega_body.components, "the angular velocity")
+    check_finite(np.asarray(state.time)[..., np.newaxis], "the time of the state")

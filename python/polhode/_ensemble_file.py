@@ -53,7 +53,7 @@ class EnsembleFile:
 
     What is constant, or follows from what is there, is not written at every time: momentum and energy of free
     bodies once for each body, momenta of others not at all (``L = R I(Ω) ~R``, and a wheel's), places only
-    where forces move the bodies. The first of the times is 0, so that the first states are the starts.
+    where forces move the bodies. The first of the times is that of the start.
     """
 
     def __init__(self, path: Path, scene: Scene) -> None:
@@ -172,7 +172,7 @@ class EnsembleFile:
             if self._scene.force is not None:
                 self._grow(rows, name, ("time", "axis"), values, units, text)
             else:
-                self._grow(rows, name, ("axis",), values[:, 0], units, f"{text} at time 0")
+                self._grow(rows, name, ("axis",), values[:, 0], units, f"{text} at the start")
 
     @property
     def _moves(self) -> bool:

@@ -40,7 +40,7 @@ def fan_figure(gathered: Gathered) -> Figure:
     """
     figure = new_figure(8, 8)
     panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
-    times, along = _scale(gathered.scene.times)
+    times, along = _scale(gathered.scene.elapsed)
     seconds, unit = time_unit(np.sqrt(times[0] * times[-1]) if along == "log" else times)
     for axes, (name, factor, label) in zip(
         panels,
@@ -90,7 +90,7 @@ def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
     axes.set_ylim(0, 185)
     axes.set_yticks(range(0, 181, 45))
     for angle in (10, 90):
-        moment = first_above(gathered.scene.times, highest, np.radians(angle))
+        moment = first_above(gathered.scene.elapsed, highest, np.radians(angle))
         if not moment:
             continue
         # To the left, above the bands, if there is room.
@@ -125,7 +125,7 @@ def directions_figure(gathered: Gathered) -> Figure:
     middle, name = _middle(gathered)
     frame = _frame(middle)
     panels = figure.subplots(1, 3, subplot_kw={"projection": "hammer"})
-    times = gathered.scene.times
+    times = gathered.scene.elapsed
     drawn: Any = None
     for k, axes in enumerate(panels):
         directions = gathered.directions[:, k].astype(float)

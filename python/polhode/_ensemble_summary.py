@@ -93,7 +93,7 @@ def _horizons(gathered: Gathered) -> list[dict[str, Any]]:
     """Return until when 95 % of the bodies are within an angle of the nominal one; None to the end."""
     highest = quantiles(gathered.series["from_nominal"])[-1]
     return [
-        {"angle": float(angle), "time": first_above(gathered.scene.times, highest, angle)}
+        {"angle": float(angle), "time": first_above(gathered.scene.elapsed, highest, angle)}
         for angle in _HORIZONS
     ]
 
@@ -117,7 +117,7 @@ def _run(gathered: Gathered) -> dict[str, Any]:
         "steps": int(gathered.steps.sum()),
         "error_estimate": float(estimates.max()) if estimates.size else None,
         "rotor_norm_drift": _worst(gathered.norm_drifts)["worst"],
-        "duration": float(scene.times[-1]),
+        "duration": float(scene.elapsed[-1]),
         "samples": len(scene.times),
         "drift_bound": scene.drift_bound,
         # None if no body was followed to the end.

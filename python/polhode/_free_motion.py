@@ -109,14 +109,14 @@ class FreeMotion:
         not finite, or so late that the phase is no longer known (1e17 turns); a MemoryError for more states
         than there is memory for.
         """
-        state = self._core.once(t)
+        state, times = self._core.once(t), t
         if state is None:
             times = as_floats(t, "time")
             shape = self.shape + times.shape
             require(_STATE * math.prod(shape), f"states of batch shape {shape}")
             rotors, omegas = self._core.at(np.ravel(times))
             state = Rotor._from_rows(rotors.reshape(*shape, 4)), _bivectors(omegas, shape)
-        return State._at_origin(*state)
+        return State._at_origin(*state, times)
 
     def at_each(self, t: Any) -> State:
         """Return the state of each body at its own time t in s, or at its own times.
@@ -144,7 +144,7 @@ class FreeMotion:
         back = (*np.argsort(order), len(order))
         rows = np.ascontiguousarray(rotors.reshape(*computed.shape, 4).transpose(back))
         rates = np.ascontiguousarray(omegas.reshape(*computed.shape, 3).transpose(back))
-        return State._at_origin(Rotor._from_rows(rows), _bivectors(rates, shape))
+        return State._at_origin(Rotor._from_rows(rows), _bivectors(rates, shape), times)
 
     def _check_each(self, times: Array, shape: Shape) -> None:
         """Times must be finite and within the horizon of their bodies."""
@@ -277,7 +277,7 @@ class SymmetricTop(FreeMotion):
         rotor, omega = (row[0] for row in self._core.starts())
         rotors, omegas = _native.symmetric_top(self._inertia._core, rotor, omega, np.ravel(times))
         rotors = rotors.reshape(*times.shape, 4)
-        return State._at_origin(Rotor._from_rows(rotors), _bivectors(omegas, times.shape))
+        return State._at_origin(Rotor._from_rows(rotors), _bivectors(omegas, times.shape), times)
 
 
 def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:

@@ -108,7 +108,7 @@ def _bodies(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
         names = proof.method.astype(object).ravel()
         told["method"] = (along, names, {"long_name": "method"})
     for name, start in proof.conserved.items():
-        told[f"{name}_start"] = column(start, "SI", f"{name} at time 0")
+        told[f"{name}_start"] = column(start, "SI", f"{name} at the start")
         told[f"{name}_drift"] = column(proof.drift[name], "1", f"largest relative change of the {name}")
     return told
 

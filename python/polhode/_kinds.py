@@ -122,7 +122,7 @@ def _free(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
         top = SymmetricTop(trajectory.inertia, scene.state.rotor, scene.state.omega_body)
     except ValueError:
         return motion
-    exact = top.at(trajectory.time)
+    exact = top.at(trajectory.time - scene.state.time)
     motion["closed_form"] = {
         "largest_rotor_difference": float(np.max((exact.rotor - trajectory.rotor).norm())),
         "largest_omega_difference": float(np.max((exact.omega_body - trajectory.omega_body).norm())),
@@ -219,7 +219,7 @@ def _precession_rate(trajectory: Trajectory, path: Array) -> float | None:
     if fastest * float(np.diff(trajectory.time).max()) > _FOLLOWED:
         return None
     azimuth = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
-    return float((azimuth[-1] - azimuth[0]) / trajectory.time[-1])
+    return float((azimuth[-1] - azimuth[0]) / np.ptp(trajectory.time))
 
 
 # --- on an orbit

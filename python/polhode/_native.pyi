@@ -317,6 +317,7 @@ class Motion:
 
 def simulate(
     inertia: Inertia,
+    start: float,
     rotor_row: Array,
     omega: Array,
     laws: list[Law],
@@ -336,6 +337,7 @@ def simulate(
 class Draws:
     def number(self) -> int: ...
     def seed(self) -> int: ...
+    def time(self) -> float: ...
     def varied(self) -> list[tuple[str, str, list[float], str]]: ...
     def draw(
         self, first: int, count: int
@@ -344,6 +346,7 @@ class Draws:
 def simulate_many(
     shape: tuple[int, ...],
     inertias: tuple[list[Inertia], tuple[int, ...]],
+    begins: Array,
     rotors: Array,
     omegas: Array,
     laws: list[Law],

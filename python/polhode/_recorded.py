@@ -47,9 +47,9 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool)
     Raises
     ------
     ValueError
-        If the motion does not begin at time 0, ends there, or has numbers that are not finite.
+        If the motion does not go beyond its start, or has numbers that are not finite.
     """
-    points = _points(trajectory)
+    points = _points(trajectory, origin)
     rows = _rows(points)
     if not (finite := np.isfinite(rows).all(axis=1)).all():
         when = points.time[np.argmin(finite)]
@@ -59,28 +59,31 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool)
     return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows.astype("<f8").tobytes())}
 
 
-def _points(trajectory: Trajectory) -> _Points:
-    """Return the states that are kept."""
+def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
+    """Return the states that are kept: from the start on, or from the first one where no start is known."""
     times = trajectory.time
-    last = float(times[-1]) if len(times) else 0.0
-    if last <= 0:
-        raise ValueError("the viewer shows motions from time 0 on, and this one has no later time")
+    first = float(origin.state.time) if origin is not None else float(times[0]) if len(times) else 0.0
+    last = float(times[-1]) if len(times) else first
+    if last <= first:
+        raise ValueError(
+            f"the viewer shows motions from their start on, here {first:g} s, and this one has no later time"
+        )
     if trajectory._motion is not None:
-        some = _Points.of(trajectory._motion.at(np.linspace(0.0, last, _SOME)))
+        some = _Points.of(trajectory._motion.at(np.linspace(first, last, _SOME)))
         rate = float(np.max([some.omega_body.norm().max(), trajectory.omega_body.norm().max()]))
-        met = np.unique(np.append(times[times >= 0], 0.0))
+        met = np.unique(np.append(times[times >= first], first))
         met = met[_evenly(len(met))]
         intervals = len(met) - 1
         # Equal parts of each interval, so that the output times stay among them.
-        parts = min(math.ceil(rate * last / _TURN / intervals), (_MOST_ROWS - 1) // intervals)
-        if parts > 1 or times[0] != 0:
+        parts = min(math.ceil(rate * (last - first) / _TURN / intervals), (_MOST_ROWS - 1) // intervals)
+        if parts > 1 or times[0] != first:
             parts = max(parts, 1)
             closer = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), met)
             return _Points.of(trajectory._motion.at(closer))
-    if times[0] != 0:
-        raise ValueError(f"the viewer shows motions from time 0 on, and this one begins at {times[0]:g} s")
-    # Output times may stand twice.
-    rising = np.flatnonzero(np.diff(times, prepend=-1.0) > 0)
+    # Output times may stand twice, and before the start.
+    rising = np.flatnonzero((np.diff(times, prepend=-np.inf) > 0) & (times >= first))
+    if len(rising) < 2:
+        raise ValueError(f"the viewer shows motions of two output times or more from {first:g} s on")
     kept = rising[_evenly(len(rising))]
     return _Points(
         times[kept],
@@ -116,6 +119,9 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
     torque = None if origin is None else origin.torque
     held = torque is not None and torque.holds
     start = None if origin is None else origin.state
+    if start is not None and start.time != points.time[0]:
+        # Read from a file that does not hold the start.
+        start = None
     body = _body(origin)
     return {
         "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),
@@ -130,8 +136,9 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
         "start": {
             "rotor": (start.rotor if start else points.rotor[0]).components.tolist(),
             "omega_body": (start.omega_body if start else points.omega_body[0]).components.tolist(),
+            "time": float(points.time[0]),
         },
-        "duration": float(points.time[-1]),
+        "duration": float(points.time[-1] - points.time[0]),
         "samples": len(trajectory.time),
         "method": "recorded",
         "exact": False,

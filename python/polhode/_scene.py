@@ -49,7 +49,7 @@ class Scene:
     shift
         Where the origin of the file's axes is in those of the body, (3,), in m: not 0 for a pivot alone.
     state
-        The state at time 0.
+        The state at the start, which has the time that the file says, or 0.
     torque
         What turns the body, gravity first and then as in the file; None where nothing does.
     formulas
@@ -110,6 +110,7 @@ class Scene:
                 fields["omega_body"],
                 fields["position"],
                 fields["velocity"],
+                time=fields["time"],
             ),
             torque=Torque(tuple(fields["laws"])) if fields["laws"] else None,
             formulas=tuple(fields["formulas"]),
@@ -138,6 +139,11 @@ class Scene:
         """The memory that the states of all bodies at all times take: rotors, Ω, L and energies."""
         numbers = 4 + 3 + 3 + 1
         return (1 if self.ensemble is None else self.ensemble.number) * len(self.times) * numbers * 8
+
+    @property
+    def elapsed(self) -> Array:
+        """Output times since the start, in s."""
+        return self.times - self.state.time
 
     @property
     def held(self) -> bool:

@@ -31,7 +31,7 @@ class Problem:
     body
         A `Body`, or the `Inertia` that rules its motion.
     state
-        The single state at time 0.
+        The single state at the start.
     torque, force
         What turns and moves it; None where nothing does.
     times
@@ -60,9 +60,10 @@ class Problem:
     def scene(self) -> str:
         """Return the scene, in TOML, whose body, start and laws are these to the last bit.
 
-        Its output times go from 0 to the last one in equal intervals. Principal moments are found from the
-        same inertia matrix again, to its rounding, and rise where it is not diagonal. An `UnwritableError`
-        for Python functions, linear maps, a law that stands twice, and motions that do not go beyond time 0.
+        Its output times go from the start to the last one in equal intervals. Principal moments are found
+        from the same inertia matrix again, to its rounding, and rise where it is not diagonal. An
+        `UnwritableError` for Python functions, linear maps, a law that stands twice, and motions that do not
+        go beyond their start.
         """
         laws = self.torque.laws if self.torque else ()
         tables = {
@@ -99,12 +100,17 @@ class Problem:
             components = getattr(self.state, name).components
             if components.any():
                 fields[name] = components
+        if self.state.time:
+            fields["time"] = self.state.time
         return fields
 
     def _run(self) -> dict[str, Any]:
-        duration = float(np.max(self.times, initial=0.0))
+        start = float(self.state.time)
+        duration = float(np.max(self.times, initial=start)) - start
         if duration <= 0:
-            raise UnwritableError("a scene goes on from time 0, and this motion has no later time")
+            raise UnwritableError(
+                f"a scene goes on from its start at {start:g} s, and this motion has no later time"
+            )
         return {"duration": duration, "samples": max(2, len(self.times))}
 
     def _method(self) -> dict[str, Any]:

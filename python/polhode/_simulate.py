@@ -68,9 +68,11 @@ def simulate(
         A `Body` or its `Inertia` in kg m². With `ph.torque.heavy` a body is held at the origin of its
         axes, and an inertia is that about the fixed point. Or a nested sequence or array of them, (...).
     state
-        The state at time 0; rotor, angular velocity, position and velocity may be batches, (...).
+        The state at the start, ``state.time``; rotor, angular velocity, position, velocity and time may be
+        batches, (...).
     times
-        Output times in s, (n,), not decreasing, of either sign.
+        Output times in s, (n,), not decreasing, on the same clock as ``state.time`` and what laws call t;
+        those before the start are reached by going backwards.
     torque
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
         free motion. Its numbers may be batches, (...).
@@ -138,6 +140,7 @@ def simulate(
     inertia = given.inertias[()]
     motion = _native.simulate(
         inertia._core,
+        float(given.start_times),
         given.rotors,
         given.omegas,
         list(given.laws),
@@ -266,6 +269,7 @@ def _given(
     return Ensemble(
         shape_of(bodies, state, torque.shape if torque else ()),
         mapped_objects(lambda one: _ruling_inertia(one, held), bodies),
+        np.array(state.time),
         as_coefficients(state.rotor._data, "the rotor", float),
         state.omega_body.components,
         state.position.components,

@@ -34,7 +34,7 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
             "evaluations": proof.evaluations,
             "error_estimate": proof.error_estimate,
             "rotor_norm_drift": proof.norm_drift,
-            "duration": float(scene.times[-1]),
+            "duration": float(scene.elapsed[-1]),
             "samples": len(scene.times),
             "drift_bound": scene.drift_bound,
             # One by one: a maximum may forget what is not a number.

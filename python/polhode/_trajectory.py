@@ -195,7 +195,8 @@ class Trajectory:
     def at(self, t: Any) -> State:
         """Return the state at any time t in s between the first and the last; an array gives a batch.
 
-        The first and the last are those of the output times, of the start at time 0 and of the events.
+        The first and the last are those of the output times, of the start and of the events. The time of the
+        state is t.
 
         In closed form where the motion has one, else by the same method and the same steps from the nearest
         output time before, so that it is as accurate as the states at the output times. A ValueError outside,
@@ -215,10 +216,27 @@ class Trajectory:
             bivector(found.omega_body.components.reshape(*shape, 3)),
             vector(found.position.components.reshape(*shape, 3)),
             vector(found.velocity.components.reshape(*shape, 3)),
+            time=times,
+        )
+
+    @property
+    def final(self) -> State:
+        """The state at the last output time, from which `simulate` goes on; of a batch, those of all bodies.
+
+        A ValueError where there are no output times. An event that ended the motion lies after it.
+        """
+        if not len(self.time):
+            raise ValueError("there is no last state: the motion has no output times")
+        return State(
+            Rotor._from_rows(np.ascontiguousarray(self.rotor.components[..., -1, :])),
+            bivector(self.omega_body.components[..., -1, :]),
+            vector(self.position.components[..., -1, :]),
+            vector(self.velocity.components[..., -1, :]),
+            time=float(self.time[-1]),
         )
 
     def drifts(self) -> dict[str, Array]:
-        """Return each conserved quantity's change since time 0, relative as in the certificate, (n,) each.
+        """Return each conserved quantity's change since the start, relative as in the certificate, (n,) each.
 
         Of one body; a ValueError for a batch.
         """
@@ -338,18 +356,24 @@ class Trajectory:
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """The uniform motion of centres of mass: places and velocities at time 0, (*shape, 3)."""
+    """The uniform motion of centres of mass from their starts: times (*shape), the others (*shape, 3)."""
 
+    start_times: Array
     places: Array
     velocities: Array
 
     def __getitem__(self, index: tuple[Any, ...]) -> Drift:
         rest: tuple[Any, ...] = (slice(None),) if any(part is Ellipsis for part in index) else ()
-        return Drift(self.places[(*index, *rest)], self.velocities[(*index, *rest)])
+        return Drift(
+            np.asarray(self.start_times[index]),
+            self.places[(*index, *rest)],
+            self.velocities[(*index, *rest)],
+        )
 
     def position(self, times: Array) -> Multivector:
         """Places at times (n,), vectors of batch (*shape, n)."""
-        return vector(self.places[..., np.newaxis, :] + self._rates(times) * times[:, np.newaxis])
+        elapsed = (times - self.start_times[..., np.newaxis])[..., np.newaxis]
+        return vector(self.places[..., np.newaxis, :] + self._rates(times) * elapsed)
 
     def velocity(self, times: Array) -> Multivector:
         """The velocities, at each time the same."""

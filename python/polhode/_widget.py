@@ -41,7 +41,7 @@ def _state_of(numbers: dict[str, list[float]] | None, _: Any) -> State | None:
         return None
     rotor = Rotor.from_components(numbers["rotor"])
     place, velocity = vector(numbers["position"]), vector(numbers["velocity"])
-    return State(rotor, bivector(numbers["omega_body"]), place, velocity)
+    return State(rotor, bivector(numbers["omega_body"]), place, velocity, time=numbers["time"][0])
 
 
 class Viewer(anywidget.AnyWidget):

@@ -2,8 +2,9 @@
 
 Each is found to rounding by root finding along the motion, which is looked at every 0.2 rad that the body
 turns, at every step and in its middle, and where the values hint at a short visit to the other side. A
-quantity that only touches zero does not pass it, and one that is zero at time 0 has not passed it there. What
-changes much faster than the body turns, as a formula may, can pass zero unseen: a shorter `step` sees it.
+quantity that only touches zero does not pass it, and one that is zero at the start has not passed it there.
+What changes much faster than the body turns, as a formula may, can pass zero unseen: a shorter `step` sees
+it.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: 
         From 0 to π. The angle of an axis that only touches it, as at 0 and π, does not pass it.
     direction
         1: only where the axis comes nearer to `space` (the cosine rises), −1: only where it goes away, 0:
-        both. Of a motion that is followed back in time from 0, as it is followed.
+        both. Of a motion that is followed back in time from its start, as it is followed.
     terminal
         Whether the motion ends there: later output times are left out.
     """

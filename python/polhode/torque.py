@@ -15,8 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from polhode import _native
 from polhode._arrays import Shape, as_float, as_floats
 from polhode._batch import (
@@ -93,12 +91,12 @@ class Torque:
         """Whether a law holds the body at the origin of its axes, as `heavy` does."""
         return any(law.name == "heavy" for law in self.laws)
 
-    def at(self, inertia: Inertia | Body, state: State, t: float = 0.0) -> Multivector:
+    def at(self, inertia: Inertia | Body, state: State, t: float | None = None) -> Multivector:
         """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
 
         It is the right side of handout eq. (4.21), seen from the body, in N m: of a `gyrostat` what the
         wheel does as it is turned. The inertia is that about the centre of mass, or the fixed point if a
-        law holds the body; a `Body` is taken so.
+        law holds the body; a `Body` is taken so. The time t is in s, that of the state if it is left out.
         """
         if self.shape:
             raise ValueError(f"the torque must be that of a single body, got batch shape {self.shape}")
@@ -106,12 +104,10 @@ class Torque:
             inertia = inertia.inertia_about(0) if self.holds else inertia.inertia
         if not isinstance(inertia, Inertia):
             raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
+        if state.shape:
+            raise ValueError(f"the state must be a single one, got batch {state.shape}")
         rotor, omega = state.rotor.components, state.omega_body.components
-        if rotor.shape != (4,) or omega.shape != (3,):
-            raise ValueError(
-                f"the state must be a single one, got batch {np.broadcast_shapes(*_batches(state))}"
-            )
-        time = finite(as_float(t, "t"), "t")
+        time = finite(as_float(state.time if t is None else t, "t"), "t")
         return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
 
 
@@ -335,10 +331,6 @@ def _one_of(words: tuple[str, ...], value: str, name: str) -> str:
     if value not in words:
         raise ValueError(f"{name} is {value!r}, expected {' or '.join(map(repr, words))}")
     return value
-
-
-def _batches(state: State) -> tuple[tuple[int, ...], ...]:
-    return state.rotor.shape, state.omega_body.shape
 
 
 # --- how laws are shown

@@ -193,5 +193,6 @@ function state(row: Float64Array | null): Record<string, number[]> | null {
     omega_body: part(State.omegaBody, 3),
     position: part(State.position, 3),
     velocity: part(State.velocity, 3),
+    time: part(State.time, 1),
   };
 }

@@ -67,6 +67,7 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
         b: &[Lane<W>],
         out: &mut [Lane<W>],
     ) {
+        debug_assert!(W.is_multiple_of(N), "{W} rows by {N}");
         let (a, b, out) = (&a[..A], &b[..B], &mut out[..OUT]);
         let mut largest = 0;
         for i in 0..W / N {
@@ -114,18 +115,16 @@ where
 {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        match W {
-            16 => self.lanes::<BUILT_WITH_FMA, 16, W>(a, b, out),
-            _ => self.lanes::<BUILT_WITH_FMA, 32, W>(a, b, out),
+        if W < 32 {
+            self.lanes::<BUILT_WITH_FMA, W, W>(a, b, out)
+        } else {
+            self.lanes::<BUILT_WITH_FMA, 32, W>(a, b, out)
         }
     }
 
     #[inline(always)]
     fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
-        match W {
-            16 => self.lanes::<true, 16, W>(a, b, out),
-            _ => self.lanes::<true, 32, W>(a, b, out),
-        }
+        if W < 32 { self.lanes::<true, W, W>(a, b, out) } else { self.lanes::<true, 32, W>(a, b, out) }
     }
 }
 

@@ -32,7 +32,7 @@ fn states<'py>(
         }
         let horizon = horizons[usize::from(time > 0.0)];
         if time.abs() > horizon {
-            return Err(bad(SimulateError::BeyondHorizon { index, time, horizon }));
+            return Err(bad(SimulateError::BeyondHorizon { index, time, start: 0.0, horizon }));
         }
     }
     let (rotors, omegas) = (pool::array(py, &[times.len(), 4])?, pool::array(py, &[times.len(), 3])?);

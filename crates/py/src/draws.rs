@@ -48,6 +48,11 @@ impl Draws {
         self.ensemble.seed
     }
 
+    /// When all of them start, in s.
+    fn time(&self) -> f64 {
+        self.scene.time
+    }
+
     fn varied(&self) -> Vec<Varied> {
         let told = |varied: scene::Varied| match varied.spread {
             None => (varied.name, "alike", Vec::new(), ""),

@@ -22,17 +22,19 @@ use pyo3::types::PyDict;
 /// times, body by body; and what is told of the bodies.
 type Told<'py> = PyResult<(Vec<Array<'py>>, Bound<'py, PyDict>)>;
 
-/// Simulates bodies of a batch shape. Inertias with their shape, rotors (…, 4), angular velocities (…, 3), laws, places and
+/// Simulates bodies of a batch shape. Inertias with their shape, start times (…), rotors (…, 4), angular velocities (…, 3), laws, places and
 /// velocities (…, 6) and masses (…), NaN where they are not known, broadcast to it. No batch is empty, nor are the times.
 #[pyfunction]
 #[pyo3(signature = (
-    shape, inertias, rotors, omegas, laws, centers, masses, forces, times, method, step, rtol, limits, threads, progress
+    shape, inertias, begins, rotors, omegas, laws, centers, masses, forces, times, method, step, rtol, limits, threads,
+    progress
 ))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn simulate_many<'py>(
     py: Python<'py>,
     shape: Vec<usize>,
     inertias: (Vec<PyRef<'py, Inertia>>, Vec<usize>),
+    begins: Rows<'py>,
     rotors: Rows<'py>,
     omegas: Rows<'py>,
     laws: Vec<Bound<'py, Law>>,
@@ -64,7 +66,7 @@ pub(crate) fn simulate_many<'py>(
     };
     let ensemble = Ensemble {
         inertias: ensemble::Rows::new(spread(inertias, &own_shape, &shape)),
-        starts: starts(&shape, &rotors, &omegas, &centers)?,
+        starts: starts(&shape, &begins, &rotors, &omegas, &centers)?,
         laws: laws.iter().map(each_law).collect(),
         masses: ensemble::Rows::new(spread(numbers(&masses)?.to_vec(), masses.shape(), &shape)),
         forces: forces.iter().map(|force| force.get().force.clone()).collect(),
@@ -102,8 +104,15 @@ pub(crate) fn simulate_many<'py>(
 }
 
 /// How the bodies start.
-fn starts(shape: &[usize], rotors: &Rows<'_>, omegas: &Rows<'_>, centers: &Rows<'_>) -> PyResult<Vec<Start>> {
+fn starts(
+    shape: &[usize],
+    begins: &Rows<'_>,
+    rotors: &Rows<'_>,
+    omegas: &Rows<'_>,
+    centers: &Rows<'_>,
+) -> PyResult<Vec<Start>> {
     let count = shape.iter().product();
+    let begins = spread(numbers(begins)?.to_vec(), begins.shape(), shape);
     let rotors = {
         let own = batch(rotors);
         let rows = numbers(rotors)?.as_chunks::<4>().0.iter().enumerate();
@@ -116,6 +125,7 @@ fn starts(shape: &[usize], rotors: &Rows<'_>, omegas: &Rows<'_>, centers: &Rows<
     let start = |body: usize| {
         let [x, y, z, u, v, w] = *one_of(&centers, body);
         Start {
+            time: *one_of(&begins, body),
             rotor: *one_of(&rotors, body),
             omega: Bivector(*one_of(&omegas, body)),
             center: Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) },

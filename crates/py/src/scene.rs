@@ -48,10 +48,11 @@ pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<
     result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
     result.set_item("position", line(py, position.0.to_vec()))?;
     result.set_item("velocity", line(py, velocity.0.to_vec()))?;
+    result.set_item("time", scene.time)?;
     result.set_item("laws", made)?;
     result.set_item("formulas", formulas)?;
     result.set_item("forces", forces)?;
-    result.set_item("times", line(py, scene.run.times()))?;
+    result.set_item("times", line(py, scene.times()))?;
     result.set_item("method", &scene.run.choice.method)?;
     result.set_item("step", scene.run.choice.step)?;
     result.set_item("rtol", scene.run.choice.rtol)?;

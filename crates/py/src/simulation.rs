@@ -156,13 +156,17 @@ pub(crate) fn method_of(name: &str) -> PyResult<(Option<Method>, bool)> {
 /// The longest step in s, how many steps a pass may take, and times at which steps end.
 pub(crate) type Limits = (Option<f64>, Option<f64>, Vec<f64>);
 
-/// Simulates. `center` is the place and velocity of the centre of mass, the mass NaN where it is not known.
+/// Simulates from a start time on. `center` is the place and velocity of the centre of mass, the mass NaN where it is
+/// not known.
 #[pyfunction]
-#[pyo3(signature = (inertia, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, limits, events, progress))]
+#[pyo3(signature = (
+    inertia, start, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, limits, events, progress
+))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     inertia: &Inertia,
+    start: f64,
     rotor_row: Rows<'py>,
     omega: Rows<'py>,
     laws: Vec<Bound<'py, Law>>,
@@ -190,7 +194,8 @@ pub(crate) fn simulate<'py>(
     let [x, y, z, u, v, w] = one(&center)?;
     let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
     let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques)
-        .with_center(center, mass, &forces);
+        .with_center(center, mass, &forces)
+        .starting_at(start);
     let times = numbers(&times)?;
     let (max_step, max_steps, breaks) = limits;
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };

@@ -48,6 +48,7 @@ fn formula(text: &str) -> Torque {
 
 fn ensemble(bodies: usize, laws: &[Torque]) -> Ensemble {
     let start = |i: usize| Start {
+        time: 0.0,
         rotor: Rotor::IDENTITY,
         omega: Bivector([0.01 * i as f64 / bodies as f64, 1.0, 0.01]),
         center: Center::default(),

@@ -1,15 +1,19 @@
 //! Motions that are known at any time without steps.
 
 use crate::damped::DampedTop;
+use crate::double_double::DoubleDouble;
 use crate::force::Center;
 use crate::free::FreeMotion;
 use crate::inertia::Inertia;
 use crate::lagrange::LagrangeTop;
 use crate::larmor::LarmorSphere;
 use crate::phase::{Gyrostat, Phase};
-use crate::runge_kutta::Carried;
+use crate::runge_kutta::{Carried, DOP853, RungeKutta};
 use crate::torque::Torque;
 use polhode_ga::{Bivector, Rotor, Vector};
+
+/// How far a body may turn in a step, in rad, whose error is rounding.
+const LONGEST_TURN: f64 = 0.1;
 
 /// A rotation in closed form, in principal axes.
 #[derive(Clone, Debug)]
@@ -26,6 +30,7 @@ pub(crate) struct ClosedForm {
     body: Gyrostat,
     rotation: Rotation,
     fall: Fall,
+    since: Since,
 }
 
 impl ClosedForm {
@@ -38,10 +43,10 @@ impl ClosedForm {
         fall: Fall,
     ) -> Option<ClosedForm> {
         let rotation = rotation(body.moments, rotor, omega, torques)?;
-        Some(ClosedForm { body, rotation, fall })
+        Some(ClosedForm { body, rotation, fall, since: Since::new(fall.time, body, torques) })
     }
 
-    /// How far in time, in s, the phase is known backwards and forwards.
+    /// How far from the start, in s, the phase is known backwards and forwards.
     pub fn horizons(&self) -> [f64; 2] {
         match &self.rotation {
             Rotation::Free(motion) => [motion.horizon(); 2],
@@ -53,14 +58,16 @@ impl ClosedForm {
 
     /// The point of the motion at a time in s.
     pub fn at(&self, time: f64) -> Carried {
+        // None of the laws depends on time.
+        let DoubleDouble { hi: elapsed, lo: rest } = self.since.elapsed(time);
         let (rotor, omega) = match &self.rotation {
-            Rotation::Free(motion) => motion.at(time),
-            Rotation::Lagrange(motion) => motion.at(time),
-            Rotation::Damped(motion) => motion.at(time),
-            Rotation::Larmor(motion) => motion.at(time),
+            Rotation::Free(motion) => motion.at(elapsed),
+            Rotation::Lagrange(motion) => motion.at(elapsed),
+            Rotation::Damped(motion) => motion.at(elapsed),
+            Rotation::Larmor(motion) => motion.at(elapsed),
         };
         let phase = Phase { rotor, momentum: self.body.momentum(omega), time };
-        Carried::new(phase, self.fall.at(time))
+        Carried::new(self.since.later(phase, rest), self.fall.at(time))
     }
 }
 
@@ -91,10 +98,47 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
     }
 }
 
+/// The time since the start of a motion in closed form, whose laws do not depend on time. A difference of two times is
+/// rounded, and what rounding takes of it is followed by a step.
+#[derive(Clone, Debug)]
+pub(crate) struct Since {
+    start: f64,
+    body: Gyrostat,
+    stepper: RungeKutta,
+}
+
+impl Since {
+    /// In principal axes; the start in s.
+    pub fn new(start: f64, body: Gyrostat, torques: &[Torque]) -> Since {
+        Since { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None, &DOP853) }
+    }
+
+    /// The time since the start, rounded, and what rounding took of it.
+    pub fn elapsed(&self, time: f64) -> DoubleDouble {
+        DoubleDouble::two_sum(time, -self.start)
+    }
+
+    /// The point that follows another, which is told the same time, by such a rest.
+    pub fn later(&self, phase: Phase, rest: f64) -> Phase {
+        if rest == 0.0 {
+            return phase;
+        }
+        let turn = self.body.omega(phase.momentum).norm() * rest.abs();
+        let count = (turn / LONGEST_TURN).ceil().max(1.0);
+        let mut at = Carried::new(phase, Center::default());
+        for _ in 0..count as u64 {
+            at = self.stepper.step(&at, rest / count, 0.0).map_or(at, |(next, _)| next);
+        }
+        Phase { time: phase.time, ..at.phase }
+    }
+}
+
 /// A centre of mass under a constant force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fall {
-    /// At time 0.
+    /// The time of the start, in s.
+    pub time: f64,
+    /// The centre of mass at the start.
     pub start: Center,
     /// In m/s².
     pub acceleration: Vector,
@@ -103,7 +147,8 @@ pub(crate) struct Fall {
 impl Fall {
     /// Where it is at a time in s.
     pub fn at(&self, time: f64) -> Center {
-        let Fall { start, acceleration } = *self;
+        let Fall { time: begin, start, acceleration } = *self;
+        let time = time - begin;
         // t² may overflow where no force needs it.
         let fallen = |a: f64| if a == 0.0 { 0.0 } else { 0.5 * a * time * time };
         Center {

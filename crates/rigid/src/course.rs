@@ -23,8 +23,8 @@ pub(crate) struct Course {
 }
 
 /// The earliest and the latest of times and of the start.
-pub(crate) fn span(times: &[f64], start: f64) -> (f64, f64) {
-    (times.first().map_or(start, |t| t.min(start)), times.last().map_or(start, |t| t.max(start)))
+pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
+    [times.first().map_or(start, |t| t.min(start)), times.last().map_or(start, |t| t.max(start))]
 }
 
 impl Default for Course {
@@ -48,7 +48,7 @@ pub(crate) fn samples(
     if options.step.is_some() {
         return Ok(Vec::new());
     }
-    let (first, last) = span(times, start.time);
+    let [first, last] = span(times, start.time);
     let both = |law: &Torque| -> Result<[Sampled; 2], SimulateError> {
         Ok([sampled(law, body, start, [first, start.time])?, sampled(law, body, start, [start.time, last])?])
     };

@@ -16,9 +16,10 @@ mod output;
 mod seat;
 mod steppers;
 
+use crate::course::span;
 use crate::force::{Center, Force};
 use crate::inertia::Inertia;
-use crate::simulate::{NO_CLOSED_FORM, Options, Problem, Progress, check_moments};
+use crate::simulate::{NO_CLOSED_FORM, Options, Problem, Progress, check_moments, check_start_time};
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
 use block::Crew;
@@ -57,9 +58,11 @@ impl<T> Rows<T> {
     }
 }
 
-/// How a body starts at time 0.
+/// How a body starts.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
+    /// In s.
+    pub time: f64,
     /// From body axes to space.
     pub rotor: Rotor,
     /// In body axes, rad/s.
@@ -99,16 +102,14 @@ impl Ensemble {
     pub fn problem(&self, body: usize) -> Problem {
         let start = &self.starts[body];
         let laws: Vec<Torque> = self.laws.iter().map(|law| law.of(body).clone()).collect();
-        Problem::new(self.inertias.of(body), start.rotor, start.omega, &laws).with_center(
-            start.center,
-            *self.masses.of(body),
-            &self.forces,
-        )
+        Problem::new(self.inertias.of(body), start.rotor, start.omega, &laws)
+            .with_center(start.center, *self.masses.of(body), &self.forces)
+            .starting_at(start.time)
     }
 
-    /// Follows all bodies to the times (s, not decreasing, of either sign), with options as for one body, by so many
-    /// threads. `progress` is asked now and then by the calling thread; at false all ends with
-    /// [`SimulateError::Interrupted`]. An error for what none of the bodies could be followed with.
+    /// Follows all bodies to the times (s, not decreasing; those before a body's start are reached backwards), with
+    /// options as for one body, by so many threads. `progress` is asked now and then by the calling thread; at false all
+    /// ends with [`SimulateError::Interrupted`]. An error for what none of the bodies could be followed with.
     ///
     /// # Panics
     /// If numbers of rows do not fit together.
@@ -130,11 +131,13 @@ impl Ensemble {
     /// What is wrong for all bodies alike.
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
         options.check(times)?;
+        self.starts.iter().try_for_each(|start| check_start_time(start.time))?;
         let Some(step) = options.step else { return Ok(()) };
         if options.exact {
             return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
         }
-        let span = times.last().map_or(0.0, |t| t.max(0.0)) - times.first().map_or(0.0, |t| t.min(0.0));
+        let span = self.starts.iter().map(|start| span(times, start.time)).map(|[a, b]| b - a);
+        let span = span.fold(0.0, f64::max);
         let steps = span / step + times.len() as f64;
         let limit = options.most_steps();
         if steps > limit {

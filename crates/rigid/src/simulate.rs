@@ -21,11 +21,13 @@ pub use crate::walk::Progress;
 use crate::walk::{Pace, Pass, Walker, is_finite};
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// What to solve: a body and its state at time 0. Kept in principal axes.
+/// What to solve: a body and its state at the start, time 0 unless another is given. Kept in principal axes.
 #[derive(Clone, Debug)]
 pub struct Problem {
     frame: Rotor,
     body: Gyrostat,
+    /// Of the start, in s.
+    time: f64,
     rotor: Rotor,
     omega: Bivector,
     torques: Vec<Torque>,
@@ -127,14 +129,33 @@ pub struct States {
     pub centers: Vec<Center>,
 }
 
-/// Times must not lie beyond the horizons, backwards and forwards, of an exact motion.
+/// Times must not lie beyond the horizons, backwards and forwards, of an exact motion that starts at time 0.
 pub fn check_horizons(times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
-    let horizon = |time: f64| horizons[usize::from(time > 0.0)];
-    match times.iter().position(|&t| t.abs() > horizon(t)) {
+    check_horizons_from(0.0, times, horizons)
+}
+
+/// The same for a motion that starts at another time.
+pub(crate) fn check_horizons_from(
+    start: f64,
+    times: &[f64],
+    horizons: [f64; 2],
+) -> Result<(), SimulateError> {
+    let horizon = |elapsed: f64| horizons[usize::from(elapsed > 0.0)];
+    match times.iter().position(|&t| (t - start).abs() > horizon(t - start)) {
         Some(index) => {
-            Err(SimulateError::BeyondHorizon { index, time: times[index], horizon: horizon(times[index]) })
+            let elapsed = times[index] - start;
+            Err(SimulateError::BeyondHorizon { index, time: times[index], start, horizon: horizon(elapsed) })
         }
         None => Ok(()),
+    }
+}
+
+/// The start must have a time.
+pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(SimulateError::BadValue { what: "the time of the start", value })
     }
 }
 
@@ -175,6 +196,7 @@ impl Problem {
         Problem {
             frame,
             body: Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) },
+            time: 0.0,
             rotor: rotor * frame,
             omega: frame.reverse().apply_bivector(omega),
             torques,
@@ -182,6 +204,13 @@ impl Problem {
             mass: f64::NAN,
             translation: None,
         }
+    }
+
+    /// The same from another start time, in s. Laws that depend on time, output times and events count from time 0
+    /// all the same.
+    pub fn starting_at(mut self, time: f64) -> Problem {
+        self.time = time;
+        self
     }
 
     /// The same with the centre of mass at a place in space, and forces, with body components in body axes, on a mass
@@ -194,7 +223,7 @@ impl Problem {
         self
     }
 
-    /// The motion at `times` (s, not decreasing, of either sign); the state given is that at time 0.
+    /// The motion at `times` (s, not decreasing); those before the start are reached backwards.
     ///
     /// Exact where there is a closed form, if nothing else is asked for. With no fixed step, runs with ever shorter steps
     /// until two of them agree within the tolerance in the rotor (of size 1) and in the angular velocity relative to its
@@ -249,7 +278,7 @@ impl Problem {
         let translation = self.translation.clone().filter(|_| fall.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
-                check_horizons(times, closed.horizons())?;
+                check_horizons_from(self.time, times, closed.horizons())?;
                 (Engine::ClosedForm(closed), "exact")
             }
             None => (
@@ -258,7 +287,7 @@ impl Problem {
             ),
         };
         let rate = self.rate();
-        let longest = times.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+        let longest = times.iter().fold(0.0, |m: f64, t| m.max((t - self.time).abs()));
         let long = |turn: f64| {
             Pace::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(course.longest))
         };
@@ -328,8 +357,8 @@ impl Problem {
     /// Which laws change too fast for fixed steps.
     fn aliased(&self, times: &[f64], step: f64) -> Vec<String> {
         let start = self.start().phase;
-        let (first, last) = span(times, start.time);
-        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, [first, last], step);
+        let span = span(times, start.time);
+        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, span, step);
         self.torques.iter().filter(is_aliased).map(|law| aliasing(law, step)).collect()
     }
 
@@ -374,6 +403,7 @@ impl Problem {
             breaks: &course.breaks,
             events,
             fall: self.fall(),
+            origin: self.time,
             mass: self.mass,
             number,
             progress,
@@ -403,7 +433,7 @@ impl Problem {
     fn fall(&self) -> Option<Fall> {
         let start = self.center;
         let Some(translation) = &self.translation else {
-            return Some(Fall { start, acceleration: Vector::default() });
+            return Some(Fall { time: self.time, start, acceleration: Vector::default() });
         };
         let constant = translation.forces.iter().map(|force| match force {
             Force::Constant(force) => Some(*force),
@@ -411,16 +441,17 @@ impl Problem {
         });
         let sum: Option<Vec<Vector>> = constant.collect();
         let sum = sum?.into_iter().fold(Vector::default(), |sum, force| sum + force);
-        Some(Fall { start, acceleration: sum / translation.mass })
+        Some(Fall { time: self.time, start, acceleration: sum / translation.mass })
     }
 
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
         options.check(times)?;
+        check_start_time(self.time)?;
         check_body(&self.body, self.omega, &self.torques)
     }
 
     fn start(&self) -> Carried {
-        let phase = Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: 0.0 };
+        let phase = Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: self.time };
         Carried::new(phase, self.center)
     }
 
@@ -466,8 +497,8 @@ impl Motion {
         self.problem.states(&states)
     }
 
-    /// The motion at any times between the first and the last, 0 and the events included: by the same method and the same steps from the
-    /// nearest output time before.
+    /// The motion at any times between the first and the last, the start and the events included: by the same method
+    /// and the same steps from the nearest output time before.
     pub fn at(
         &self,
         times: &[f64],
@@ -475,8 +506,9 @@ impl Motion {
     ) -> Result<States, SimulateError> {
         // A motion that an event ends is known up to there.
         let known = self.states.iter().chain(self.events.iter().map(|happened| &happened.at));
-        let (first, last) =
-            known.fold((0.0, 0.0), |(a, b): (f64, f64), s| (a.min(s.phase.time), b.max(s.phase.time)));
+        let (first, last) = known.fold((self.problem.time, self.problem.time), |(a, b): (f64, f64), s| {
+            (a.min(s.phase.time), b.max(s.phase.time))
+        });
         if let Some(index) = times.iter().position(|t| !(first..=last).contains(t)) {
             return Err(SimulateError::OutsideMotion { index, time: times[index], first, last });
         }
@@ -502,7 +534,7 @@ impl Motion {
         Ok(self.problem.states(&found))
     }
 
-    /// How far in time, in s, an exact motion is known backwards and forwards; none for one that was stepped.
+    /// How far from the start, in s, an exact motion is known backwards and forwards; none for one that was stepped.
     pub fn horizons(&self) -> Option<[f64; 2]> {
         match &self.engine {
             Engine::ClosedForm(closed) => Some(closed.horizons()),
@@ -513,22 +545,22 @@ impl Motion {
     /// An exact motion at any times within its horizons; none for one that was stepped.
     pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
         let Engine::ClosedForm(closed) = &self.engine else { return None };
-        let known = check_horizons(times, closed.horizons());
+        let known = check_horizons_from(self.problem.time, times, closed.horizons());
         Some(known.map(|()| {
             let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
             self.problem.states(&states)
         }))
     }
 
-    /// The output time nearest to a time on the way from 0; none if that is 0 itself.
+    /// The output time nearest to a time on the way from the start; none if that is the start itself.
     fn nearest(&self, time: f64) -> Option<usize> {
-        let at = |k: usize| self.states[k].phase.time;
-        let k = if time >= 0.0 {
-            self.states.partition_point(|s| s.phase.time <= time).checked_sub(1).filter(|&k| at(k) >= 0.0)
+        let (start, at) = (self.problem.time, |k: usize| self.states[k].phase.time);
+        let k = if time >= start {
+            self.states.partition_point(|s| s.phase.time <= time).checked_sub(1).filter(|&k| at(k) >= start)
         } else {
             Some(self.states.partition_point(|s| s.phase.time < time))
-                .filter(|&k| k < self.states.len() && at(k) <= 0.0)
+                .filter(|&k| k < self.states.len() && at(k) <= start)
         };
-        k.filter(|&k| at(k) != 0.0)
+        k.filter(|&k| at(k) != start)
     }
 }

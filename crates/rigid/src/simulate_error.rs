@@ -21,8 +21,8 @@ pub enum SimulateError {
     BadTime { index: usize, time: f64 },
     /// A step, tolerance, angular velocity or torque that is not usable.
     BadValue { what: &'static str, value: f64 },
-    /// The phase of an exact motion is not known so far from time 0.
-    BeyondHorizon { index: usize, time: f64, horizon: f64 },
+    /// The phase of an exact motion is not known so far from its start.
+    BeyondHorizon { index: usize, time: f64, start: f64, horizon: f64 },
     /// A motion is known between its first and last output times.
     OutsideMotion { index: usize, time: f64, first: f64, last: f64 },
     /// More steps than could be taken.
@@ -96,11 +96,16 @@ impl fmt::Display for SimulateError {
                     _ => "",
                 }
             ),
-            SimulateError::BeyondHorizon { index, time, horizon } => write!(
-                f,
-                "times[{index}] = {time:e} s lies beyond {horizon:.1e} s, where the phase of this rotation is no longer \
-                 known to rounding; take times nearer to 0"
-            ),
+            SimulateError::BeyondHorizon { index, time, start, horizon } => {
+                let from =
+                    if *start == 0.0 { String::new() } else { format!(" from the start at {start} s") };
+                let near = if *start == 0.0 { "0" } else { "the start" };
+                write!(
+                    f,
+                    "times[{index}] = {time:e} s lies beyond {horizon:.1e} s{from}, where the phase of this rotation is \
+                     no longer known to rounding; take times nearer to {near}"
+                )
+            }
             SimulateError::OutsideMotion { index, time, first, last } => write!(
                 f,
                 "times[{index}] = {time} lies outside the motion, which was computed from {first} s to {last} s; simulate it \

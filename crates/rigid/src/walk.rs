@@ -125,6 +125,8 @@ pub(crate) struct Walker<'a> {
     pub events: &'a [Event],
     /// The motion of the centre of mass, where its acceleration is constant.
     pub fall: Option<Fall>,
+    /// The start of the motion, in s.
+    pub origin: f64,
     /// In kg; NaN where nobody said it.
     pub mass: f64,
     pub number: u32,
@@ -397,7 +399,9 @@ impl Walker<'_> {
             let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
             let time = root((low, high), (at_low, at_high), least, &mut value)?;
             // A zero at the start that rounding has moved off it.
-            if walk.at.phase.time != 0.0 || time.abs() > ROUNDING_OF_START * (high - low).abs() {
+            let since = (time - self.origin).abs();
+            let rounding = ROUNDING_OF_START * (high - low).abs() + 4.0 * f64::EPSILON * self.origin.abs();
+            if walk.at.phase.time != self.origin || since > rounding {
                 times.push((direction, time));
             }
         }

@@ -34,6 +34,7 @@ fn bodies(count: usize) -> Vec<Inertia> {
 
 fn starts(count: usize) -> Vec<Start> {
     let start = |i: usize| Start {
+        time: 0.0,
         rotor: Rotor::from_components([1.0, (i as f64).sin(), 0.3, (2.0 * i as f64).cos()]).unwrap(),
         omega: Bivector([0.3 + 0.01 * i as f64, 1.0, (i as f64).cos()]),
         center: Center { position: Vector([1.0, 0.0, 0.0]), velocity: Vector([0.0, i as f64, 0.0]) },

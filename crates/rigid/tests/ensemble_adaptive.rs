@@ -69,6 +69,7 @@ fn bodies(count: usize, laws: Vec<Torque>) -> Ensemble {
             [[moments[0], off[0], off[1]], [off[0], moments[1], off[2]], [off[1], off[2], moments[2]]];
         inertias.push(Inertia::from_matrix(matrix).unwrap());
         starts.push(Start {
+            time: 0.0,
             rotor: Rotor::from_components([1.0, next(), next(), next()]).unwrap(),
             omega: Bivector([next(), next(), next()]),
             center: Center {
@@ -347,6 +348,7 @@ fn references_are_met() {
     for time in [0.5, 1.0, 5.0, 10.0, 30.0, 40.0, 50.0, 100.0] {
         let here: Vec<&Known> = known.iter().filter(|known| known.time == time).collect();
         let start = |k: &&Known| Start {
+            time: 0.0,
             rotor: Rotor::from_components(numbers(k.case, "R0").try_into().unwrap()).unwrap(),
             omega: Bivector(three(&numbers(k.case, "omega0"))),
             center: Center::default(),

@@ -107,7 +107,7 @@ fn inertia(body: usize) -> Inertia {
 }
 
 fn start(body: usize) -> Start {
-    Start { rotor: rotor(body, 5), omega: Bivector(three(body, 13)), center: Center::default() }
+    Start { time: 0.0, rotor: rotor(body, 5), omega: Bivector(three(body, 13)), center: Center::default() }
 }
 
 /// The bodies of these numbers, with their own laws of some kinds or those of body 0.

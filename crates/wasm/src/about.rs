@@ -43,6 +43,7 @@ pub fn about(of: &Opened) -> Json {
             Json::Object(vec![
                 ("rotor", numbers(&scene.attitude.components())),
                 ("omega_body", numbers(&scene.omega_body().0)),
+                ("time", scene.time.into()),
             ]),
         ),
         ("duration", scene.run.duration.into()),

@@ -15,8 +15,10 @@ const FRAMES: usize = 241;
 pub enum Crowd {
     /// Known at any time.
     Exact(Vec<Motion>),
-    /// Rotors, frame by frame, at even times from 0 to a duration; NaN where a body could not be followed.
+    /// Rotors, frame by frame, at even times from the start on for a duration; NaN where a body could not be followed.
     Stepped {
+        /// In s.
+        start: f64,
         /// In s.
         duration: f64,
         /// Bodies by frames.
@@ -35,6 +37,7 @@ impl Crowd {
             ensemble.draw(&of.scene, (&of.body, &of.laws), 0..count).map_err(|error| error.to_string())?;
         let starts = drawn.rotors.iter().zip(&drawn.omegas).zip(&drawn.centers);
         let starts = starts.map(|((rotor, omega), [x, y, z, u, v, w])| Start {
+            time: of.scene.time,
             rotor: Rotor::from_unit_components(*rotor),
             omega: Bivector(*omega),
             center: Center { position: Vector([*x, *y, *z]), velocity: Vector([*u, *v, *w]) },
@@ -49,7 +52,8 @@ impl Crowd {
         };
         if of.motion.horizons().is_some() {
             let options = of.scene.options();
-            let follow = |body| bodies.problem(body).simulate(&[0.0], options.clone(), &mut |_| go_on());
+            let times = [of.scene.time];
+            let follow = |body| bodies.problem(body).simulate(&times, options.clone(), &mut |_| go_on());
             let motions: Result<Vec<Motion>, _> = (0..count).map(follow).collect();
             return motions.map(Crowd::Exact).map_err(|error| error.to_string());
         }
@@ -59,8 +63,9 @@ impl Crowd {
     /// One by one: a browser has no lanes in which many would be quicker. Those for which there is no time left are not
     /// shown.
     fn stepped(bodies: &Ensemble, of: &Opened, go_on: GoOn) -> Crowd {
-        let duration = of.scene.run.duration;
-        let times: Vec<f64> = (0..FRAMES).map(|k| duration * k as f64 / (FRAMES - 1) as f64).collect();
+        let (start, duration) = (of.scene.time, of.scene.run.duration);
+        let times: Vec<f64> =
+            (0..FRAMES).map(|k| start + duration * k as f64 / (FRAMES - 1) as f64).collect();
         let mut rotors = Vec::new();
         for body in 0..bodies.starts.len() {
             match bodies.problem(body).simulate(&times, of.scene.options(), &mut |_| go_on()) {
@@ -69,15 +74,15 @@ impl Crowd {
                 Err(_) => rotors.extend([[f64::NAN; 4]; FRAMES]),
             }
         }
-        Crowd::Stepped { duration, rotors }
+        Crowd::Stepped { start, duration, rotors }
     }
 
     /// The rotors at a time. Those of stepped bodies turn evenly between frames, which is for looking only.
     pub fn at(&self, time: f64) -> Vec<[f64; 4]> {
         match self {
             Crowd::Exact(motions) => motions.iter().map(|motion| exactly(motion, time)).collect(),
-            Crowd::Stepped { duration, rotors } => {
-                let frame = (time / duration).clamp(0.0, 1.0) * (FRAMES - 1) as f64;
+            Crowd::Stepped { start, duration, rotors } => {
+                let frame = ((time - start) / duration).clamp(0.0, 1.0) * (FRAMES - 1) as f64;
                 let (k, part) = ((frame as usize).min(FRAMES - 2), frame - frame.floor());
                 let part = if frame as usize > k { 1.0 } else { part };
                 rotors.chunks_exact(FRAMES).map(|body| turned(body[k], body[k + 1], part)).collect()

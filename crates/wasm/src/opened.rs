@@ -51,7 +51,7 @@ impl Opened {
         // `build_with` has read it without an error.
         let mesh = scene.mesh_with(&source).and_then(Result::ok).map(|mesh| mesh.moved(scene.shift()));
         let problem = scene.problem(&body, &laws);
-        let motion = problem.simulate(&scene.run.times(), scene.options(), &mut |_: Progress| go_on());
+        let motion = problem.simulate(&scene.times(), scene.options(), &mut |_: Progress| go_on());
         let motion = motion.map_err(|error| match error {
             SimulateError::Interrupted => "this motion takes too long to follow in the page. Shorten [run] duration or \
                                            loosen [run] rtol; or follow it with `polhode run` or `polhode view`"

@@ -40,6 +40,25 @@ fn stepped_motions_are_known_for_their_run() {
     assert!(error.contains("times[0] = 3 lies outside the motion"), "{error}");
 }
 
+/// A scene that starts late: the times of its states, and of its bodies, are those of its laws.
+#[test]
+fn a_late_scene_is_known_from_its_start_on() {
+    let late = DAMPED
+        .replace("[torque]\n", "time = 5\n[torque]\n")
+        .replace("viscous_damping = 0.5", "torque_body = 'sin(t) e1e2'");
+    let of = opened(&late);
+    assert!(about(&of).to_string().contains(r#""time":5.0"#));
+    let rows = of.states(&[5.0, 7.0]).unwrap();
+    assert_eq!(rows[0][5..8], [0.1, 1.0, 0.2]);
+    assert!(of.states(&[4.0]).unwrap_err().contains("computed from 5 s to 7 s"));
+    let swarm =
+        opened(&format!("{late}{}", SWARM.replace("attitude = 'uniform'\n", "").replace("0.1", "1e-12")));
+    for (time, row) in [5.0, 7.0].into_iter().zip(&rows) {
+        let rotor = swarm.bodies(time, 1, &mut || true).unwrap()[0];
+        assert!((0..4).all(|k| (rotor[k] - row[1 + k]).abs() < 1e-8), "{time}: {rotor:?}");
+    }
+}
+
 #[test]
 fn a_motion_that_takes_too_long_is_given_up() {
     let long = DAMPED.replace("duration = 2", "duration = 1e6");

@@ -38,8 +38,9 @@ def advance(
     *,
     steps: int,
     kernel: bool | None = None,
+    start_time: Any = 0.0,
 ) -> tuple[Array, Array]:
-    """Return rotors (..., 4) and angular velocities (..., 3) after so many equal steps from 0 to a time.
+    """Return rotors (..., 4) and angular velocities (..., 3) after so many equal steps to a time.
 
     What `simulate` gives for this one time, for large ensembles: where JAX runs on a GPU, in one kernel that
     keeps each body on the chip over all steps. There, too, it is differentiated: the value comes from the
@@ -57,6 +58,8 @@ def advance(
     kernel
         Whether to use the kernel; True elsewhere than on a GPU runs it in Pallas' interpreter, for tests.
         None: on a GPU, for the laws that it has.
+    start_time
+        When the bodies are there, in s; one for all of them.
     """
     if not isinstance(steps, int) or steps < 1:
         raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
@@ -66,21 +69,22 @@ def advance(
         raise ValueError("the kernel has no tables, formulas and functions for a torque; take simulate")
     if kernel is None:
         kernel = fits and jax.default_backend() == "gpu"
-    end = jnp.asarray(time, given.rotor.dtype)
+    span = jnp.stack([jnp.asarray(t, given.rotor.dtype) for t in (start_time, time)])
     if kernel:
-        return given.in_body_axes(*_advanced(method, steps, given, force, end))
-    return given.in_body_axes(*_scanned(method, steps, given, force, end))
+        return given.in_body_axes(*_advanced(method, steps, given, force, span))
+    return given.in_body_axes(*_scanned(method, steps, given, force, span))
 
 
-def _scanned(method: str, steps: int, given: Start, torque: Torque, time: Array) -> tuple[Array, Array]:
+def _scanned(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
     """The same by a loop of whole batches."""
-    found = compiled(given, torque, time[None], np.array([steps]), method=method, most=steps, even=True)
+    counts = np.array([steps])
+    found = compiled(given, torque, span[1:], counts, span[0], method=method, most=steps, even=True)
     return found[0][..., 1, :], found[1][..., 1, :]
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0, 1))
 @partial(jax.jit, static_argnums=(0, 1))
-def _advanced(method: str, steps: int, given: Start, torque: Torque, time: Array) -> tuple[Array, Array]:
+def _advanced(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
     """By the kernel."""
     dtype = given.rotor.dtype
     inputs = split(given.moments), normalized(split(given.rotor)), split(given.omega), torque
@@ -92,7 +96,7 @@ def _advanced(method: str, steps: int, given: Start, torque: Torque, time: Array
     # Copies of the last body fill the last block.
     rows = [jnp.pad(x, (0, padded - count), mode="edge") for x in rows]
     table = jnp.array(table_of(method), dtype)
-    found = _call(partial(_walk, method, steps, tree), rows, time, table)
+    found = _call(partial(_walk, method, steps, tree), rows, span, table)
     rotors, omegas = (
         joined(tuple(x[:count].reshape(batch) for x in part)) for part in (found[:4], found[4:])
     )
@@ -106,35 +110,36 @@ def _advanced_jvp(method: str, steps: int, primals: tuple[Any, ...], tangents: t
 
 
 def _walk(
-    method: str, steps: int, tree: Any, leaves: list[Array], time: Array, table: Array
+    method: str, steps: int, tree: Any, leaves: list[Array], begin: Array, end: Array, table: Array
 ) -> tuple[Array, ...]:
     """All steps of a block of bodies."""
     moments, rotor, omega, torque = jax.tree.unflatten(tree, leaves)
     moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, table)
-    point = moves.start(rotor, omega)
+    point = moves.start(rotor, omega, begin)
     fixed = moves.fixed(point)
 
     def one(i: Array, point: Any) -> Any:
-        share = (i + 1).astype(time.dtype) / steps
-        after = jnp.where(i + 1 == steps, time, time * share)
+        share = (i + 1).astype(end.dtype) / steps
+        after = jnp.where(i + 1 == steps, end, begin + (end - begin) * share)
         return moves.step(fixed, point, after - point.time)._replace(time=after)
 
     point = lax.fori_loop(0, steps, one, point)
     return (*point.rotor, *moves.omega(point))
 
 
-def _call(walk: Any, rows: list[Array], time: Array, table: Array) -> list[Array]:
+def _call(walk: Any, rows: list[Array], span: Array, table: Array) -> list[Array]:
     """Run it over the blocks, a program of the grid for each."""
     pallas = optional("jax.experimental.pallas", "jax", "the kernel of polhode.jax")
 
-    # The time, and what a method needs in its stages; of a length that is a power of two, as GPUs have it.
-    numbers = jnp.concatenate([table, time[None]])
+    # The times of the start and the end, and what a method needs in its stages; of a length that is a power
+    # of two, as GPUs have it.
+    numbers = jnp.concatenate([table, span])
     length = 1 << (numbers.size - 1).bit_length()
     numbers = jnp.pad(numbers, (0, length - numbers.size))
 
     def kernel(shared: Any, *refs: Any) -> None:
         ins, outs = refs[: len(rows)], refs[len(rows) :]
-        found = walk([ref[...] for ref in ins], shared[table.size], shared)
+        found = walk([ref[...] for ref in ins], shared[table.size], shared[table.size + 1], shared)
         for out, x in zip(outs, found, strict=True):
             out[...] = x
 

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 from polhode.jax._components import Four, Three, normalized, rotor_rate
 from polhode.jax._laws import Torque
-from polhode.jax._library import jnp
 from polhode.jax._phase import Gyrostat, Phase
 
 Array = Any
@@ -31,9 +30,9 @@ class RungeKutta:
     def __init__(self, body: Gyrostat, torque: Torque) -> None:
         self.body, self.torque = body, torque
 
-    def start(self, rotor: Four, omega: Three) -> Point:
-        """Return the point at time 0."""
-        return Point(rotor, omega, jnp.zeros((), rotor[0].dtype))
+    def start(self, rotor: Four, omega: Three, time: Array) -> Point:
+        """Return the point of the start."""
+        return Point(rotor, omega, time)
 
     def omega(self, point: Point) -> Three:
         """Return the angular velocity."""

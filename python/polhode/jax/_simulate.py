@@ -31,14 +31,15 @@ def simulate(
     *,
     step: float | None = None,
     steps: int | None = None,
+    start_time: Any = 0.0,
 ) -> tuple[Array, Array]:
-    """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times, from time 0.
+    """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times.
 
     One program of JAX, for ``jit``, ``vmap``, ``jacfwd`` and ``grad``, by everything that is an array:
-    moments, start, parameters of the torque, and with `steps` the times. It takes the steps of
-    `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between output
-    times only the state is kept, so that ``grad`` needs memory for one state a step, and computes each step
-    twice.
+    moments, start, parameters of the torque, and with `steps` the times and the start time. It takes the
+    steps of `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between
+    output times only the state is kept, so that ``grad`` needs memory for one state a step, and computes
+    each step twice.
 
     Parameters
     ----------
@@ -46,12 +47,12 @@ def simulate(
         Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`,
         about its centre of mass, with `heavy` about the origin of its axes.
     rotor
-        From body axes to space at time 0: a `Rotor`, or its components (..., 4), which are divided by their
-        norm.
+        From body axes to space at the start: a `Rotor`, or its components (..., 4), which are divided by
+        their norm.
     omega_body
-        Angular velocity in body axes at time 0, a bivector or (..., 3), in rad/s. Batches broadcast.
+        Angular velocity in body axes at the start, a bivector or (..., 3), in rad/s. Batches broadcast.
     times
-        Output times (n,) in s, not decreasing, of either sign.
+        Output times (n,) in s, not decreasing; those before the start are reached by going backwards.
     torque
         A law of `polhode.jax.torque`, a sum of them, a law of `polhode.torque`, or a function as for
         `polhode.jax.torque.function`; None for free motion.
@@ -61,6 +62,9 @@ def simulate(
     step, steps
         The longest step in s, shortened a little so that steps end on the output times; or the number of
         steps from one output time to the next, with which the times may be traced.
+    start_time
+        When the body is there, in s, on the clock of `times` and of the torque, as ``State.time``; one for
+        all bodies.
 
     Raises
     ------
@@ -69,7 +73,7 @@ def simulate(
         what has no motion, such as a moment of 0, gives NaN.
     """
     given, force = prepared(inertia, rotor, omega_body, torque, method)
-    both = ways(times, step, steps, force)
+    begin, both = ways(times, step, steps, force, start_time)
     # A function may close over what is traced, which no cache of programs may hold.
     run = (
         simulate_principal
@@ -78,7 +82,7 @@ def simulate(
     )
     parts = []
     for way, backwards in both:
-        found = run(given, force, way.targets, way.counts, method=method, most=way.most, even=way.even)
+        found = run(given, force, way.targets, way.counts, begin, method=method, most=way.most, even=way.even)
         places = list(way.places[::-1] if backwards else way.places)
         parts.append([x[..., places, :] for x in found])
     return given.in_body_axes(*(jnp.concatenate(x, axis=-2) for x in zip(*parts, strict=True)))
@@ -105,14 +109,22 @@ def table_of(method: str) -> list[float]:
 
 
 def simulate_principal(
-    given: Start, torque: Torque, targets: Array, counts: Array, *, method: str, most: int, even: bool
+    given: Start,
+    torque: Torque,
+    targets: Array,
+    counts: Array,
+    begin: Array,
+    *,
+    method: str,
+    most: int,
+    even: bool,
 ) -> tuple[Array, Array]:
-    """Return the states at time 0 and at the targets, in principal axes."""
+    """Return the states at the time of the start and at the targets, in principal axes."""
     dtype = given.rotor.dtype
     torque = jax.tree.map(lambda x: jnp.asarray(x, dtype), torque)
     table = jnp.array(table_of(method), dtype)
     moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, table)
-    point = moves.start(*_batched(given, torque, moves.body))
+    point = moves.start(*_batched(given, torque, moves.body), jnp.asarray(begin, dtype))
     fixed = moves.fixed(point)
     # What a step computes on its way is computed again for a gradient, rather than kept for all steps.
     step = jax.checkpoint(partial(moves.step, fixed), prevent_cse=False)

@@ -126,9 +126,9 @@ class Splitting:
         self.kappa = (middle - small) / (middle * small), (middle - large) / (middle * large)
         self.turning = None if body.wheel is None else body.omega((0.0, 0.0, 0.0))
 
-    def start(self, rotor: Four, omega: Three) -> Phase:
-        """Return the point at time 0."""
-        return Phase(rotor, self.body.momentum(omega), jnp.zeros((), rotor[0].dtype))
+    def start(self, rotor: Four, omega: Three, time: Array) -> Phase:
+        """Return the point of the start."""
+        return Phase(rotor, self.body.momentum(omega), time)
 
     def omega(self, phase: Phase) -> Three:
         """Return the angular velocity."""

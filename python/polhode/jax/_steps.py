@@ -19,10 +19,10 @@ _MOST_STEPS = 1e8
 
 
 class Way(NamedTuple):
-    """Times to walk to, one after the other from 0, and the number of equal steps to each.
+    """Times to walk to, one after the other from the start, and the number of equal steps to each.
 
     `most` is the largest of these numbers, and `even` whether all are. `places` are those of the output times
-    among the times of the way, from 1; that of time 0 is 0.
+    among the times of the way, from 1; that of the start is 0.
     """
 
     targets: Array
@@ -32,33 +32,40 @@ class Way(NamedTuple):
     places: tuple[int, ...]
 
 
-def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> list[tuple[Way, bool]]:
-    """Return the ways from 0 to all times, back in time (True) and forth; to traced times one, forth."""
+def ways(
+    times: Any, step: float | None, steps: int | None, torque: Torque, start: Any
+) -> tuple[Any, list[tuple[Way, bool]]]:
+    """Return the start time and the ways from there to all times, back in time (True) and forth.
+
+    Where the start or the times are traced there is one way, forth.
+    """
     if (step is None) == (steps is None):
         raise ValueError("give either step, the longest step in s, or steps, their number between two times")
     if steps is not None and (not isinstance(steps, int) or steps < 1):
         raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
     tables = [law for law in torque.laws if isinstance(law, Table)]
-    if isinstance(times, jax.core.Tracer):
+    if isinstance(times, jax.core.Tracer) or isinstance(start, jax.core.Tracer):
         if steps is None:
             raise ValueError("with traced times the number of steps is not known; give steps instead of step")
         when = jnp.atleast_1d(times)
         counts = np.full(when.shape, steps)
-        return [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
-    when = np.atleast_1d(as_floats(times, "times"))
-    _check(when, tables)
+        return start, [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
+    when, begin = np.atleast_1d(as_floats(times, "times")), as_float(start, "start_time")
+    _check(when, tables, begin)
     length = _positive(step)
     breaks = np.unique([t for law in tables for t in law.times])
-    back, forth = when[when < 0][::-1], when[when >= 0]
-    found = [(_way(forth, breaks, length, steps), False)]
-    return [(_way(back, breaks, length, steps), True), *found[: forth.size]] if back.size else found
+    back, forth = when[when < begin][::-1], when[when >= begin]
+    found = [(_way(begin, forth, breaks, length, steps), False)]
+    if back.size:
+        found = [(_way(begin, back, breaks, length, steps), True), *found[: forth.size]]
+    return begin, found
 
 
-def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
+def _way(begin: float, when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
     """Stop wherever a law is not smooth."""
     targets: list[float] = []
     places = []
-    at = 0.0
+    at = begin
     for time in when.tolist():
         if time != at:
             between = breaks[(min(at, time) < breaks) & (breaks < max(at, time))].tolist()
@@ -67,7 +74,7 @@ def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
         places.append(len(targets))
     counts = np.full(len(targets), steps or 1)
     if step is not None:
-        spans = np.abs(np.diff(targets, prepend=0.0))
+        spans = np.abs(np.diff(targets, prepend=begin))
         wanted = np.maximum(np.ceil(spans / step), 1.0)
         if wanted.sum() > _MOST_STEPS:
             raise ValueError(
@@ -79,13 +86,15 @@ def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
     return Way(np.array(targets), counts, int(counts.max(initial=0)), even, tuple(places))
 
 
-def _check(when: Any, tables: list[Table]) -> None:
+def _check(when: Any, tables: list[Table], start: float) -> None:
+    if not np.isfinite(start):
+        raise ValueError(f"start_time is {start}; it must be finite")
     if when.ndim != 1:
         raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
     for index, time in enumerate(when.tolist()):
         if not np.isfinite(time) or (index and time < when[index - 1]):
             raise ValueError(f"times[{index}] = {time}; times must be finite and must not decrease")
-    first, last = min(0.0, when.min(initial=0.0)), max(0.0, when.max(initial=0.0))
+    first, last = when.min(initial=start), when.max(initial=start)
     for law in tables:
         rounding = 4 * np.finfo(float).eps * max(abs(law.times[0]), abs(law.times[-1]))
         if first < law.times[0] - rounding or last > law.times[-1] + rounding:

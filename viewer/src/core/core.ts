@@ -51,8 +51,8 @@ export const State = {
 export interface Motion {
   readonly about: About;
   /**
-   * Rows of states at times of any order. Exact motions know all times within `about.horizon`, others those from 0 to
-   * `about.duration`; a Problem for any other.
+   * Rows of states at times of any order. Exact motions know all times within `about.horizon` of the start, others
+   * those from the start on for `about.duration`; a Problem for any other.
    */
   states(times: ArrayLike<number>): Float64Array;
   /** The surface of a mesh body in body axes, m: vertices (n × 3) and triangles (m × 3); null for others. */
@@ -101,13 +101,13 @@ export interface About {
   /** What turns the body: the name of each law, and its formula or its arguments as text. */
   laws: { name: string; text: string }[];
   /** The initial state, as the scene says it. */
-  start: { rotor: Quadruple; omega_body: Triple };
+  start: { rotor: Quadruple; omega_body: Triple; time: number };
   duration: number;
   samples: number;
   /** `exact`, the name of a method of steps, or `recorded`. */
   method: string;
   exact: boolean;
-  /** Exact motions are known for times of at most this size; null where any will do. */
+  /** Exact motions are known so far from the start, s; null where any time will do. */
   horizon: number | null;
   steps: number;
   error_estimate: number | null;

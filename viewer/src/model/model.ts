@@ -112,7 +112,7 @@ export class Model {
       this.draft.value = null;
       this.base = scene;
       this.opened.value = this.about.value;
-      this.time.value = 0;
+      this.time.value = this.about.value?.start.time ?? 0;
       this.speed.value = usualSpeed(this.motion.value);
     });
   }
@@ -145,6 +145,11 @@ export class Model {
     if (!about || Number.isNaN(time)) return;
     const [first, last] = span(about);
     this.time.value = Math.min(Math.max(time, first), last);
+  }
+
+  /** Goes to the start of the motion. */
+  toStart(): void {
+    this.seek(this.about.value?.start.time ?? 0);
   }
 
   /** Lets `seconds` of the clock pass; a motion that is known up to its end starts again there. */
@@ -226,11 +231,17 @@ export class Model {
   }
 }
 
+/** The state at the start of a motion. */
+export function firstRow(motion: Motion): Float64Array {
+  return motion.states([motion.about.start.time]);
+}
+
 /** The times for which a motion is known. */
 export function span(about: About): [number, number] {
-  if (!about.exact) return [0, about.duration];
-  const horizon = about.horizon ?? Number.MAX_VALUE;
-  return [-horizon, horizon];
+  const start = about.start.time;
+  if (!about.exact) return [start, start + about.duration];
+  if (about.horizon === null) return [-Number.MAX_VALUE, Number.MAX_VALUE];
+  return [start - about.horizon, start + about.horizon];
 }
 
 /**
@@ -238,7 +249,7 @@ export function span(about: About): [number, number] {
  * times as fast where it would else take long to turn over.
  */
 function usualSpeed(motion: Motion | null): number {
-  const row = motion?.states([0]);
+  const row = motion && firstRow(motion);
   if (!motion || !row || row.length < ROW) return 1;
   const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
   const calm = rate > 0 ? (2 * Math.PI) / rate / 3 : motion.about.duration / 20;

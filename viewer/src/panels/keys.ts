@@ -83,7 +83,7 @@ function act(event: KeyboardEvent, host: HTMLElement, model: Model): boolean {
     " ": () => (model.playing.value = !model.playing.value),
     ArrowLeft: () => step(model, -many),
     ArrowRight: () => step(model, many),
-    Home: () => model.seek(0),
+    Home: () => model.toStart(),
     "[": () => faster(model, -1),
     "]": () => faster(model, 1),
     f: () => model.fit(),

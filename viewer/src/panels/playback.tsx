@@ -29,7 +29,7 @@ export function Playback({ model }: { model: Model }) {
             id="restart"
             aria-label="To the start"
             title="To the start (Home)"
-            onClick={() => model.seek(0)}
+            onClick={() => model.toStart()}
           >
             <Icon name="restart" />
           </button>
@@ -54,11 +54,12 @@ export function Playback({ model }: { model: Model }) {
  * duration, or any other that has the time.
  */
 function TimeSlider({ model, about }: { model: Model; about: About }) {
-  const first = useRef(0);
+  const start = about.start.time;
+  const first = useRef(start);
   const time = model.time.value;
   const length = about.duration;
   if (time < first.current || time > first.current + length)
-    first.current = Math.floor(time / length) * length;
+    first.current = start + Math.floor((time - start) / length) * length;
   return (
     <input
       id="time"

@@ -1,6 +1,6 @@
 import { useComputed } from "@preact/signals";
 import { State } from "../core/core.ts";
-import type { Model } from "../model/model.ts";
+import { firstRow, type Model } from "../model/model.ts";
 import { BLADES, Quantity, Symbol, Terms } from "./bivector.tsx";
 import { type Scale, scaleFor, significant, small } from "./format.ts";
 
@@ -9,7 +9,7 @@ const ROTOR: Scale = { factor: 1, decimals: 4, width: 6, power: "" };
 /** What the state is at the time shown. */
 export function Readout({ model }: { model: Model }) {
   // The scales are those of the start, so that digits keep their places while they change.
-  const start = useComputed(() => model.motion.value?.states([0]) ?? null);
+  const start = useComputed(() => model.motion.value && firstRow(model.motion.value));
   const row = model.row.value;
   const first = start.value;
   if (!row || !first) return null;

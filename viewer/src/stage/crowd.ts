@@ -45,7 +45,7 @@ export class Crowd implements Part {
   update({ time }: Instant): void {
     if (!this.bodies || !this.motion || time === this.time) return;
     this.time = time;
-    const rotors = this.rotors(this.motion, Math.max(time, 0));
+    const rotors = this.rotors(this.motion, Math.max(time, this.motion.about.start.time));
     const count = Math.min(rotors.length / 4, MOST);
     const [turn, place, whole] = [new Quaternion(), new Vector3(), new Vector3(1, 1, 1)];
     const matrix = new Matrix4();

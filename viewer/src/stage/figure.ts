@@ -1,6 +1,6 @@
 import { Quaternion, Vector3 } from "three";
 import { type About, type Motion, ROW, State } from "../core/core.ts";
-import { span } from "../model/model.ts";
+import { firstRow, span } from "../model/model.ts";
 import { equivalent, spinningTop, surfaceOf } from "./solids.ts";
 import { AXES, quaternion, vector } from "./rotor.ts";
 import type { Surface } from "./surface.ts";
@@ -32,7 +32,7 @@ export interface Figure {
 
 export function figureOf(motion: Motion): Figure {
   const about = motion.about;
-  const start = motion.states([0]);
+  const start = firstRow(motion);
   const rows = Math.hypot(...start.subarray(State.omegaBody, State.omegaBody + 3)) > 0 ? start : some(motion);
   const omega = largest(rows, State.omegaSpace);
   const momentum = largest(rows, State.momentumSpace);
@@ -119,7 +119,7 @@ function nearestAxis(omegaBody: Vector3): Vector3 {
 /** A few states over the time for which the motion is known. */
 function some(motion: Motion): Float64Array {
   const [first, last] = span(motion.about);
-  const from = Math.max(first, 0);
+  const from = Math.max(first, motion.about.start.time);
   const to = Math.min(last, from + motion.about.duration);
   return motion.states(Array.from({ length: 65 }, (_, k) => from + ((to - from) * k) / 64));
 }

@@ -135,7 +135,8 @@ function tailOf(figure: Figure): number {
 function resolved(figure: Figure, tail: number): boolean {
   const count = 600;
   const step = (3 * tail) / POINTS;
-  const times = Float64Array.from({ length: count }, (_, k) => Math.min(k * step, figure.about.duration));
+  const { start, duration } = figure.about;
+  const times = Float64Array.from({ length: count }, (_, k) => start.time + Math.min(k * step, duration));
   const path = traced(figure.motion.states(times), figure.traced);
   const [before, after] = [new Vector3(), new Vector3()];
   let bent = 0;
@@ -148,10 +149,11 @@ function resolved(figure: Figure, tail: number): boolean {
   return bent <= 0.02 * count;
 }
 
-/** Whether times from 0 on are known for so long. */
+/** Whether times from the start on are known for so long. */
 function within(figure: Figure, duration: number): boolean {
+  const { start } = figure.about;
   const [first, last] = span(figure.about);
-  return first <= 0 && duration <= last;
+  return first <= start.time && start.time + duration <= last;
 }
 
 /** The tips of a unit vector of the body in space. */
@@ -182,7 +184,8 @@ function taken(rows: Float64Array, at: number, scale: number): Float64Array {
 /** A closed polhode: near a saddle ω lingers, then hurries, so times are halved until points lie near each other. */
 function polhodeOf(figure: Figure, period: number): Float64Array {
   const near = 0.02;
-  let times = Float64Array.from({ length: 256 }, (_, k) => (period * k) / 256);
+  const start = figure.about.start.time;
+  let times = Float64Array.from({ length: 256 }, (_, k) => start + (period * k) / 256);
   let points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
   for (let halved = 0; halved < 12 && times.length < POINTS / 4; halved++) {
     const finer: number[] = [];
@@ -190,7 +193,7 @@ function polhodeOf(figure: Figure, period: number): Float64Array {
       const next = (k + 1) % times.length;
       finer.push(time);
       const gap = Math.hypot(...[0, 1, 2].map((i) => points[3 * next + i]! - points[3 * k + i]!));
-      if (gap > near) finer.push((time + (times[k + 1] ?? period)) / 2);
+      if (gap > near) finer.push((time + (times[k + 1] ?? start + period)) / 2);
     });
     if (finer.length === times.length) break;
     times = Float64Array.from(finer);

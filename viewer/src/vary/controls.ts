@@ -1,6 +1,6 @@
 import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { type About, State, type Triple } from "../core/core.ts";
-import type { Model } from "../model/model.ts";
+import { firstRow, type Model } from "../model/model.ts";
 import { type BodyChoice, bodyOf, bodyTable, spreadOf } from "./body.ts";
 import { type LawForm, type LawsChoice, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";
@@ -89,7 +89,8 @@ export class Controls {
     cancelAnimationFrame(this.frame);
     this.frame = 0;
     this.touched.clear();
-    const row = this.model.motion.peek()?.states([0]);
+    const motion = this.model.motion.peek();
+    const row = motion && firstRow(motion);
     const three = (at: number): Triple => [row![at]!, row![at + 1]!, row![at + 2]!];
     const moves =
       row && !about.held && row.subarray(State.position, State.velocity + 3).some((part) => part !== 0);

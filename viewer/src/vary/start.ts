@@ -11,6 +11,8 @@ export interface StartChoice {
   rotor: Quadruple;
   /** Of the centre of mass, where forces move it. */
   path: { position: Triple; velocity: Triple } | null;
+  /** s. */
+  time: number;
 }
 
 /** Ω_B: mostly in one plane, and off it by an angle, toward the next plane or the one after. */
@@ -35,7 +37,8 @@ export interface Attitude {
 const PLANES = ["e2∧e3", "e3∧e1", "e1∧e2"];
 
 export function startOf(about: About, path: StartChoice["path"]): StartChoice {
-  return { spin: spinOf(about.start.omega_body), attitude: null, rotor: about.start.rotor, path };
+  const { rotor, omega_body, time } = about.start;
+  return { spin: spinOf(omega_body), attitude: null, rotor, path, time };
 }
 
 function spinOf(omega: Triple): Spin {
@@ -62,11 +65,12 @@ export function attitudeOf([scalar, b1, b2, b3]: Quadruple): Attitude {
 
 /** The table `[initial]`, in the words of the handout: the core does the algebra. */
 export function startTable(start: StartChoice, rate: Unit): string {
-  const { spin, attitude, rotor, path } = start;
+  const { spin, attitude, rotor, path, time } = start;
   return table("initial", {
     attitude: attitude ? rotorFormula(attitude) : { rotor },
     spin: spinFormula(spin, rate),
     ...path,
+    ...(time !== 0 && { time }),
   });
 }
 

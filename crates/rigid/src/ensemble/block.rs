@@ -33,6 +33,9 @@ pub(super) const SIDE_BY_SIDE: usize = 16;
 /// How often a thread that has no more work tells how far the others are.
 const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
 
+/// How many groups of bodies that are stepped alike wait for more at a time.
+const MOST_WAITING: usize = 64;
+
 /// Parts of a body's way, for the count of what is done.
 const PARTS: f64 = 1024.0;
 
@@ -73,6 +76,8 @@ pub(super) struct Told {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plan {
     /// In s.
+    pub start: f64,
+    /// In s.
     pub step: f64,
     pub method: Method,
     /// About which axes a splitting turns them.
@@ -106,8 +111,8 @@ pub(super) struct Crew<'a> {
     ended: Condvar,
     /// The laws in principal axes, where all bodies share them and an inertia.
     shared: Option<Vec<Torque>>,
-    /// Those along time.
-    samples: OnceLock<Samples>,
+    /// Those along time, where all bodies start at one time too.
+    samples: Option<OnceLock<Samples>>,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -123,6 +128,7 @@ impl<'a> Crew<'a> {
     ) -> Crew<'a> {
         let each: Box<dyn Iterator<Item = Own<'a>> + Send + 'a> = Box::new(outputs.each(times.len().max(1)));
         let alike = ensemble.inertias.is_one() && ensemble.laws.iter().all(|law| law.is_one());
+        let one_clock = ensemble.starts.iter().all(|start| start.time == ensemble.starts[0].time);
         let frame = ensemble.inertias.of(0).principal_frame();
         let turned = || ensemble.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect();
         Crew {
@@ -136,7 +142,7 @@ impl<'a> Crew<'a> {
             running: Mutex::new(0),
             ended: Condvar::new(),
             shared: alike.then(turned),
-            samples: OnceLock::new(),
+            samples: (alike && one_clock).then(OnceLock::new),
         }
     }
 
@@ -197,6 +203,10 @@ impl<'a> Crew<'a> {
                 continue;
             };
             let place = waiting.iter().position(|(alike, _)| *alike == plan).unwrap_or_else(|| {
+                if waiting.len() == MOST_WAITING {
+                    let (plan, members) = waiting.remove(0);
+                    fastest(FixedSteps { crew: self, plan, members, progress });
+                }
                 waiting.push((plan, Vec::with_capacity(SIDE_BY_SIDE)));
                 waiting.len() - 1
             });
@@ -262,7 +272,7 @@ impl<'a> Crew<'a> {
             }
             _ => return None,
         };
-        Some(Plan { step, method, kind })
+        Some(Plan { start: self.ensemble.starts[body].time, step, method, kind })
     }
 
     /// How a body is followed without a step.
@@ -277,7 +287,8 @@ impl<'a> Crew<'a> {
         } else if torques.is_empty() {
             Way::Free
         } else {
-            let fall = Fall { start: Center::default(), acceleration: Vector::default() };
+            let (center, acceleration) = (Center::default(), Vector::default());
+            let fall = Fall { time: start.time, start: center, acceleration };
             let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
             if closed.is_some() || self.options.exact { Way::Alone } else { Way::Lanes }
         }
@@ -298,7 +309,8 @@ impl<'a> Crew<'a> {
         let torques = self.torques(body).into_owned();
         let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
         let omega = frame.reverse().apply_bivector(start.omega);
-        let start = Phase { rotor: start.rotor * frame, momentum: gyrostat.momentum(omega), time: 0.0 };
+        let (rotor, momentum) = (start.rotor * frame, gyrostat.momentum(omega));
+        let start = Phase { rotor, momentum, time: start.time };
         Member { body, frame, gyrostat, torques, omega, start, course: Course::default(), own }
     }
 
@@ -308,11 +320,12 @@ impl<'a> Crew<'a> {
         let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();
         let own;
         // They depend on the law alone, which the bodies may share.
-        let samples = if self.shared.is_some() {
-            self.samples.get_or_init(sample)
-        } else {
-            own = sample();
-            &own
+        let samples = match &self.samples {
+            Some(shared) => shared.get_or_init(sample),
+            None => {
+                own = sample();
+                &own
+            }
         };
         let mut course = Course::new(torques, samples, gyrostat, start, self.options);
         course.limit.reports_stiffness = self.options.method.is_none() && self.options.max_step.is_none();
@@ -341,20 +354,20 @@ impl<'a> Crew<'a> {
     /// Tells that a body could not be followed by a method; nothing is known of it.
     pub fn fail(&self, body: usize, own: &mut Own<'a>, method: &'static str, error: SimulateError) {
         (0..self.times.len()).for_each(|index| own.unknown(index));
-        let time = error.time().unwrap_or(0.0);
+        let time = error.time().unwrap_or(self.ensemble.starts[body].time);
         let certificate = Certificate { method, ..Certificate::default() };
         self.tell([Told { body, certificate, failure: Some((time, error)) }]);
     }
 
     /// Where the centre of mass of a body that only constant forces move is at a time.
     pub fn center(&self, body: usize, time: f64) -> Center {
-        let (start, mass) = (self.ensemble.starts[body].center, *self.ensemble.masses.of(body));
+        let (start, mass) = (&self.ensemble.starts[body], *self.ensemble.masses.of(body));
         let force = self.ensemble.forces.iter().fold(Vector::default(), |sum, force| match force {
             Force::Constant(force) => sum + *force,
             _ => sum,
         });
         let acceleration = if self.ensemble.forces.is_empty() { Vector::default() } else { force / mass };
-        Fall { start, acceleration }.at(time)
+        Fall { time: start.time, start: start.center, acceleration }.at(time)
     }
 
     pub fn tell(&self, told: impl IntoIterator<Item = Told>) {

@@ -2,11 +2,13 @@
 
 use super::block::{Crew, Member, Told};
 use crate::certificate::{Certificate, Watch, off_unit};
+use crate::closed_form::Since;
 use crate::free::FreeMotion;
 use crate::phase::Phase;
-use crate::simulate::check_horizons;
+use crate::simulate::check_horizons_from;
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
+use std::borrow::Cow;
 
 impl<'a> Crew<'a> {
     /// Writes the motion of a free body, the times side by side in lanes; its momentum and energy are those of the start.
@@ -14,21 +16,33 @@ impl<'a> Crew<'a> {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
         let method = "exact";
-        if let Err(error) = check_horizons(self.times, [motion.horizon(); 2]) {
+        if let Err(error) = check_horizons_from(start.time, self.times, [motion.horizon(); 2]) {
             return self.fail(body, own, method, error);
         }
-        motion.at_many(Threads::ONE, self.times, own.rotors, own.omegas);
+        let since = Since::new(start.time, gyrostat, &[]);
+        let elapsed: Cow<'_, [f64]> = match start.time {
+            0.0 => self.times.into(),
+            _ => self.times.iter().map(|&time| since.elapsed(time).hi).collect(),
+        };
+        motion.at_many(Threads::ONE, &elapsed, own.rotors, own.omegas);
         let momentum = start.rotor.apply_bivector(start.momentum);
         own.momenta.as_chunks_mut::<3>().0.fill(momentum.0);
         own.energies.fill(gyrostat.kinetic(start.momentum));
         let mut watch = Watch::new(gyrostat, &[], start);
         let mut norm_drift = 0.0_f64;
-        let states = own.rotors.as_chunks::<4>().0.iter().zip(own.omegas.as_chunks::<3>().0);
+        let states = own.rotors.as_chunks_mut::<4>().0.iter_mut().zip(own.omegas.as_chunks_mut::<3>().0);
         for (&time, (rotor, omega)) in self.times.iter().zip(states) {
-            let rotor = Rotor::from_unit_components(*rotor);
-            let omega = frame.reverse().apply_bivector(Bivector(*omega));
-            norm_drift = norm_drift.max(off_unit(rotor));
-            watch.look(&Phase { rotor: rotor * frame, momentum: gyrostat.momentum(omega), time });
+            let whole = Rotor::from_unit_components(*rotor);
+            let principal = frame.reverse().apply_bivector(Bivector(*omega));
+            let mut phase = Phase { rotor: whole * frame, momentum: gyrostat.momentum(principal), time };
+            let rest = since.elapsed(time).lo;
+            if rest != 0.0 {
+                phase = since.later(phase, rest);
+                *rotor = (phase.rotor * frame.reverse()).components();
+                *omega = frame.apply_bivector(gyrostat.omega(phase.momentum)).0;
+            }
+            norm_drift = norm_drift.max(off_unit(Rotor::from_unit_components(*rotor)));
+            watch.look(&phase);
         }
         for (index, &time) in self.times.iter().enumerate() {
             own.place(index, &self.center(body, time));

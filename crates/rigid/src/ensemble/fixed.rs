@@ -6,6 +6,7 @@ use super::laws::{Acting, Laws};
 use super::steppers::{Components, Kicks, Stepper, of};
 use crate::certificate::{Certificate, Watch, off_unit};
 use crate::classical::Bodies;
+use crate::course::span;
 use crate::force::Center;
 use crate::kicks::fixed_momentum;
 use crate::method::{Engine, Method};
@@ -59,7 +60,7 @@ impl Work for FixedSteps<'_, '_> {
 impl FixedSteps<'_, '_> {
     fn walk<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
         let FixedSteps { crew, plan, mut members, progress } = self;
-        let Plan { step, method, .. } = plan;
+        let Plan { start, step, method, .. } = plan;
         let times = crew.times;
         let mut watches: Vec<Watch> =
             members.iter().zip(torques).map(|(m, t)| Watch::new(m.gyrostat, t, m.start)).collect();
@@ -67,15 +68,15 @@ impl FixedSteps<'_, '_> {
         let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
         let breaks = breaks(torques, &crew.options.breaks);
-        let begin = times.first().map_or(0.0, |t| t.min(0.0));
-        let total = (times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
-        let early = times.partition_point(|&t| t < 0.0);
+        let [begin, end] = span(times, start);
+        let total = (end - begin).max(f64::MIN_POSITIVE);
+        let early = times.partition_point(|&t| t < start);
         let sides: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..early).rev(), &mut (early..times.len())];
         for (side, indices) in sides.into_iter().enumerate() {
             let mut state = stepper.start(&members);
             // A body that failed on one side of the start is followed on the other.
             let mut lost = [false; SIDE_BY_SIDE];
-            let mut time = 0.0;
+            let mut time = start;
             for index in indices {
                 for stretch in stretches(time, times[index], step, &breaks) {
                     longest = longest.max((stretch.to - stretch.from).abs() / stretch.count as f64);
@@ -95,7 +96,7 @@ impl FixedSteps<'_, '_> {
                             }
                         }
                         let gone = stretch.begin(last);
-                        let walked = if side == 0 { -gone } else { gone - begin };
+                        let walked = if side == 0 { start - gone } else { gone - begin };
                         crew.count(&mut so_far, walked / total, members.len());
                         if !crew.report(progress) {
                             return;
@@ -119,9 +120,9 @@ impl FixedSteps<'_, '_> {
         }
         crew.count(&mut so_far, 1.0, members.len());
         // Laws are of one kind for all bodies: the first ones show it.
-        let span = [begin, begin + total];
-        let (body, start) = (&members[0].gyrostat, &members[0].start);
-        let aliased = torques[0].iter().filter(|law| is_aliased(law, body, start, span, step));
+        let first = &members[0];
+        let is_aliased = |law: &&Torque| is_aliased(law, &first.gyrostat, &first.start, [begin, end], step);
+        let aliased = torques[0].iter().filter(is_aliased);
         let mut warnings: Vec<String> = aliased.map(|law| aliasing(law, step)).collect();
         let failures = failures.into_iter();
         let told = members.iter().zip(watches).zip(failures).zip(norm_drifts);

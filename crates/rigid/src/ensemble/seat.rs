@@ -3,7 +3,7 @@
 use super::block::{Crew, Member, Told};
 use crate::certificate::{Certificate, Watch, off_unit};
 use crate::converge::{Aim, Converged, Convergence, Order, Scales};
-use crate::course::Course;
+use crate::course::{Course, span};
 use crate::force::Center;
 use crate::method::{Method, ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
 use crate::noise::Noise;
@@ -66,7 +66,7 @@ impl<'a> Seat<'a> {
             least_rate,
             stride: Stride::new(first, longest),
             tolerance: aim.goal,
-            stop: 0.0,
+            stop: start.phase.time,
             so_far: 0,
         }
     }
@@ -94,7 +94,7 @@ impl<'a> Seat<'a> {
         fastest: &mut f64,
         times: &[f64],
     ) -> Result<Option<Converged>, SimulateError> {
-        let early = times.partition_point(|&t| t < 0.0);
+        let early = times.partition_point(|&t| t < self.begin.phase.time);
         loop {
             let taken = self.pass.states.len();
             self.pass.meet(*fastest, &at.center);
@@ -155,9 +155,10 @@ impl<'a> Seat<'a> {
 
     /// The fraction of a pass that is done at a time.
     fn fraction(&self, time: f64, crew: &Crew<'a>) -> f64 {
-        let begin = crew.times.first().map_or(0.0, |t| t.min(0.0));
-        let total = (crew.times.last().map_or(0.0, |t| t.max(0.0)) - begin).max(f64::MIN_POSITIVE);
-        (if self.stop < 0.0 { -time } else { time - begin }) / total
+        let start = self.begin.phase.time;
+        let [first, last] = span(crew.times, start);
+        let total = (last - first).max(f64::MIN_POSITIVE);
+        (if self.stop < start { start - time } else { time - first }) / total
     }
 
     /// Writes and tells what was found.

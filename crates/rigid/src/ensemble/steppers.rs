@@ -17,7 +17,7 @@ pub(super) trait Stepper<const F: bool> {
     /// What is carried from step to step.
     type State: Copy;
 
-    /// The bodies at time 0; lanes without a body hold the first one's.
+    /// The bodies at their starts; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
     /// Some of the steps of a stretch.

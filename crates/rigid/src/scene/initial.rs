@@ -42,11 +42,13 @@ pub struct Initial {
     pub spin_frame: SpinFrame,
     /// The centre of mass, or the fixed point if there is one, in space.
     pub center: Center,
+    /// When the body is there, in s.
+    pub time: f64,
 }
 
 /// The attitude, the spin and the centre of mass.
 pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
-    reader.only(table, &["attitude", "spin", "position", "velocity"]);
+    reader.only(table, &["attitude", "spin", "position", "velocity", "time"]);
     let attitude = reader.optional(table, "attitude", |reader, value| attitude(reader, value, "`attitude`"));
     let spin = reader.field(table, "spin", |reader, value| {
         if let DeValue::String(_) = value.get_ref() {
@@ -59,12 +61,14 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
         reader.optional(table, name, |reader, value| formulas::vector(reader, value, quantity))
     };
     let (position, velocity) = (place("position", Quantity::Length), place("velocity", Quantity::Speed));
+    let time = reader.optional(table, "time", |reader, value| reader.quantity(value, Quantity::Time));
     let (spin, spin_frame) = spin?;
     Some(Initial {
         attitude: attitude?.unwrap_or(Rotor::IDENTITY),
         spin,
         spin_frame,
         center: Center { position: position?.unwrap_or_default(), velocity: velocity?.unwrap_or_default() },
+        time: time?.unwrap_or(0.0),
     })
 }
 

@@ -20,6 +20,7 @@
 //!                                                  # rotation_vector = [3]; the identity if left out
 //!                                                  # or attitude = "exp(-θ/2 e1∧e2)", a formula
 //! spin = { plane = "e2e3", rate = "5 rev/s" }      # or vector = [3]; bivector = [3]; formula = "…"; frame = "space"
+//! time = "0 s"               # when the run begins, for laws that depend on time; 0 if left out
 //!
 //! [gravity]                  # optional: along −e3 of space, the body held at a fixed point
 //! acceleration = "9.81 m/s^2"
@@ -118,6 +119,8 @@ pub struct Scene {
     pub spin_frame: SpinFrame,
     /// The centre of mass, or the fixed point if there is one, at the beginning.
     pub center: Center,
+    /// The time of the beginning, in s.
+    pub time: f64,
     /// Uniform gravity on a body held at a point.
     pub gravity: Option<Gravity>,
     /// What else turns the body, in the order of the file.
@@ -205,6 +208,11 @@ impl Scene {
         Diagnostic::at(&self.path, &self.text, span, message)
     }
 
+    /// The output times, in s: those of [`Run::offsets`] after the beginning.
+    pub fn times(&self) -> Vec<f64> {
+        self.run.offsets().into_iter().map(|offset| self.time + offset).collect()
+    }
+
     /// The angular velocity at the beginning in body axes: `Ω_B = ~R Ω_S R`.
     pub fn omega_body(&self) -> Bivector {
         match self.spin_frame {
@@ -244,6 +252,7 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
         spin: initial.spin,
         spin_frame: initial.spin_frame,
         center: initial.center,
+        time: initial.time,
         gravity: gravity?,
         torques: torques?,
         forces: forces?.unwrap_or_default(),

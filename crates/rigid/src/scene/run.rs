@@ -26,9 +26,9 @@ pub struct Run {
 }
 
 impl Run {
-    /// The times of the samples, `i · duration / (samples − 1)`; or 0 and from the first on
+    /// The times of the samples after the beginning, `i · duration / (samples − 1)`; or 0 and from the first on
     /// `first · (duration / first)^((i − 1) / (samples − 2))`.
-    pub fn times(&self) -> Vec<f64> {
+    pub fn offsets(&self) -> Vec<f64> {
         let last = self.samples.saturating_sub(1).max(1);
         let even = |i: usize| i as f64 * self.duration / last as f64;
         let time = |i: usize| match self.first {

@@ -25,11 +25,9 @@ impl Scene {
     pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
         let laws = laws.iter().map(|law| law.torque.clone());
         let torques: Vec<Torque> = laws.chain(self.thrust_torques(body)).collect();
-        Problem::new(&self.ruling_inertia(body), self.attitude, self.omega_body(), &torques).with_center(
-            self.center,
-            body.mass,
-            &self.pushes(),
-        )
+        Problem::new(&self.ruling_inertia(body), self.attitude, self.omega_body(), &torques)
+            .with_center(self.center, body.mass, &self.pushes())
+            .starting_at(self.time)
     }
 
     /// Where the origin that the scene speaks of is in the axes of the built body: under gravity the pivot becomes

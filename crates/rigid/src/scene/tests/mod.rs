@@ -98,7 +98,7 @@ fn a_full_scene_is_read() {
 #[test]
 fn times_are_in_equal_ratios_from_a_first_one_on() {
     let run = |more: &str| scene(&LEAST.replace("[run]", &format!("[run]\n{more}"))).run;
-    let (even, uneven) = (run("samples = 6").times(), run("samples = 6\nfirst = 0.25").times());
+    let (even, uneven) = (run("samples = 6").offsets(), run("samples = 6\nfirst = 0.25").offsets());
     let end = even[5];
     assert_eq!((uneven.len(), uneven[0], uneven[1], uneven[5]), (6, 0.0, 0.25, end));
     let ratio = (end / 0.25).powf(0.25);
@@ -269,7 +269,7 @@ fn a_spin_in_space_axes_is_turned_to_the_body() {
 
 #[test]
 fn times_run_from_zero_to_the_duration() {
-    let times = |run| scene(&LEAST.replace("duration = 10", run)).run.times();
+    let times = |run| scene(&LEAST.replace("duration = 10", run)).times();
     assert_eq!(times("duration = 1\nsamples = 2"), [0.0, 1.0]);
     assert_eq!(times("duration = '0.3 s'\ninterval = '0.1 s'"), [0.0, 0.3 / 3.0, 0.6 / 3.0, 0.3]);
     let long = times("duration = '1 yr'");

@@ -228,7 +228,7 @@ proptest! {
         bytes.truncate(end);
         let text = String::from_utf8_lossy(&bytes);
         match parse(&text) {
-            Ok(scene) => prop_assert_eq!(scene.run.times().len(), scene.run.samples),
+            Ok(scene) => prop_assert_eq!(scene.times().len(), scene.run.samples),
             Err(errors) => {
                 prop_assert!(!errors.is_empty());
                 let lines = text.lines().count().max(1);

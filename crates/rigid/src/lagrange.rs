@@ -111,22 +111,27 @@ impl LagrangeTop {
     ) -> Result<LagrangeTop, SimulateError> {
         let axes = Axes::new(inertia, c)?;
         let start = Start::new(&axes, rotor, omega)?;
-        if start.is_steady()? {
+        if start.is_steady() {
             let moments = [axes.i1, axes.i1, axes.i3];
             let along = Bivector([0.0, 0.0, start.omega3]);
             let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);
             return Ok(LagrangeTop { axes, start, form: Form::Steady(motion) });
         }
         let orbit = Orbit::new(&start).ok_or(SimulateError::NearUpright)?;
+        let across = orbit.sizes[2] * start.scale;
         let top = LagrangeTop { axes, start, form: form(&axes, &start, orbit) };
-        if top.meets(rotor) { Ok(top) } else { Err(SimulateError::NearUpright) }
+        if top.meets(rotor, omega, across) { Ok(top) } else { Err(SimulateError::NearUpright) }
     }
 
-    /// Whether the solution has the start: beside an upright axis with hardly any weight the roots of the cubic may
-    /// come too close for their digits.
-    fn meets(&self, rotor: Rotor) -> bool {
-        let (found, given) = (self.at(0.0).0.components(), rotor.components());
-        (0..4).all(|k| (found[k] - given[k]).abs() <= 1e-12)
+    /// Whether the solution has the start, of whose rate the part across the axis is at most `across`: that part is
+    /// compared with itself, however small it is beside the spin.
+    fn meets(&self, rotor: Rotor, omega: Bivector, across: f64) -> bool {
+        /// A start's roundings add up to less.
+        const MOST: f64 = 1e-12;
+        let (found, rate) = self.at(0.0);
+        let turned = (0..4).all(|k| (found.components()[k] - rotor.components()[k]).abs() <= MOST);
+        let most = MOST * across + 64.0 * f64::EPSILON * self.start.omega3.abs();
+        turned && (rate - omega).norm() <= most
     }
 
     /// How far in time, in s, the phases are known: to 1e17 turns.
@@ -203,10 +208,11 @@ fn form(axes: &Axes, start: &Start, orbit: Orbit) -> Form {
 /// Phases, series and frames together.
 fn flow<S: Series>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, series: S) -> Flow<S> {
     // The uniform turn about the axis adds to ψ.
-    let half = start.excess * 0.5.into();
+    let excess = start.excess.narrow();
+    let half = excess * 0.5.into();
     let [alpha, beta, across] = orbit.rates;
     let uniform = |rate: DoubleDouble| Phase { rate: rate * DoubleDouble::OVER_TWO_PI, start: [0.0; 2] };
-    let phases = [alpha + half, beta - half, across - start.excess].map(uniform);
+    let phases = [alpha + half, beta - half, across - excess].map(uniform);
     let back = axes.frame.reverse();
     let unit = |c: [f64; 4]| (Rotor::from_unit_components(c) * back).components();
     let columns =

@@ -91,6 +91,7 @@ use crate::elliptic::mean;
 use crate::inertia::Inertia;
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
+use crate::wide::Wide;
 pub use derivatives::{Differentiated, FlowDerivatives};
 use flow::{AnyFlow, Flow};
 use lanes::Phase;
@@ -99,7 +100,6 @@ use orbit::Orbit;
 use polhode_ga::curve::{sample, value};
 use polhode_ga::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use crate::wide::Wide;
 use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
 use std::f64::consts::PI;
 

@@ -95,11 +95,7 @@ impl Wide {
 impl From<DoubleDouble> for Wide {
     fn from(x: DoubleDouble) -> Wide {
         // Subnormal numbers become normal.
-        if x.hi.abs() < exp2(-900) {
-            Wide::normal(scaled(x, exp2(900)), -900)
-        } else {
-            Wide::normal(x, 0)
-        }
+        if x.hi.abs() < exp2(-900) { Wide::normal(scaled(x, exp2(900)), -900) } else { Wide::normal(x, 0) }
     }
 }
 
@@ -124,11 +120,8 @@ impl PartialOrd for Wide {
 impl Add for Wide {
     type Output = Wide;
     fn add(self, o: Wide) -> Wide {
-        let (large, small) = if self.is_zero() || !o.is_zero() && o.exponent > self.exponent {
-            (o, self)
-        } else {
-            (self, o)
-        };
+        let (large, small) =
+            if self.is_zero() || !o.is_zero() && o.exponent > self.exponent { (o, self) } else { (self, o) };
         let apart = large.exponent - small.exponent;
         if small.is_zero() || apart > DIGITS {
             return large;

@@ -130,13 +130,7 @@ impl Invariants {
     }
 
     /// ν and AGM(1, k'), by whichever of n and k²/n is smaller.
-    fn precession(
-        &self,
-        s: f64,
-        k2: f64,
-        kc: Wide,
-        lambda: DoubleDouble,
-    ) -> (DoubleDouble, DoubleDouble) {
+    fn precession(&self, s: f64, k2: f64, kc: Wide, lambda: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = *self;
         let (g, s, half) = (g2.sqrt(), DoubleDouble::from(s), Wide::from(0.5));
         let minus_n = c * ab / (a * bc);

@@ -15,6 +15,8 @@ use crate::wide::Wide;
 pub(super) struct Orbit {
     pub lambda: DoubleDouble,
     pub k2: f64,
+    /// k'.
+    pub kc: Wide,
     /// AGM(1, k') = π/2K; None on the separatrix.
     pub mean: Option<DoubleDouble>,
     /// u at time 0: so many K, and the rest.
@@ -200,6 +202,7 @@ impl Orbit {
         Some(Orbit {
             lambda: modulus.lambda,
             k2: modulus.k2,
+            kc: modulus.kc,
             mean,
             start: argument(cn, sn, modulus.kc),
             rates,

@@ -5,7 +5,7 @@ use crate::inertia::Inertia;
 use crate::quaternion::{product, quaternion, turned_back};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
-use crate::symmetric_top::equal;
+use crate::symmetric_top::{apart, equal};
 use crate::wide::Wide;
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -37,6 +37,8 @@ pub(super) struct Axes {
     pub i3: f64,
     /// |c|, in N m.
     pub c: f64,
+    /// By what part of them the two moments differ, and c points beside the axis.
+    pub apart: f64,
 }
 
 impl Axes {
@@ -53,18 +55,21 @@ impl Axes {
             .max_by(|&j, &k| along.0[j].abs().total_cmp(&along.0[k].abs()))
             .ok_or(SimulateError::NotSymmetric { moments })?;
         let [x, y] = others(axis);
-        let size = c.norm();
-        let frame = if aside(along, axis) <= ASIDE * size {
-            principal * axis_to(axis, along.0[axis] < 0.0)
+        let (size, beside) = (c.norm(), aside(along, axis));
+        let (frame, beside) = if beside <= ASIDE * size {
+            let beside = if beside > 0.0 { beside / size } else { 0.0 };
+            (principal * axis_to(axis, along.0[axis] < 0.0), beside)
         } else if equal(x, moments[axis]) {
             // Any axis of a sphere is one of symmetry.
-            Rotor::from_vectors(Vector([0.0, 0.0, 1.0]), c).unwrap_or(Rotor::IDENTITY)
+            let frame = Rotor::from_vectors(Vector([0.0, 0.0, 1.0]), c).unwrap_or(Rotor::IDENTITY);
+            (frame, apart(x, moments[axis]))
         } else {
             let mut e = Vector::default();
             e.0[axis] = 1.0;
             return Err(SimulateError::OffAxis { c, axis: principal.apply(e) });
         };
-        Ok(Axes { frame, i1: 0.5 * x + 0.5 * y, i3: moments[axis], c: size })
+        let apart = apart(x, y) + beside;
+        Ok(Axes { frame, i1: 0.5 * x + 0.5 * y, i3: moments[axis], c: size, apart })
     }
 }
 

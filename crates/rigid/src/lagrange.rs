@@ -155,7 +155,7 @@ impl LagrangeTop {
                 if below < Wide::ONE { below - (b * b + c * c) * two } else { (a * a + d * d) * two - above };
             let change = x * x + y * y - start::square(w) + gravity * rise;
             // The rounding of the rate about the axis, in body axes.
-            let spin = Wide::from(self.start.omega3 / scale * f64::EPSILON * 8.0);
+            let spin = Wide::from(self.start.omega3.abs() / scale * f64::EPSILON * 8.0);
             change.abs() <= (largest * largest) * MOST.into() + (largest + spin) * spin
         })
     }

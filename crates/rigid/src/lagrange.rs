@@ -92,6 +92,9 @@ pub struct LagrangeTop {
     form: Form,
 }
 
+/// Tilts and rates below this have no digits in the series.
+const LEAST: f64 = 1e-303;
+
 #[derive(Clone, Copy, Debug)]
 enum Form {
     /// No torque, and rotation about the axis.
@@ -135,7 +138,8 @@ impl LagrangeTop {
         let (found, rate) = self.at(0.0);
         let turned = (0..4).all(|k| (found.components()[k] - rotor.components()[k]).abs() <= MOST);
         let across = orbit.sizes[2] * self.start.scale;
-        turned && (rate - omega).norm() <= MOST * across + 64.0 * f64::EPSILON * self.start.omega3.abs()
+        let spin = 64.0 * f64::EPSILON * self.start.omega3.abs();
+        turned && (rate - omega).norm() <= MOST * across + spin + LEAST * self.start.scale
     }
 
     /// Whether `|w|² + 2ĉu` is that of the start at some times of a nutation, compared with the largest |w|².
@@ -155,7 +159,7 @@ impl LagrangeTop {
                 if below < Wide::ONE { below - (b * b + c * c) * two } else { (a * a + d * d) * two - above };
             let change = x * x + y * y - start::square(w) + gravity * rise;
             // The rounding of the rate about the axis, in body axes.
-            let spin = Wide::from(self.start.omega3.abs() / scale * f64::EPSILON * 8.0);
+            let spin = Wide::from(self.start.omega3.abs() / scale * f64::EPSILON * 8.0 + LEAST);
             change.abs() <= (largest * largest) * MOST.into() + (largest + spin) * spin
         })
     }

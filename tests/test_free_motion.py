@@ -301,7 +301,11 @@ def test_known_states(case):
 def test_the_thinnest_needle_is_a_symmetric_top(thin):
     """Against eq. (4.35), which has no invariants of fourth degree; times to 3 with rates to 2 add 6 roundings."""
     times = np.array([-3.0, 0.3, 1.0, 3.0])
-    for moments, omega in (((1, 1, thin), (1, 0.5, 0.25)), ((1, thin, 1), (0, 2, 0.001)), ((thin, 1, 1), (1, 1, 0))):
+    for moments, omega in (
+        ((1, 1, thin), (1, 0.5, 0.25)),
+        ((1, thin, 1), (0, 2, 0.001)),
+        ((thin, 1, 1), (1, 1, 0)),
+    ):
         inertia, start = ph.Inertia.from_principal_moments(*moments), ph.Rotor.from_components([4, -2, 1, 2])
         found = ph.FreeMotion(inertia, start, omega).at(times)
         expected = ph.SymmetricTop(inertia, start, omega).at(times)

@@ -246,7 +246,9 @@ def test_an_upright_top_falls_after_the_logarithm_of_its_tilt():
     """Without spin sin ½θ = sech(λt − K) with K = ln(4/k') far from the upright, k' the sine of half the tilt."""
     for tilt in TILTS[1:-1]:
         fall = np.log(4 / tilt)
-        state = top_of((1, 1, 0.5), (0, 0, 1), (1, tilt, 0, 0), (0, 0, 0)).at(fall + np.array([-1.0, 0.0, 1.0]))
+        state = top_of((1, 1, 0.5), (0, 0, 1), (1, tilt, 0, 0), (0, 0, 0)).at(
+            fall + np.array([-1.0, 0.0, 1.0])
+        )
         _, x, y, _ = state.rotor.components.T
         # K in floating point has so many roundings.
         assert np.abs(np.hypot(x, y) - 1 / np.cosh([-1.0, 0.0, 1.0])).max() <= 2 * EPS * fall + tilt

@@ -299,7 +299,7 @@ def test_known_states(case):
 
 @pytest.mark.parametrize("thin", [1e-280, 1e-290, 1e-307, 5e-324])
 def test_the_thinnest_needle_is_a_symmetric_top(thin):
-    """Against eq. (4.35), which has no invariants of fourth degree; times to 3 with rates to 2 add 6 roundings."""
+    """Against eq. (4.35), without invariants of degree 4; times to 3 with rates to 2 add 6 roundings."""
     times = np.array([-3.0, 0.3, 1.0, 3.0])
     for moments, omega in (
         ((1, 1, thin), (1, 0.5, 0.25)),
@@ -315,7 +315,7 @@ def test_the_thinnest_needle_is_a_symmetric_top(thin):
 
 @pytest.mark.parametrize("tiny", [5e-324, 1e-310, 1e-200, 1e-150])
 def test_the_least_spin_beside_the_middle_axis_flips_it(tiny):
-    """At (1, 2, 3), from ω = (δ, 1, 0): k' = δ, λ² = 1/3, a flip takes 2K/λ with K = ln(4/δ) in so many roundings."""
+    """At (1, 2, 3), from ω = (δ, 1, 0): k' = δ, λ² = 1/3, a flip takes 2K/λ with K = ln(4/δ)."""
     motion, rate = motion_of((1, 2, 3), (tiny, 1.0, 0.0)), np.sqrt(1 / 3)
     half = (np.log(4) - np.log(tiny)) / rate
     assert motion.describe()["flip_time"] == pytest.approx(2 * half, rel=4 * EPS)

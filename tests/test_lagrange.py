@@ -225,7 +225,7 @@ TILTS = [5e-324, 1e-300, 1e-160, 1e-60, 1e-40, 1e-30, 1e-21, 1e-12, 1e-8]
 @pytest.mark.parametrize("tilt", TILTS)
 @pytest.mark.parametrize("spin", [0.0, 3.0, 8.0])
 def test_beside_the_vertical(tilt, spin):
-    """Hanging it stays in a cone; upright the tilt δ starts as δ cosh λt, λ² = 1 − (spin/4)², or keeps its size."""
+    """Without spin the tilt δ goes as δ cos t where it hangs, and upright as δ cosh t."""
     times = [0.0, 1.0, 2.0, 5.0]
     for r in ((0, 1, 0, tilt), (1, tilt, 0, 0)):
         motion = ph.simulate(TOP, ph.State(rotor(*r), [0, 0, spin]), times, ph.torque.heavy([0, 0, 1]))
@@ -243,7 +243,7 @@ def test_beside_the_vertical(tilt, spin):
 
 
 def test_an_upright_top_falls_after_the_logarithm_of_its_tilt():
-    """Without spin sin ½θ = sech(λt − K) with K = ln(4/k') far from the upright, k' the sine of half the tilt."""
+    """Without spin sin ½θ = sech(λt − K) with K = ln(4/k'), k' the sine of half the tilt."""
     for tilt in TILTS[1:-1]:
         fall = np.log(4 / tilt)
         state = top_of((1, 1, 0.5), (0, 0, 1), (1, tilt, 0, 0), (0, 0, 0)).at(

@@ -26,9 +26,9 @@ class Certificate:
         The method's name (``exact`` for the exact solution), its longest step in s, and the steps and the
         evaluations of the torque of all passes.
     error_estimate
-        Cautious estimate of the relative error in rotor and angular velocity, from the last two passes; of the
-        exact solution, what it neglects where moments count as equal that differ by rounding, else None; None
-        for a step that was given; NaN in a batch.
+        Cautious estimate of the relative error in rotor and angular velocity, from the last two passes; of
+        the exact solution, what it neglects where moments that differ by rounding count as equal, else None;
+        None for a step that was given; NaN in a batch.
     conserved
         Each conserved quantity's initial value in SI; NaN for a body of a batch that does not conserve it.
     drift

@@ -127,8 +127,8 @@ class LarmorSphere(_ClosedForm):
     ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with
     the angular velocity ω in space at time 0. Both phases are reduced in twice the precision, so that the
     error does not grow with time. Moments that differ by a part d <= 1.8e-15 of them count as equal; that
-    neglects an angle of about ``d |ω| t``, which `simulate` reports as the error estimate. A ValueError if the
-    moments differ by more or a number is not finite.
+    neglects an angle of about ``d |ω| t``, which `simulate` reports as the error estimate. A ValueError if
+    the moments differ by more or a number is not finite.
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, b: Any) -> None:

@@ -36,8 +36,8 @@ class FreeMotion:
     three elliptic functions. Their phases are reduced in twice the precision, so that the error is rounding
     at t = 1e12 as at t = 1, near the separatrix as far from it. The rotor is continuous in time on the
     double cover. No two moments count as equal that are not, and no rate as zero: needles and spins beside an
-    axis may be as thin and as small as floats are. Moments and axes of a matrix that is not diagonal are rounded
-    before, which is a turn of about ``ε |ω| t``.
+    axis may be as thin and as small as floats are. Moments and axes of a matrix that is not diagonal are
+    rounded before, which is a turn of about ``ε |ω| t``.
 
     Parameters
     ----------

@@ -109,7 +109,7 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
 pub(crate) fn check_kept(drifts: &[(Conserved, f64, f64)]) -> Result<(), SimulateError> {
     /// Far above what roundings change.
     const MOST: f64 = 1e-9;
-    match drifts.iter().find(|(_, _, drift)| !(*drift <= MOST)) {
+    match drifts.iter().find(|(_, _, drift)| drift.is_nan() || *drift > MOST) {
         Some(&(quantity, _, drift)) => Err(SimulateError::Drifted { quantity: quantity.name(), drift }),
         None => Ok(()),
     }

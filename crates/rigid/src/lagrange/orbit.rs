@@ -62,7 +62,7 @@ fn root_below(start: Wide, leading: f64, f: impl Fn(Wide) -> [Wide; 3]) -> Wide 
     for _ in 0..200 {
         let [value, slope, _] = f(x);
         let step = if slope.is_zero() { Wide::ZERO } else { value / slope };
-        if !(step > x * 1e-31.into()) {
+        if !step.is_finite() || step <= x * 1e-31.into() {
             break;
         }
         x = x - step;

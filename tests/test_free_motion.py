@@ -295,3 +295,29 @@ def test_known_states(case):
     found_rotor, found_omega = errors(motion_of(moments, omega, rotor), t, rotor_then, omega_then)
     assert found_rotor <= 5e-15
     assert found_omega <= 5e-15
+
+
+@pytest.mark.parametrize("thin", [1e-280, 1e-290, 1e-307, 5e-324])
+def test_the_thinnest_needle_is_a_symmetric_top(thin):
+    """Against eq. (4.35), without invariants of degree 4; times to 3 with rates to 2 add 6 roundings."""
+    times = np.array([-3.0, 0.3, 1.0, 3.0])
+    for moments, omega in (
+        ((1, 1, thin), (1, 0.5, 0.25)),
+        ((1, thin, 1), (0, 2, 0.001)),
+        ((thin, 1, 1), (1, 1, 0)),
+    ):
+        inertia, start = ph.Inertia.from_principal_moments(*moments), ph.Rotor.from_components([4, -2, 1, 2])
+        found = ph.FreeMotion(inertia, start, omega).at(times)
+        expected = ph.SymmetricTop(inertia, start, omega).at(times)
+        assert np.abs(found.rotor.components - expected.rotor.components).max() <= 16 * EPS
+        assert np.abs(found.omega_body.components - expected.omega_body.components).max() <= 32 * EPS
+
+
+@pytest.mark.parametrize("tiny", [5e-324, 1e-310, 1e-200, 1e-150])
+def test_the_least_spin_beside_the_middle_axis_flips_it(tiny):
+    """At (1, 2, 3), from ω = (δ, 1, 0): k' = δ, λ² = 1/3, a flip takes 2K/λ with K = ln(4/δ)."""
+    motion, rate = motion_of((1, 2, 3), (tiny, 1.0, 0.0)), np.sqrt(1 / 3)
+    half = (np.log(4) - np.log(tiny)) / rate
+    assert motion.describe()["flip_time"] == pytest.approx(2 * half, rel=4 * EPS)
+    spin = motion.at(half + np.array([-50.0, -1.0, 0.0, 1.0, 50.0]) / rate).omega_body.components[:, 1]
+    assert np.abs(spin + np.tanh([-50.0, -1.0, 0.0, 1.0, 50.0])).max() <= 2 * EPS * rate * half

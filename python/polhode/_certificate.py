@@ -29,8 +29,9 @@ class Certificate:
         evaluations of the torque of all passes.
     error_estimate
         Cautious estimate of the relative error in rotor and angular velocity: truncation, from the last two
-        passes, and the rounding that the motion magnifies, measured by passes with added noise. None for a
-        step that was given; NaN in a batch.
+        passes, and the rounding that the motion magnifies, measured by passes with added noise; of the exact
+        solution, what it neglects where moments that differ by rounding count as equal, else None. None for
+        a step that was given; NaN in a batch.
     conserved
         Each conserved quantity's initial value in SI; NaN for a body of a batch that does not conserve it.
     drift

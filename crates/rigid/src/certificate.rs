@@ -16,7 +16,8 @@ pub struct Certificate {
     pub steps: u64,
     /// Evaluations of the torque, in all passes.
     pub evaluations: u64,
-    /// A cautious estimate of the error, from the difference of the last two passes.
+    /// A cautious estimate of the error, from the difference of the last two passes, or of what an exact solution
+    /// neglects.
     pub error_estimate: Option<f64>,
     /// Each conserved quantity: its initial value, and its largest change over the run relative to the
     /// terms that make it up.

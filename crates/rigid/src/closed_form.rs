@@ -1,5 +1,6 @@
 //! Motions that are known at any time without steps.
 
+use crate::conserved::Conserved;
 use crate::damped::DampedTop;
 use crate::double_double::DoubleDouble;
 use crate::force::Center;
@@ -9,6 +10,7 @@ use crate::lagrange::LagrangeTop;
 use crate::larmor::LarmorSphere;
 use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::{Carried, DOP853, RungeKutta};
+use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
 use polhode_ga::{Bivector, Rotor, Vector};
 
@@ -54,6 +56,18 @@ impl ClosedForm {
             Rotation::Damped(motion) => motion.horizons(),
             Rotation::Larmor(motion) => [motion.horizon(); 2],
         }
+    }
+
+    /// What the closed form neglects, moments that differ by rounding, as an error at these times; none where it
+    /// neglects nothing.
+    pub fn neglected(&self, times: &[f64]) -> Option<f64> {
+        let at = |time: f64| match &self.rotation {
+            Rotation::Free(_) | Rotation::Damped(_) => 0.0,
+            Rotation::Lagrange(motion) => motion.neglected(self.since.elapsed(time).hi),
+            Rotation::Larmor(motion) => motion.neglected(self.since.elapsed(time).hi),
+        };
+        // A motion that is altogether another one is off by no more than that.
+        Some(times.iter().map(|&time| at(time)).fold(0.0, f64::max).min(1.0)).filter(|&error| error > 0.0)
     }
 
     /// The point of the motion at a time in s.
@@ -133,6 +147,16 @@ impl Since {
     }
 }
 
+/// An error if a closed form did not keep what the motion conserves, by the changes of a certificate.
+pub(crate) fn check_kept(drifts: &[(Conserved, f64, f64)]) -> Result<(), SimulateError> {
+    /// Far above what roundings change.
+    const MOST: f64 = 1e-9;
+    match drifts.iter().find(|(_, _, drift)| drift.is_nan() || *drift > MOST) {
+        Some(&(quantity, _, drift)) => Err(SimulateError::Drifted { quantity: quantity.name(), drift }),
+        None => Ok(()),
+    }
+}
+
 /// A centre of mass under a constant force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fall {
@@ -155,5 +179,20 @@ impl Fall {
             position: start.position + start.velocity * time + Vector(acceleration.0.map(fallen)),
             velocity: start.velocity + acceleration * time,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_closed_form_does_not_keep_is_an_error() {
+        let drifts =
+            |energy: f64| [(Conserved::AngularMomentum, 3.0, 1e-15), (Conserved::Energy, 1.0, energy)];
+        assert_eq!(check_kept(&drifts(1e-12)), Ok(()));
+        let error = check_kept(&drifts(4e22)).unwrap_err();
+        assert!(error.to_string().starts_with("the energy of the closed form changes by 4.0e22 of its size"));
+        assert!(check_kept(&drifts(f64::NAN)).is_err());
     }
 }

@@ -5,6 +5,7 @@
 //! integrals by arithmetic-geometric means.
 
 use crate::double_double::DoubleDouble;
+use crate::wide::Wide;
 
 /// The series' next term is below rounding once the arguments agree to this relative spread.
 const SPREAD: f64 = 1.2e-3;
@@ -96,14 +97,15 @@ pub(crate) fn mean(mut g: f64) -> f64 {
 ///
 /// With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
 /// `p_{j+1} = (p_j² + a_j g_j) / 2p_j`, `Q_{j+1} = ½ Q_j (p_j² − a_j g_j) / (p_j² + a_j g_j)`.
-pub(crate) fn mean_and_sum(kc: DoubleDouble, p2: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
-    let (mut a, mut g) = (DoubleDouble::ONE, kc);
+pub(crate) fn mean_and_sum(kc: Wide, p2: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    // The root of k' is in the range of floats, whatever k' is.
+    let (mut a, mut g, mut root) = (DoubleDouble::ONE, kc.narrow(), kc.sqrt().narrow());
     let (mut p2, mut p) = (p2, p2.sqrt());
     let (mut term, mut sum) = (DoubleDouble::ONE, DoubleDouble::ZERO);
     // Convergence is quadratic: 13 steps from k' = 1e-300.
     for _ in 0..32 {
         sum = sum + term;
-        let product = a * g;
+        let product = root * root;
         let whole = p2 + product;
         term = term * (p2 - product) / (whole * 2.0.into());
         let met = (a - g).abs().hi <= 1e-17 * a.hi;
@@ -111,7 +113,8 @@ pub(crate) fn mean_and_sum(kc: DoubleDouble, p2: DoubleDouble) -> (DoubleDouble,
         if met && term.hi.abs() <= 1e-33 {
             break;
         }
-        g = product.sqrt();
+        g = root;
+        root = (a * g).sqrt();
         p = whole / (p * 2.0.into());
         p2 = p * p;
     }

@@ -91,6 +91,7 @@ use crate::elliptic::mean;
 use crate::inertia::Inertia;
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
+use crate::wide::Wide;
 pub use derivatives::{Differentiated, FlowDerivatives};
 use flow::{AnyFlow, Flow};
 use lanes::Phase;
@@ -138,7 +139,8 @@ impl FreeMotion {
     /// From principal axes to space, and with the frame from principal axes to those of the body.
     pub(crate) fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
         let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
-        let orbit = Orbit::new(moments.map(|i| i / size), omega.0.map(|w| w / scale));
+        let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
+        let orbit = Orbit::new(moments.map(|i| in_units(i, size)), omega.0.map(|w| in_units(w, scale)));
         let flow = match &orbit {
             Some(orbit) => tumbling(orbit, scale, rotor, frame),
             None => steady(omega, scale, rotor, frame),

@@ -16,6 +16,7 @@
 
 use crate::body::{Body, BodyError};
 use crate::eigen::symmetric_eigen;
+use crate::symmetric_top::equal;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
 
@@ -80,7 +81,8 @@ impl Inertia {
             let threshold = ZERO_MOMENT * moments[2];
             moments = moments.map(|i| if i.abs() <= threshold { 0.0 } else { i });
         }
-        Ok(Inertia { matrix, moments, frame: nearest_frame(axes) })
+        let frame = if is_sphere(moments) { Rotor::IDENTITY } else { nearest_frame(axes) };
+        Ok(Inertia { matrix, moments, frame })
     }
 
     /// `I(B)`: the angular momentum of a body with angular velocity `B`.
@@ -121,8 +123,14 @@ impl Inertia {
         let rows: [[f64; 3]; 3] = from_fn(|i| self.apply(Bivector(r[i])).0);
         let entry = |i: usize, j: usize| (0..3).map(|k| r[i][k] * rows[j][k]).sum::<f64>();
         let matrix = from_fn(|i| from_fn(|j| entry(i.min(j), i.max(j))));
-        Inertia { matrix, moments: self.moments, frame: (rotor * self.frame).renormalized() }
+        let frame = if is_sphere(self.moments) { self.frame } else { (rotor * self.frame).renormalized() };
+        Inertia { matrix, moments: self.moments, frame }
     }
+}
+
+/// Any axes are principal axes of a sphere: the body's own, to which nothing has to be turned, and rounded.
+fn is_sphere([a, b, c]: [f64; 3]) -> bool {
+    equal(a, b) && equal(b, c) && equal(a, c)
 }
 
 /// Finite, none negative, none larger than the sum of the other two, up to rounding.

@@ -72,6 +72,7 @@ use crate::free::{FreeMotion, MOST_TURNS};
 use crate::inertia::Inertia;
 use crate::phase::Gyrostat;
 use crate::simulate_error::SimulateError;
+use crate::wide::Wide;
 pub use description::{LagrangeDescription, LagrangeRegime};
 use flow::{Flow, times};
 use orbit::Orbit;
@@ -90,6 +91,9 @@ pub struct LagrangeTop {
     start: Start,
     form: Form,
 }
+
+/// Tilts and rates below this have no digits in the series.
+const LEAST: f64 = 1e-303;
 
 #[derive(Clone, Copy, Debug)]
 enum Form {
@@ -111,22 +115,75 @@ impl LagrangeTop {
     ) -> Result<LagrangeTop, SimulateError> {
         let axes = Axes::new(inertia, c)?;
         let start = Start::new(&axes, rotor, omega)?;
-        if start.is_steady()? {
+        if start.is_steady() {
             let moments = [axes.i1, axes.i1, axes.i3];
             let along = Bivector([0.0, 0.0, start.omega3]);
             let motion = FreeMotion::in_frame(axes.frame, moments, rotor * axes.frame, along);
             return Ok(LagrangeTop { axes, start, form: Form::Steady(motion) });
         }
-        let orbit = Orbit::new(&start).ok_or(SimulateError::NearUpright)?;
+        let orbit = Orbit::new(&start).ok_or(SimulateError::Unresolved)?;
         let top = LagrangeTop { axes, start, form: form(&axes, &start, orbit) };
-        if top.meets(rotor) { Ok(top) } else { Err(SimulateError::NearUpright) }
+        if top.starts_at(rotor, omega, &orbit) && top.keeps_energy(&orbit) {
+            Ok(top)
+        } else {
+            Err(SimulateError::Unresolved)
+        }
     }
 
-    /// Whether the solution has the start: beside an upright axis with hardly any weight the roots of the cubic may
-    /// come too close for their digits.
-    fn meets(&self, rotor: Rotor) -> bool {
-        let (found, given) = (self.at(0.0).0.components(), rotor.components());
-        (0..4).all(|k| (found[k] - given[k]).abs() <= 1e-12)
+    /// Whether the solution has the start. Of the rate the part across the axis is compared with its own largest size,
+    /// however small that is beside the spin.
+    fn starts_at(&self, rotor: Rotor, omega: Bivector, orbit: &Orbit) -> bool {
+        /// A start's roundings add up to less.
+        const MOST: f64 = 1e-12;
+        let (found, rate) = self.at(0.0);
+        let turned = (0..4).all(|k| (found.components()[k] - rotor.components()[k]).abs() <= MOST);
+        let across = orbit.sizes[2] * self.start.scale;
+        let spin = 64.0 * f64::EPSILON * self.start.omega3.abs();
+        turned && (rate - omega).norm() <= MOST * across + spin + LEAST * self.start.scale
+    }
+
+    /// Whether `|w|² + 2ĉu` is that of the start at some times of a nutation, compared with the largest |w|².
+    fn keeps_energy(&self, orbit: &Orbit) -> bool {
+        /// The rounding of a tilt of 1e-300 is 1e-13 of it.
+        const MOST: f64 = 1e-10;
+        let Start { gravity, below, above, w, scale, .. } = self.start;
+        let largest = Wide::from(orbit.sizes[2]);
+        let quarter = orbit.mean.map_or(1.0, |mean| 0.5 * PI / mean.hi) / orbit.lambda.hi / scale;
+        [0.3, 1.0, 2.2].iter().all(|part| {
+            let (rotor, omega) = self.at(part * quarter);
+            let [x, y, _] = self.axes.frame.reverse().apply_bivector(omega).0.map(|x| Wide::from(x / scale));
+            let [a, b, c, d] = (rotor * self.axes.frame).components().map(Wide::from);
+            // u against that of the start, from the pole that is nearer.
+            let two = Wide::from(2.0);
+            let rise =
+                if below < Wide::ONE { below - (b * b + c * c) * two } else { (a * a + d * d) * two - above };
+            let change = x * x + y * y - start::square(w) + gravity * rise;
+            // The rounding of the rate about the axis, in body axes.
+            let spin = Wide::from(self.start.omega3.abs() / scale * f64::EPSILON * 8.0 + LEAST);
+            change.abs() <= (largest * largest) * MOST.into() + (largest + spin) * spin
+        })
+    }
+
+    /// About by what angle in rad the motion of the body at time `t` differs from this one, which takes two moments as
+    /// equal and c as lying along the axis where rounding alone denies it.
+    pub fn neglected(&self, t: f64) -> f64 {
+        let Start { gravity, spin, below, scale, .. } = self.start;
+        if self.axes.apart == 0.0 {
+            return 0.0;
+        }
+        // Beside the upright a change grows as the tilt does, until the top has fallen.
+        let (growth, most) = match &self.form {
+            Form::Circular(orbit, _) | Form::Hyperbolic(orbit, _) => {
+                (orbit.lambda.hi, 1.0 / orbit.kc.value())
+            }
+            Form::Steady(_) if below < Wide::ONE => {
+                let square = gravity * 0.5.into() - spin * spin * 0.25.into();
+                (square.sqrt().value(), f64::INFINITY)
+            }
+            Form::Steady(_) => (0.0, 1.0),
+        };
+        let turned = scale * t.abs();
+        2.0 * self.axes.apart * turned * (growth * turned).exp().min(most)
     }
 
     /// How far in time, in s, the phases are known: to 1e17 turns.
@@ -203,10 +260,11 @@ fn form(axes: &Axes, start: &Start, orbit: Orbit) -> Form {
 /// Phases, series and frames together.
 fn flow<S: Series>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, series: S) -> Flow<S> {
     // The uniform turn about the axis adds to ψ.
-    let half = start.excess * 0.5.into();
+    let excess = start.excess.narrow();
+    let half = excess * 0.5.into();
     let [alpha, beta, across] = orbit.rates;
     let uniform = |rate: DoubleDouble| Phase { rate: rate * DoubleDouble::OVER_TWO_PI, start: [0.0; 2] };
-    let phases = [alpha + half, beta - half, across - start.excess].map(uniform);
+    let phases = [alpha + half, beta - half, across - excess].map(uniform);
     let back = axes.frame.reverse();
     let unit = |c: [f64; 4]| (Rotor::from_unit_components(c) * back).components();
     let columns =

@@ -7,15 +7,19 @@
 //! R(t) = exp(½ I b t) exp(−½ I (ω(0) + b) t) R(0),
 //! ```
 //!
-//! ω(0) in space; `R' = ½ I b R − ½ A I(ω(0) + b) ~A R = −½ Ω_S R`. Both rates are known in twice the precision.
+//! ω(0) in space; `R' = ½ I b R − ½ A I(ω(0) + b) ~A R = −½ Ω_S R`. Both rates, and the phases, are known in twice the
+//! precision: for a sphere the error does not grow with time. Moments that differ by rounding, by a part d of them,
+//! count as equal; that neglects an angle of about `d |ω| t` ([`LarmorSphere::neglected`]).
 
 use crate::double_double::DoubleDouble;
-use crate::free::MOST_TURNS;
 use crate::free::lanes::{Phase, sin_cos_turns};
+use crate::free::{MOST_TURNS, power_of_two};
 use crate::inertia::Inertia;
+use crate::quaternion::{quaternion, turned_back};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
-use crate::symmetric_top::equal;
+use crate::symmetric_top::{apart, equal};
+use crate::wide::Wide;
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// The motion of a sphere in a field: rotor and angular velocity at any time up to its
@@ -26,6 +30,8 @@ pub struct LarmorSphere {
     omega: Bivector,
     field: Turn,
     spin: Turn,
+    /// What the moments differ by, relative to them.
+    apart: f64,
 }
 
 impl LarmorSphere {
@@ -49,15 +55,29 @@ impl LarmorSphere {
                 return Err(SimulateError::BadValue { what, value });
             }
         }
-        let field = b.0.map(DoubleDouble::from);
-        let space = in_space(rotor, omega);
+        let field = b.0.map(Wide::from);
+        // R Ω ~R.
+        let space = turned_back(quaternion(rotor.reverse()), omega.0.map(Wide::from));
         let sum = std::array::from_fn(|k| space[k] + field[k]);
-        Ok(LarmorSphere { rotor, omega, field: Turn::new(field.map(|x| -x)), spin: Turn::new(sum) })
+        let [least, most] = [f64::min, f64::max].map(|of| moments.into_iter().reduce(of).unwrap_or(0.0));
+        Ok(LarmorSphere {
+            rotor,
+            omega,
+            field: Turn::new(field.map(|x| -x)),
+            spin: Turn::new(sum),
+            apart: apart(least, most),
+        })
     }
 
     /// How far in time, in s, the phases are known: to 1e17 turns.
     pub fn horizon(&self) -> f64 {
-        MOST_TURNS / self.field.phase.rate.hi.max(self.spin.phase.rate.hi)
+        MOST_TURNS / self.field.rate().max(self.spin.rate())
+    }
+
+    /// About by what angle in rad the motion of the body at time `t` differs from this one, which takes its moments
+    /// as equal.
+    pub fn neglected(&self, t: f64) -> f64 {
+        self.apart * self.omega.norm() * t.abs()
     }
 
     /// Rotor and body angular velocity at time `t` in s.
@@ -74,29 +94,31 @@ impl LarmorSphere {
 #[derive(Clone, Copy, Debug)]
 struct Turn {
     plane: Bivector,
+    /// A power of two near the rate: that of the phase is near 1.
+    scale: f64,
     /// Half the angle.
     phase: Phase,
 }
 
 impl Turn {
-    fn new(omega: [DoubleDouble; 3]) -> Turn {
+    fn new(omega: [Wide; 3]) -> Turn {
         let [x, y, z] = omega;
         let size = (x * x + y * y + z * z).sqrt();
-        let part = |x: DoubleDouble| if size.hi > 0.0 { (x / size).value() } else { 0.0 };
-        let rate = size * DoubleDouble::OVER_TWO_PI * 0.5.into();
-        Turn { plane: Bivector(omega.map(part)), phase: Phase { rate, start: [0.0; 2] } }
+        let part = |x: Wide| if size.is_zero() { 0.0 } else { (x / size).value() };
+        let scale = power_of_two([size.value(), 0.0, 0.0]);
+        let rate = (size / scale.into()).narrow() * DoubleDouble::OVER_TWO_PI * 0.5.into();
+        Turn { plane: Bivector(omega.map(part)), scale, phase: Phase { rate, start: [0.0; 2] } }
+    }
+
+    /// In turns of the phase per s.
+    fn rate(&self) -> f64 {
+        self.phase.rate.hi * self.scale
     }
 
     fn at(&self, t: f64) -> Rotor {
-        let (turns, rest) = self.phase.turns::<false>(t);
+        let (turns, rest) = self.phase.turns::<false>(t * self.scale);
         let (sin, cos) = sin_cos_turns::<false>(turns, rest);
         let [x, y, z] = (self.plane * -sin).0;
         Rotor::from_unit_components([cos, x, y, z])
     }
-}
-
-/// `R Ω ~R` in twice the precision.
-fn in_space(rotor: Rotor, omega: Bivector) -> [DoubleDouble; 3] {
-    use crate::quaternion::{quaternion, turned_back};
-    turned_back(quaternion(rotor.reverse()), omega.0.map(DoubleDouble::from))
 }

@@ -58,6 +58,7 @@ pub mod torque;
 mod turn;
 pub mod units;
 mod walk;
+mod wide;
 
 pub use body::{Body, BodyError};
 pub use inertia::Inertia;

@@ -2,7 +2,7 @@
 //! what was conserved.
 
 use crate::certificate::{Certificate, Watch, off_unit};
-use crate::closed_form::{ClosedForm, Fall};
+use crate::closed_form::{ClosedForm, Fall, check_kept};
 use crate::conserved::{Conserved, energy};
 use crate::converge::{Aim, Convergence, Order, Scales};
 use crate::course::{Course, samples, span};
@@ -270,6 +270,9 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
+        let neglected = closed.as_ref().and_then(|closed| closed.neglected(times));
+        let fine = neglected.unwrap_or(0.0) <= options.rtol.unwrap_or(f64::INFINITY);
+        let closed = closed.filter(|_| options.exact || fine);
         if options.exact && closed.is_none() {
             return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
         }
@@ -295,11 +298,11 @@ impl Problem {
             options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
         let (pace, pass, error) = match (&engine, options.step) {
             (Engine::ClosedForm(closed), _) if events.is_empty() => {
-                (long(1.0), self.sampled(closed, times), None)
+                (long(1.0), self.sampled(closed, times)?, neglected)
             }
             (Engine::ClosedForm(_), _) => {
                 let pace = long(1.0);
-                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, None)
+                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, neglected)
             }
             (_, Some(step)) => {
                 let pace = Pace::equal(step.min(course.longest));
@@ -411,12 +414,14 @@ impl Problem {
         walker.pass(start, times)
     }
 
-    /// The closed form at all times, as a pass without steps.
-    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Pass {
+    /// The closed form at all times, as a pass without steps. An error if it does not keep what the motion conserves.
+    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Pass, SimulateError> {
         let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
         let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
         states.iter().for_each(|state| watch.look(&state.phase));
-        Pass { states, drifts: watch.finish(), ..Pass::default() }
+        let drifts = watch.finish();
+        check_kept(&drifts)?;
+        Ok(Pass { states, drifts, ..Pass::default() })
     }
 
     fn closed_form(&self) -> Option<ClosedForm> {

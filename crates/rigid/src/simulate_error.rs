@@ -15,8 +15,10 @@ pub enum SimulateError {
     NotSpherical { moments: [f64; 3] },
     /// The centre of mass lies beside the axis of symmetry.
     OffAxis { c: Vector, axis: Vector },
-    /// So near to the unstable upright that floating point cannot tell how far.
-    NearUpright,
+    /// The closed form misses its start or its integrals: the roots of its cubic are too close for their digits.
+    Unresolved,
+    /// A closed form does not keep what the motion conserves, by so much of its size.
+    Drifted { quantity: &'static str, drift: f64 },
     /// Output times must be finite and must not fall.
     BadTime { index: usize, time: f64 },
     /// A step, tolerance, angular velocity or torque that is not usable.
@@ -75,10 +77,16 @@ impl fmt::Display for SimulateError {
                 f,
                 "c = ({x}, {y}, {z}) N m does not point along the axis of symmetry ({p}, {q}, {r}); use simulate"
             ),
-            SimulateError::NearUpright => write!(
+            SimulateError::Unresolved => write!(
                 f,
-                "the top starts so near to the upright that floating point cannot tell how far; start it upright, or \
-                 farther from it"
+                "floating point does not resolve the closed form of this top: its tilt turns at angles too close to each \
+                 other; use simulate, which takes steps where there is no closed form"
+            ),
+            SimulateError::Drifted { quantity, drift } => write!(
+                f,
+                "the {} of the closed form changes by {drift:.1e} of its size, though the motion conserves it; \
+                 pass a method of steps, such as method=\"rkn6\"",
+                quantity.replace('_', " ")
             ),
             SimulateError::BadTime { index, time } => {
                 write!(

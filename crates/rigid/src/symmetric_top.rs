@@ -10,8 +10,15 @@ pub(crate) fn equal(x: f64, y: f64) -> bool {
     (x - y).abs() <= ROUNDING * x.abs().max(y.abs())
 }
 
+/// By what part of them two positive moments differ.
+pub(crate) fn apart(x: f64, y: f64) -> f64 {
+    if x == y { 0.0 } else { (x - y).abs() / x.max(y) }
+}
+
 /// The free symmetric top in closed form (handout eq. 4.35):
-/// `R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)` with `Ω_l = L/i1` and `Ω_r = ((i1 − i3)/i1) ω3 I e3`.
+/// `R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)` with `Ω_l = L/i1` and `Ω_r = ((i1 − i3)/i1) ω3 I e3`. Phases in simple
+/// precision: the error grows as ε|Ω|t, and with moments that differ by a part d of them as d|Ω|t besides;
+/// [`crate::free::FreeMotion`] has neither error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymmetricTop {
     rotor: Rotor,

@@ -4,6 +4,8 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::damped::DampedTop;
 use polhode_rigid::free::FreeMotion;
 use polhode_rigid::larmor::LarmorSphere;
+use polhode_rigid::simulate::{Options, Problem};
+use polhode_rigid::torque::Torque;
 use polhode_rigid::{Inertia, SimulateError};
 
 const EPS: f64 = f64::EPSILON;
@@ -129,6 +131,67 @@ fn larmor_reference() {
         assert!(apart(&r.components(), &rotor) <= 4.0 * EPS);
         assert!(apart(&w.0, &omega) <= 4.0 * EPS);
     }
+}
+
+/// Rates of any size, whose squares are no numbers: the same motion in another unit of time.
+#[test]
+fn larmor_scales() {
+    let inertia = Inertia::from_principal_moments([2.0; 3]).unwrap();
+    let scaled = |x: f64| {
+        let (omega, b) = (Bivector([0.5 * x, x, 0.25 * x]), Vector([0.125 * x, 0.5 * x, x]));
+        LarmorSphere::new(&inertia, start(), omega, b).unwrap()
+    };
+    for exponent in [-990, -600, -500, 500] {
+        let unit = 2f64.powi(exponent);
+        for t in [1.0, 40.0, 1e9] {
+            let ((r, w), (expected, spin)) = (scaled(unit).at(t / unit), sphere().at(t));
+            assert!(apart(&r.components(), &expected.components()) <= 4.0 * EPS, "{exponent} {t}");
+            assert!(apart(&(w / unit).0, &spin.0) <= 4.0 * EPS, "{exponent} {t}");
+        }
+    }
+}
+
+/// At 1.7e8 s to a few roundings, for a sphere in turned axes too; by quaternions of 60 digits.
+#[test]
+fn larmor_at_long_times() {
+    let turn = Rotor::from_components([3.0, 1.0, -2.0, 0.5]).unwrap();
+    let plain = Inertia::from_principal_moments([2.0; 3]).unwrap();
+    let matrix = [[2.0, 2e-16, -1e-16], [2e-16, 2.0 + 4.0 * EPS, 3e-16], [-1e-16, 3e-16, 2.0]];
+    for inertia in [plain, plain.rotated(turn), Inertia::from_matrix(matrix).unwrap()] {
+        assert_eq!(inertia.principal_frame(), Rotor::IDENTITY);
+        let (omega, b) = (Bivector([0.5, 1.0, 0.25]), Vector([0.125, 0.5, 1.0]));
+        let problem = Problem::new(&inertia, start(), omega, &[Torque::Larmor(b)]);
+        let motion = problem.simulate(&[1.7e8], Options::default(), &mut |_| true).unwrap();
+        let states = motion.states();
+        let rotor = [-0.7354205155713058, 0.4749581112791768, 0.46161525647353346, 0.1431181777337376];
+        let rate = [0.32690529109327066, 0.926850106909191, 0.5887119923847697];
+        assert!(apart(&states.rotors[0].components(), &rotor) <= 4.0 * EPS);
+        assert!(apart(&states.omegas[0].0, &rate) <= 4.0 * EPS);
+    }
+}
+
+/// Moments that differ by rounding count as equal, and the certificate says what that neglects; a tolerance below
+/// it leads to steps.
+#[test]
+fn a_neglected_difference_of_moments_is_an_error_estimate() {
+    let inertia = Inertia::from_principal_moments([2.0, 2.0, 2.0 * (1.0 + 4.0 * EPS)]).unwrap();
+    let (omega, b) = (Bivector([0.5, 1.0, 0.25]), Vector([0.125, 0.5, 1.0]));
+    let problem = Problem::new(&inertia, start(), omega, &[Torque::Larmor(b)]);
+    let run = |rtol: Option<f64>, t: f64| {
+        let options = Options { rtol, ..Options::default() };
+        problem.simulate(&[t], options, &mut |_| true).unwrap().certificate
+    };
+    let long = run(None, 1e8);
+    let neglected = 4.0 * EPS * omega.norm() * 1e8;
+    assert_eq!(long.method, "exact");
+    assert!(long.error_estimate.is_some_and(|x| x > 0.9 * neglected && x < 4.0 * neglected));
+    assert_eq!(run(Some(1e-12), 1.0).method, "exact");
+    let stepped = run(Some(1e-15 * 4.0), 4.0).method;
+    assert_ne!(stepped, "exact");
+    let even = Inertia::from_principal_moments([2.0; 3]).unwrap();
+    let problem = Problem::new(&even, start(), omega, &[Torque::Larmor(b)]);
+    let motion = problem.simulate(&[1e8], Options::default(), &mut |_| true).unwrap();
+    assert_eq!(motion.certificate.error_estimate, None);
 }
 
 /// `Ω_S·b` and |Ω| are constant at any time, and `R' = −½ R Ω_B`.

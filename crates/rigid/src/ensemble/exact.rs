@@ -2,7 +2,7 @@
 
 use super::block::{Crew, Member, Told};
 use crate::certificate::{Certificate, Watch, off_unit};
-use crate::closed_form::Since;
+use crate::closed_form::{Since, check_kept};
 use crate::free::FreeMotion;
 use crate::phase::Phase;
 use crate::simulate::check_horizons_from;
@@ -47,8 +47,11 @@ impl<'a> Crew<'a> {
         for (index, &time) in self.times.iter().enumerate() {
             own.place(index, &self.center(body, time));
         }
-        let certificate =
-            Certificate { method, drifts: watch.finish(), norm_drift, ..Certificate::default() };
+        let drifts = watch.finish();
+        if let Err(error) = check_kept(&drifts) {
+            return self.fail(body, own, method, error);
+        }
+        let certificate = Certificate { method, drifts, norm_drift, ..Certificate::default() };
         self.count(&mut 0, 1.0, 1);
         self.tell([Told { body, certificate, failure: None }]);
     }

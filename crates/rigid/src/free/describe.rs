@@ -19,6 +19,7 @@ use crate::elliptic::mean_and_sum;
 use crate::phase::Gyrostat;
 use crate::regime::{FreeDescription, Regime};
 use crate::symmetric_top::equal;
+use crate::wide::Wide;
 use polhode_ga::Bivector;
 use std::f64::consts::PI;
 
@@ -66,7 +67,7 @@ impl FreeMotion {
             regime,
             modulus: orbit.k2.sqrt(),
             axis: c,
-            wobble: Some([m[0].atan2(m[2]), m[1].atan2(m[2] * orbit.kc)]),
+            wobble: Some([m[0].atan2(m[2]), m[1].atan2(m[2] * orbit.kc.value())]),
             wobble_period: None,
             ..still
         };
@@ -86,22 +87,24 @@ impl FreeMotion {
         let orbit = self.orbit.as_ref()?;
         let mean = orbit.mean?;
         let size = super::power_of_two(self.moments);
-        let [a, b, c] = orbit.axes.map(|k| DoubleDouble::from(self.moments[k] / size));
-        let [wa, wb, wc] = orbit.axes.map(|k| DoubleDouble::from(self.omega.0[k] / self.scale));
+        let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
+        let [a, b, c] = orbit.axes.map(|k| in_units(self.moments[k], size));
+        let [wa, wb, wc] = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
         let [ma, mb, mc] = [a * wa, b * wb, c * wc];
         let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
         let p = ac * ma * wa + bc * mb * wb;
         let q = ab * mb * wb + ac * mc * wc;
         let g2 = ma * ma + mb * mb + mc * mc;
-        let (g, turn, half) = (g2.sqrt(), orbit.lambda * mean, DoubleDouble::from(0.5));
+        let (g, turn, half) = (g2.sqrt(), Wide::from(orbit.lambda * mean), DoubleDouble::from(0.5));
         // 1 − k²/n.
         let p2 = ac * g2 / (c * q);
-        let part = if p2.hi < FAR {
-            let (_, sum) = mean_and_sum(orbit.kc.into(), p2);
-            p / (c * g * turn) * (DoubleDouble::ONE - sum * half)
+        let part = if p2 < FAR.into() {
+            let (_, sum) = mean_and_sum(orbit.kc, p2.narrow());
+            (p / (c * g * turn)).narrow() * (DoubleDouble::ONE - sum * half)
         } else {
-            let (_, sum) = mean_and_sum(orbit.kc.into(), b * ac / (a * bc));
-            DoubleDouble::ONE + (g * ab * sum * half / (a * b) - q / (a * g)) / turn
+            let (_, sum) = mean_and_sum(orbit.kc, (b * ac / (a * bc)).narrow());
+            let first = (g * ab / (a * b * turn)).narrow() * sum * half;
+            DoubleDouble::ONE + first - (q / (a * g * turn)).narrow()
         };
         Some(2.0 * PI * part.value()).filter(|x| x.is_finite())
     }

@@ -171,7 +171,7 @@ impl Tumbling {
 
         let bcq = bc * q;
         let log_bcq = d_bc * (1.0 / bc) + dq * (1.0 / q);
-        let (m, kc2) = (orbit.k2, orbit.kc * orbit.kc);
+        let (m, kc2) = (orbit.k2, (orbit.kc * orbit.kc).value());
         let parameter = if m < 0.5 {
             (d_ab * p + dp * ab) * (1.0 / bcq) - log_bcq * m
         } else {
@@ -246,7 +246,7 @@ impl Tumbling {
         let y = self.functions(y, self.from_zero.at(0.5 * t).1.0);
         let sine = y.sn * x.dn;
         let twice = 2.0 * y.sn / (y.cn * y.cn + sine * sine);
-        let (tangent, kc) = (x.sn / x.dn, self.orbit.kc);
+        let (tangent, kc) = (x.sn / x.dn, self.orbit.kc.value());
         let part = kc * tangent * y.sn / y.dn;
         Functions {
             cn: -twice * x.sn * x.dn * y.dn,

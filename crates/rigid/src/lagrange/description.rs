@@ -2,6 +2,7 @@
 
 use super::{Form, LagrangeTop};
 use crate::phase::Gyrostat;
+use crate::wide::Wide;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -92,17 +93,17 @@ impl LagrangeTop {
     pub fn describe(&self) -> LagrangeDescription {
         let (axes, start) = (&self.axes, &self.start);
         let momentum = self.momentum();
-        let [below, above] = [start.below.value(), start.above.value()];
+        let above = start.above.value();
         let potential = axes.c * (above - 1.0);
-        let tilt = tilt(below, above);
+        let tilt = tilt(start.below, start.above);
         let g = start.g.map(|g| g.value());
         let vertical = momentum.0[0] * g[0] + momentum.0[1] * g[1] + momentum.0[2] * (above - 1.0);
         let critical_spin = 2.0 * (axes.c * axes.i1).sqrt() / axes.i3;
         let still = LagrangeDescription {
             regime: match () {
                 () if start.omega3 == 0.0 && axes.c == 0.0 => LagrangeRegime::Rest,
-                () if below == 0.0 => LagrangeRegime::Sleeping,
-                () if above == 0.0 => LagrangeRegime::Hanging,
+                () if start.below.is_zero() => LagrangeRegime::Sleeping,
+                () if start.above.is_zero() => LagrangeRegime::Hanging,
                 () => LagrangeRegime::Steady,
             },
             tilt_min: tilt,
@@ -121,27 +122,27 @@ impl LagrangeTop {
             Form::Steady(_) => return still,
             Form::Circular(orbit, _) | Form::Hyperbolic(orbit, _) => orbit,
         };
-        let [w1, w2] = orbit.below.map(|x| x.value());
-        let [z1, z2] = orbit.above.map(|x| x.value());
-        let (tilt_min, tilt_max) = (self::tilt(w2, z2), self::tilt(w1, z1));
-        let (delta, sigma, spin) = (orbit.delta.value(), orbit.sigma.value(), start.spin.value());
-        // b − ℓu at the bounds, and the size of its terms; through a pole the precession has the sign of ±ℓ.
-        let numerator = |below: f64, above: f64| match () {
-            () if below == 0.0 => (spin, spin),
-            () if above == 0.0 => (-spin, spin),
-            () if below < 1.0 => (delta + spin * below, spin * below),
-            () => (sigma - spin * above, spin * above),
-        };
-        let ((upper, term), (lower, _)) = (numerator(w2, z2), numerator(w1, z1));
-        let small = ROUNDING * term.abs();
-        let surplus = orbit.surplus.value();
+        let (delta, sigma, spin) = (orbit.delta, orbit.sigma, start.spin);
+        let [(tilt_max, lower, _), (tilt_min, upper, term)] = [0, 1].map(|k| {
+            let (below, above) = (orbit.below[k], orbit.above[k]);
+            // b − ℓu at the bounds, and the size of its terms; through a pole the precession has the sign of ±ℓ.
+            let (numerator, term) = match () {
+                () if below.is_zero() => (spin, spin),
+                () if above.is_zero() => (-spin, spin),
+                () if below < Wide::ONE => (delta + spin * below, spin * below),
+                () => (sigma - spin * above, spin * above),
+            };
+            (self::tilt(below, above), numerator, term)
+        });
+        let small = term.abs() * ROUNDING.into();
+        let pendulum = delta.is_zero() && sigma.is_zero();
         let regime = match () {
             () if orbit.mean.is_none() => LagrangeRegime::Separatrix,
             () if tilt_max - tilt_min <= ROUNDING => LagrangeRegime::Steady,
-            () if delta == 0.0 && sigma == 0.0 && surplus > 0.0 => LagrangeRegime::Circulating,
-            () if delta == 0.0 && sigma == 0.0 => LagrangeRegime::Swinging,
+            () if pendulum && orbit.surplus.is_positive() => LagrangeRegime::Circulating,
+            () if pendulum => LagrangeRegime::Swinging,
             () if upper.abs() <= small => LagrangeRegime::Cusps,
-            () if (upper < 0.0) != (lower < 0.0) => LagrangeRegime::Loops,
+            () if upper.is_negative() != lower.is_negative() => LagrangeRegime::Loops,
             () => LagrangeRegime::Waves,
         };
         let moving = LagrangeDescription { regime, tilt_min, tilt_max, modulus: orbit.k2.sqrt(), ..still };
@@ -158,13 +159,13 @@ impl LagrangeTop {
         LagrangeDescription {
             nutation_period: Some(period).filter(|x| x.is_finite() && regime != LagrangeRegime::Steady),
             precession_rate: Some(sum.value() * start.scale),
-            spin_rate: Some((difference + start.excess).value() * start.scale),
+            spin_rate: Some((difference + start.excess.narrow()).value() * start.scale),
             ..moving
         }
     }
 }
 
 /// The angle of an axis from e3, from 1 − u and 1 + u.
-fn tilt(below: f64, above: f64) -> f64 {
-    2.0 * below.max(0.0).sqrt().atan2(above.max(0.0).sqrt())
+fn tilt(below: Wide, above: Wide) -> f64 {
+    2.0 * below.sqrt().value().atan2(above.sqrt().value())
 }

@@ -179,7 +179,7 @@ impl Hyperbolic {
 impl Series for Hyperbolic {
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
-        /// `e^{−X}` of half of it is a number still.
+        /// `e^{−X}` is a number still.
         const MOST: f64 = 700.0;
         let (mut z, mut denominator, mut ahead) = ([[[0.0; W]; 2]; 3], [0.0; W], [[0.0; W]; 3]);
         let tail = [-(self.nome * self.nome) * (1.0 + self.nome * self.nome), self.nome.powi(6)];
@@ -197,9 +197,10 @@ impl Series for Hyperbolic {
             let odd = 1.0 - 2.0 * f64::abs(whole);
             let side = 1f64.copysign(part);
             let more = 2.0 * side * rest[l];
-            let near = (4.0 * self.border * (part.abs() + more).max(0.0)).min(MOST);
+            let near = (2.0 * self.border * (part.abs() + more).max(0.0)).min(MOST);
             let far = (4.0 * self.border * ((0.5 - part.abs()) - more).max(0.0)).min(MOST);
-            let (g, g_less) = exp_minus(near);
+            let (root, root_less) = exp_minus(near);
+            let (g, g_less) = (root * root, root_less * (1.0 + root));
             let (f, f_less) = exp_minus(far);
             let qg = self.nome * g;
             let h = f + qg;
@@ -207,7 +208,7 @@ impl Series for Hyperbolic {
             let (cosh, sinh) = (odd * (1.0 + g), odd * (-g_less * side));
             z[0][0][l] = sinh * horner(&self.alpha[0], h);
             z[0][1][l] = cosh * horner(&self.alpha[1], h);
-            let unit = odd * (2.0 * g.sqrt());
+            let unit = odd * (2.0 * root);
             for (z, fourth) in z[1..].iter_mut().zip([&self.beta, &self.across]) {
                 let [re, im] = fourth.value(f, -f_less, qg, tail);
                 z[0][l] = unit * re;

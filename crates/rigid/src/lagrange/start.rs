@@ -1,12 +1,12 @@
 //! What a heavy symmetric top starts with: its axes, and its state in twice the precision.
 
-use crate::double_double::DoubleDouble;
 use crate::free::power_of_two;
 use crate::inertia::Inertia;
 use crate::quaternion::{product, quaternion, turned_back};
 use crate::simulate::check_moments;
 use crate::simulate_error::SimulateError;
-use crate::symmetric_top::equal;
+use crate::symmetric_top::{apart, equal};
+use crate::wide::Wide;
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// How far `c` may point beside the symmetry axis, relative to its size, and be on it: the rounding of axes
@@ -17,14 +17,14 @@ const ASIDE: f64 = 64.0 * f64::EPSILON;
 const NONE: f64 = 1e-250;
 
 /// A complex number of twice the precision.
-pub(super) type Complex = [DoubleDouble; 2];
+pub(super) type Complex = [Wide; 2];
 
 /// `a b*`.
 pub(super) fn times_conjugate(a: Complex, b: Complex) -> Complex {
     [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]]
 }
 
-pub(super) fn square(a: Complex) -> DoubleDouble {
+pub(super) fn square(a: Complex) -> Wide {
     a[0] * a[0] + a[1] * a[1]
 }
 
@@ -37,6 +37,8 @@ pub(super) struct Axes {
     pub i3: f64,
     /// |c|, in N m.
     pub c: f64,
+    /// By what part of them the two moments differ, and c points beside the axis.
+    pub apart: f64,
 }
 
 impl Axes {
@@ -53,18 +55,21 @@ impl Axes {
             .max_by(|&j, &k| along.0[j].abs().total_cmp(&along.0[k].abs()))
             .ok_or(SimulateError::NotSymmetric { moments })?;
         let [x, y] = others(axis);
-        let size = c.norm();
-        let frame = if aside(along, axis) <= ASIDE * size {
-            principal * axis_to(axis, along.0[axis] < 0.0)
+        let (size, beside) = (c.norm(), aside(along, axis));
+        let (frame, beside) = if beside <= ASIDE * size {
+            let beside = if beside > 0.0 { beside / size } else { 0.0 };
+            (principal * axis_to(axis, along.0[axis] < 0.0), beside)
         } else if equal(x, moments[axis]) {
             // Any axis of a sphere is one of symmetry.
-            Rotor::from_vectors(Vector([0.0, 0.0, 1.0]), c).unwrap_or(Rotor::IDENTITY)
+            let frame = Rotor::from_vectors(Vector([0.0, 0.0, 1.0]), c).unwrap_or(Rotor::IDENTITY);
+            (frame, apart(x, moments[axis]))
         } else {
             let mut e = Vector::default();
             e.0[axis] = 1.0;
             return Err(SimulateError::OffAxis { c, axis: principal.apply(e) });
         };
-        Ok(Axes { frame, i1: 0.5 * x + 0.5 * y, i3: moments[axis], c: size })
+        let apart = apart(x, y) + beside;
+        Ok(Axes { frame, i1: 0.5 * x + 0.5 * y, i3: moments[axis], c: size, apart })
     }
 }
 
@@ -90,19 +95,19 @@ pub(super) struct Start {
     /// A power of two near the largest rate, in rad/s.
     pub scale: f64,
     /// 2c/i1.
-    pub gravity: DoubleDouble,
+    pub gravity: Wide,
     /// ℓ = L3/i1.
-    pub spin: DoubleDouble,
+    pub spin: Wide,
     /// What the rate about the axis exceeds ℓ by.
-    pub excess: DoubleDouble,
+    pub excess: Wide,
     /// The rate about the axis, in rad/s.
     pub omega3: f64,
     /// The Cayley–Klein parameters, with their norm.
     pub alpha: Complex,
     pub beta: Complex,
     /// 1 − u and 1 + u.
-    pub below: DoubleDouble,
-    pub above: DoubleDouble,
+    pub below: Wide,
+    pub above: Wide,
     /// g = γ1 + iγ2 and w = ω1 + iω2.
     pub g: Complex,
     pub w: Complex,
@@ -121,19 +126,18 @@ impl Start {
             return Err(SimulateError::BadValue { what, value: fastest });
         }
         let scale = power_of_two([fastest, 0.0, 0.0]);
-        let frame = quaternion(axes.frame);
+        let frame = quaternion::<Wide>(axes.frame);
         let [s, x, y, z] = product(quaternion(rotor), frame);
         let norm = s * s + x * x + y * y + z * z;
         let (alpha, beta) = ([s, z], [y, -x]);
-        let double = |a: DoubleDouble| (a + a) / norm;
+        let double = |a: Wide| (a + a) / norm;
         let [g, g_im] = times_conjugate(beta, alpha).map(double);
-        let [w1, w2, w3] = turned_back(frame, omega.0.map(|w| (w / scale).into()));
+        let [w1, w2, w3] = turned_back(frame, omega.0.map(|w| Wide::from(w) / scale.into()));
         let spin = w3 * axes.i3.into() / axes.i1.into();
-        let unit = power_of_two([axes.c, 0.0, 0.0]);
-        let gravity = DoubleDouble::from(2.0 * (axes.c / unit)) / axes.i1.into();
-        // A power of two, so that nothing is rounded; so small a torque is none up to any horizon.
-        let factor = unit / scale / scale;
-        let gravity = if gravity.hi * factor < NONE { DoubleDouble::ZERO } else { gravity * factor.into() };
+        let square_rate = Wide::from(2.0) * axes.c.into() / axes.i1.into();
+        let gravity = square_rate / scale.into() / scale.into();
+        // So small a torque is none up to any horizon.
+        let gravity = if gravity.value() < NONE { Wide::ZERO } else { gravity };
         Ok(Start {
             scale,
             gravity,
@@ -149,17 +153,9 @@ impl Start {
         })
     }
 
-    /// Whether no torque acts and the axis of rotation is that of the top, for ever. An error where it would be
-    /// so but for a disturbance that grows, and that is below floating point.
-    pub fn is_steady(&self) -> Result<bool, SimulateError> {
-        /// Fourth powers of tilts and rates, relative to the largest rate, must keep their digits.
-        const LEAST: f64 = 1e-130;
-        let (w, g) = (square(self.w).hi, square(self.g).hi);
-        let steady = w < LEAST && (g < LEAST || self.gravity.hi == 0.0);
-        let unstable = self.spin.hi * self.spin.hi < 2.0 * self.gravity.hi && self.below.hi < 1.0;
-        if steady && unstable && (w > 0.0 || g > 0.0) {
-            return Err(SimulateError::NearUpright);
-        }
-        Ok(steady)
+    /// Whether no torque acts and the axis of rotation is that of the top, for ever.
+    pub fn is_steady(&self) -> bool {
+        let zero = |z: Complex| z[0].is_zero() && z[1].is_zero();
+        zero(self.w) && (zero(self.g) || self.gravity.is_zero())
     }
 }

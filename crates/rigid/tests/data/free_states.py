@@ -4,6 +4,7 @@ Jacobi's functions and an incomplete integral of the third kind, of mpmath with 
 differences are as small as 1e-200 of their terms): the way that the module `free` does not go. A line holds
 the kind, moments, angular velocity and time, which are exact floats; then the rotor and the angular velocity
 at that time, each number as a float and what is left of it. All start at the rotor (4, −2, 1, 2)/5.
+The thinnest needles and the least rates are those of the Taylor series of lagrange_states.py, with c = 0.
 
     python free_states.py > free_states.txt
 """

@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from polhode._arrays import Array
+from polhode._arrays import Array, hands_out_copies
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 
 
+@hands_out_copies(
+    "method", "step", "steps", "evaluations", "error_estimate", "conserved", "drift", "norm_drift"
+)
 @dataclass(frozen=True)
 class Certificate:
     """How a run was made, and how far it went astray in what the law conserves.
@@ -100,6 +103,7 @@ class Failure:
         return f"at index {self.index} after {self.time:.6g} s: {self.message}"
 
 
+@hands_out_copies("time", "rising")
 @dataclass(frozen=True, eq=False)
 class Crossings:
     """When and where an event happened, m times, in the order in which they were met: by `abs(time)`.

@@ -10,11 +10,11 @@ import numpy as np
 
 from polhode import _native
 from polhode import force as forces
-from polhode._arrays import as_count, as_float, as_floats
-from polhode._bodies import Body, Inertia
+from polhode._arrays import as_count, as_float, output_times
+from polhode._bodies import Body, Inertia, bodies_of, mapped_objects
 from polhode._certificate import Certificate
 from polhode._coefficients import as_coefficients
-from polhode._ensemble import Ensemble, bodies_of, check_state, mapped_objects, shape_of
+from polhode._ensemble import Ensemble, check_state, shape_of
 from polhode._multivector import Multivector
 from polhode._scene_text import Problem
 from polhode._state import State
@@ -22,7 +22,7 @@ from polhode._trajectory import Trajectory
 from polhode._values import as_point, vector
 from polhode.event import Event
 from polhode.force import Force
-from polhode.torque import Torque, constant_body, function
+from polhode.torque import Torque, constant_body, function, settled
 
 # Bytes of the results in a block, where nobody says how long it is to be.
 _BLOCK = 32 << 20
@@ -54,12 +54,14 @@ def simulate(
     Parameters
     ----------
     body
-        A `Body` or its `Inertia` in kg m². With `ph.torque.heavy` a body is held at the origin of its
-        axes, and an inertia is that about the fixed point. Or a nested sequence or array of them, (...).
+        A `Body` or its `Inertia` in kg m². `ph.torque.gravity` holds a body at its pivot, `ph.torque.heavy`
+        at the origin of its axes; an inertia is then that about the fixed point, which is also what position
+        and velocity of the state are those of. Or a nested sequence or array of them, (...).
     state
         The state at time 0; rotor, angular velocity, position and velocity may be batches, (...).
     times
-        Output times in s, (n,), not decreasing, of either sign.
+        Output times in s, (n,), not decreasing, of either sign: ``[60.0]`` for one, ``np.linspace(0, 60,
+        601)`` for a motion of 60 s.
     torque
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
         free motion. Its numbers may be batches, (...).
@@ -128,10 +130,11 @@ def simulate(
         progress,
     )
     certificate = Certificate(**motion.certificate())
+    bodies, law = settled(bodies_of(body), as_torque(torque))
     problem = Problem(
-        bodies_of(body)[()],
+        bodies[()],
         state,
-        as_torque(torque),
+        law,
         None if force is None else as_force(force),
         given.times,
         given.method,
@@ -216,18 +219,15 @@ def _given(
     step: float | None,
 ) -> Ensemble:
     """Return what is to be simulated, checked."""
-    torque = as_torque(torque)
+    bodies, torque = settled(bodies_of(body), as_torque(torque))
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     check_state(state)
-    bodies = bodies_of(body)
-    when = np.atleast_1d(as_floats(times, "times"))
-    if when.ndim != 1:
-        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
+    when = output_times(times)
     pushes, thrust = _forces(force, bodies)
     held = torque is not None and torque.holds
     if held and pushes:
-        raise ValueError("with ph.torque.heavy the body is held at a fixed point: no force moves it")
+        raise ValueError("gravity and heavy of ph.torque hold the body at a fixed point: no force moves it")
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
@@ -235,9 +235,9 @@ def _given(
         shape_of(bodies, state, torque.shape if torque else ()),
         mapped_objects(lambda one: _ruling_inertia(one, held), bodies),
         as_coefficients(state.rotor._data, "the rotor", float),
-        state.omega_body.components,
-        state.position.components,
-        state.velocity.components,
+        state.omega_body._data,
+        state.position._data,
+        state.velocity._data,
         np.array(masses).reshape(bodies.shape),
         torque.laws if torque else (),
         tuple(pushes),

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from polhode._arrays import as_float, as_floats
+from polhode._arrays import as_float, check_line, output_times
 from polhode.jax._laws import Torque
-from polhode.jax._library import jax, jnp
+from polhode.jax._library import jax
 from polhode.jax._table import Table
 
 Array = Any
@@ -42,10 +42,11 @@ def ways(times: Any, step: float | None, steps: int | None, torque: Torque) -> l
     if isinstance(times, jax.core.Tracer):
         if steps is None:
             raise ValueError("with traced times the number of steps is not known; give steps instead of step")
-        when = jnp.atleast_1d(times)
+        check_line(times.shape, times)
+        when = times
         counts = np.full(when.shape, steps)
         return [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
-    when = np.atleast_1d(as_floats(times, "times"))
+    when = output_times(times)
     _check(when, tables)
     length = _positive(step)
     breaks = np.unique([t for law in tables for t in law.times])
@@ -80,8 +81,6 @@ def _way(when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
 
 
 def _check(when: Any, tables: list[Table]) -> None:
-    if when.ndim != 1:
-        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
     for index, time in enumerate(when.tolist()):
         if not np.isfinite(time) or (index and time < when[index - 1]):
             raise ValueError(f"times[{index}] = {time}; times must be finite and must not decrease")

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_bivectors, as_vectors, bivector, vector
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 _ORIGIN = vector([0.0, 0.0, 0.0])
 
@@ -33,6 +36,16 @@ class State:
     omega_body: Multivector
     position: Multivector = 0  # type: ignore[assignment]
     velocity: Multivector = 0  # type: ignore[assignment]
+
+    if TYPE_CHECKING:  # what is taken, beside what is kept
+
+        def __init__(
+            self,
+            rotor: Rotor,
+            omega_body: Multivector | ArrayLike,
+            position: Multivector | ArrayLike = 0,
+            velocity: Multivector | ArrayLike = 0,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         if not isinstance(self.rotor, Rotor):

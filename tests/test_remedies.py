@@ -57,7 +57,7 @@ def test_a_missing_scene_is_a_scene_error_too(tmp_path):
     with pytest.raises(ph.SceneError, match="is a directory") as error:
         ph.Scene.read(tmp_path)
     assert not isinstance(error.value, FileNotFoundError)
-    for command in (("run",), ("check",), ("figure", "motion", "-o", "a.png")):
+    for command in (("run",), ("check",), ("figure", "-o", "a.png", "motion")):
         done = polhode(*command, "absent.toml", cwd=tmp_path)
         assert done.returncode == 3
         assert done.stderr == "absent.toml: error: no such file\n"

@@ -56,7 +56,8 @@ class Certificate:
         finished = ~np.isnan(self.norm_drift)
         if not finished.any():
             return np.nan
-        told = ((self.drift[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
+        drifts = self.drift
+        told = ((drifts[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
         columns = [(self.norm_drift, finished), *told]
         return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
 
@@ -67,7 +68,8 @@ class Certificate:
             found = np.asarray(numbers[index])
             return found if found.ndim else found.item()
 
-        kept = [name for name, start in self.conserved.items() if not np.all(np.isnan(start[index]))]
+        conserved, drifts = self.conserved, self.drift
+        kept = [name for name, start in conserved.items() if not np.all(np.isnan(start[index]))]
         estimate = picked(self.error_estimate)
         return Certificate(
             self.method if isinstance(self.method, str) else picked(self.method),
@@ -75,8 +77,8 @@ class Certificate:
             picked(self.steps),
             picked(self.evaluations),
             None if np.ndim(estimate) == 0 and np.isnan(estimate) else estimate,
-            {name: picked(self.conserved[name]) for name in kept},
-            {name: picked(self.drift[name]) for name in kept},
+            {name: picked(conserved[name]) for name in kept},
+            {name: picked(drifts[name]) for name in kept},
             picked(self.norm_drift),
         )
 

@@ -16,8 +16,8 @@ use std::fmt;
 
 /// Largest angle in rad between a weight's moment and the centre of mass that counts as rounding of typed numbers.
 const ALIGNED: f64 = 1e-6;
-/// Distance of the centre of mass from a point, in radii of gyration, below which the two coincide.
-const COINCIDENT: f64 = 1e-9;
+/// Larger accelerations in m/s² are those of a centre of mass that lies at the fixed point but for rounding.
+const LARGEST_ACCELERATION: f64 = 1e6;
 
 /// A rigid body: mass in kg, centre of mass in m, inertia about the centre of mass in kg m², all in body
 /// axes. [`Body::new`] checks them.
@@ -90,11 +90,11 @@ impl Body {
     /// Whether c is the moment of this body's weight about the origin for some acceleration `g >= 0`.
     pub fn has_weight_moment(&self, c: Vector) -> bool {
         let (size, distance) = (c.norm(), self.center_of_mass.norm());
-        let radius = (self.inertia.principal_moments().into_iter().fold(0.0, f64::max) / self.mass).sqrt();
-        let along = c * size.recip();
-        let axis = self.center_of_mass * distance.recip();
-        size == 0.0
-            || distance > COINCIDENT * radius && along.dot(axis) > 0.0 && along.wedge(axis).norm() <= ALIGNED
+        if size == 0.0 || size > LARGEST_ACCELERATION * self.mass * distance {
+            return size == 0.0;
+        }
+        let (along, axis) = (c * size.recip(), self.center_of_mass * distance.recip());
+        along.dot(axis) > 0.0 && along.wedge(axis).norm() <= ALIGNED
     }
 
     /// The body after `x ↦ R x ~R + position`.

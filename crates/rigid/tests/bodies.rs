@@ -146,6 +146,9 @@ proptest! {
         prop_assert!(held.has_weight_moment(c) && held.has_weight_moment(turned(1e-7)));
         prop_assert!(!held.has_weight_moment(-c) && !held.has_weight_moment(turned(1e-5)));
         prop_assert!(held.has_weight_moment(Vector::default()));
+        // Were the centre of mass at the fixed point but for rounding, it would take no such weight.
+        let centered = Body { center_of_mass: held.center_of_mass * 1e-16, ..held };
+        prop_assert!(!centered.has_weight_moment(c) && centered.has_weight_moment(c * 1e-16));
     }
 
     /// A rigid set of points in a plane is a valid body however it is turned, with i1 + i2 = i3.

@@ -140,6 +140,11 @@ def test_a_weight_that_contradicts_the_body_is_refused(name):
     assert ph.simulate(body.inertia, START, [0.1], law).certificate.conserved.keys() >= {"energy"}
 
 
+def test_a_closed_form_asks_for_the_inertia_about_the_pivot():
+    with pytest.raises(TypeError, match=r"see Body\.inertia_about\(pivot\)"):
+        ph.LagrangeTop(TOP, TILTED, [0.1, 0, 20], [0, 0, 0.2])
+
+
 def test_a_weight_typed_with_six_digits_is_taken():
     c = moment(BENT, G, [0, 0, 0]).components
     typed = [float(f"{x:.7g}") for x in c]

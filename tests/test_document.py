@@ -481,7 +481,7 @@ def test_other_files_are_refused(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"absent.nc: no such file"):
         ph.Trajectory.read(tmp_path / "absent.nc")
     (tmp_path / "folder.nc").mkdir()
-    with pytest.raises(OSError, match=r"folder.nc: is no regular file"):
+    with pytest.raises(OSError, match=r"folder.nc: not a regular file"):
         ph.Trajectory.read(tmp_path / "folder.nc")
     (tmp_path / "noise.nc").write_bytes(b"noise")
     with pytest.raises(OSError, match=r"noise.nc is no netCDF file"):

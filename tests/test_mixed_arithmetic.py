@@ -441,8 +441,8 @@ def test_no_operation_changes_its_operands():
         ):
             result = operate(A)
             assert result.components is not array
-            with pytest.raises(ValueError, match="read-only"):
-                result.components[...] = 0
+            result.components[...] = 0
+            assert result.components is not array
         assert np.array_equal(array, before)
         assert np.array_equal(A.components, kept)
     assert (e1, e2, e3) == (ph.vector([1, 0, 0]), ph.vector([0, 1, 0]), ph.vector([0, 0, 1]))

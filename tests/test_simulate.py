@@ -33,7 +33,7 @@ def test_output_times_do_not_change_the_motion(torque):
     assert together.rotor[2] == together.rotor[3]
     assert together.rotor[5] == together.rotor[6]
     for k, t in enumerate(at):
-        alone = ph.simulate(ASYMMETRIC, START, t, torque, method=STEPS)
+        alone = ph.simulate(ASYMMETRIC, START, [t], torque, method=STEPS)
         assert alone.time.shape == (1,)
         rotors, omegas = together.rotor.components[[k]], together.omega_body.components[[k]]
         estimates = together.certificate.error_estimate + alone.certificate.error_estimate
@@ -44,7 +44,7 @@ def test_output_times_do_not_change_the_exact_motion():
     at = [-3.0, -0.5, 0.0, 0.0, 2.5, 7.0, 7.0]
     together = ph.simulate(ASYMMETRIC, START, at)
     for k, t in enumerate(at):
-        alone = ph.simulate(ASYMMETRIC, START, t)
+        alone = ph.simulate(ASYMMETRIC, START, [t])
         assert alone.rotor[0] == together.rotor[k]
         assert alone.omega_body[0] == together.omega_body[k]
 
@@ -151,6 +151,8 @@ BOX = ph.Body.box([1, 2, 3], mass=1.0)
         ({"times": [0.0, np.inf]}, ["times[1]", "inf"]),
         ({"times": [0.0, 2.0, 1.0]}, ["times[2]", "1", "decrease"]),
         ({"times": [[0.0, 1.0]]}, ["one-dimensional", "(1, 2)"]),
+        ({"times": 60}, ["times", "60", "[T]", "np.linspace(0, T, n)"]),
+        ({"times": np.float64(60)}, ["times", "60", "[T]"]),
         ({"method": "euler"}, ["'euler'", "kahan_li8"]),
         ({"rtol": 1e-17, "method": STEPS}, ["rtol = 1.0e-17", "not reached", "rtol >="]),
         ({"body": ph.Body.rod(1.0, mass=1.0)}, ["0 kg m²", "thickness"]),

@@ -330,7 +330,10 @@ def test_how_laws_are_shown():
         (lambda T: T.tabulated([0, 1], np.zeros((2, 3))).at(BODY, START, 1.5), ["1.5", "0 s to 1 s"]),
         (lambda T: T.heavy([0, 0, 1]).at(BODY, START, np.nan), ["t", "nan"]),
         (lambda T: T.heavy([0, 0, 1]).at(BODY, ph.State(R0, np.eye(3))), ["single", "(3,)"]),
-        (lambda T: T.heavy([0, 0, 1]).at(ph.Body.rod(1.0, mass=1.0), START), ["moments 0, ", "thickness"]),
+        (
+            lambda T: T.damping(1).at(ph.Body.rod(1.0, mass=1.0), START),
+            ["0 kg m² include a zero", "thickness"],
+        ),
     ],
 )
 def test_values_that_are_no_laws(make, parts):

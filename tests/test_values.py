@@ -200,7 +200,7 @@ def test_pickle_and_copy(A):
         assert type(twin) is type(A)
         assert twin.grades == A.grades
         assert np.all(twin == A)
-        assert not twin.components.flags.writeable
+        assert np.array_equal(twin.components, A.components)
 
 
 def test_values_are_immutable():
@@ -209,12 +209,11 @@ def test_values_are_immutable():
         A.shape = (3,)
     with pytest.raises(AttributeError, match="immutable"):
         A.e4 = 1
-    with pytest.raises(ValueError, match="read-only"):
-        A.components[0] = 5
+    A.components[0] = 5
+    A[0].components[0] = 5
     with pytest.raises(TypeError):
         A[0] = e1
-    with pytest.raises(ValueError, match="read-only"):
-        A[0].components[0] = 5
+    assert np.all(ph.vector([1, 1, 1]) == A)
 
 
 def test_values_do_not_share_the_callers_array():
@@ -224,7 +223,7 @@ def test_values_do_not_share_the_callers_array():
     assert numbers_in.flags.writeable
     assert np.all(ph.vector([1, 1, 1]) == A)
     assert np.all(s == 1)
-    assert not R.components.flags.writeable
+    assert np.all(ph.Rotor.from_components([1, 1, 1, 1]) == R)
 
 
 def test_a_mapped_value_has_coefficients():
@@ -266,10 +265,11 @@ def test_in_place_operators_make_new_values():
 def test_multivectors_have_no_hash_and_no_constructor():
     with pytest.raises(TypeError, match="unhashable"):
         hash(e1)
-    with pytest.raises(TypeError, match=r"use ph\.vector"):
+    with pytest.raises(TypeError, match=r"use ph\.scalar, ph\.vector"):
         ph.Multivector()
-    with pytest.raises(TypeError, match="Rotor is not made directly"):
+    with pytest.raises(TypeError, match=r"Rotor is not made directly; use Rotor\.from_") as refused:
         ph.Rotor([1, 0, 0, 0])
+    assert "ph.vector" not in str(refused.value)
 
 
 # --- text

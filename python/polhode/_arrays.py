@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 else:
     Array = np.ndarray
 Shape = tuple[int, ...]
+T = TypeVar("T")
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
 _LARGE = 1 << 20  # bytes; smaller ones the allocator keeps itself
@@ -45,6 +46,24 @@ def as_float(value: Any, what: str) -> float:
     if array.ndim:
         raise TypeError(f"{what} must be one number, got shape {array.shape}")
     return float(array)
+
+
+def output_times(times: Any) -> Array:
+    """Return times (n,); a single number, which would be read as a duration, is a ValueError."""
+    array = as_floats(times, "times")
+    check_line(array.shape, times)
+    return array
+
+
+def check_line(shape: Shape, times: Any) -> None:
+    """Raise a ValueError unless this is the shape of times (n,)."""
+    if not shape:
+        raise ValueError(
+            f"times must be an array of output times, got the number {times}; give [T] for the state at time "
+            "T alone, or np.linspace(0, T, n) for the motion up to T"
+        )
+    if len(shape) != 1:
+        raise ValueError(f"times must be one-dimensional, got shape {shape}")
 
 
 def as_count(value: Any, what: str) -> int:
@@ -89,6 +108,46 @@ def frozen(array: Array) -> Array:
     """Return the array, marked read-only."""
     array.flags.writeable = False
     return array
+
+
+def copied(value: Any) -> Any:
+    """Return a copy of a NumPy array, for a caller who may change it and not the value that holds it.
+
+    Of a dictionary return one of copies; anything else as it is.
+    """
+    if isinstance(value, dict):
+        return {name: copied(x) for name, x in value.items()}
+    if not isinstance(value, np.ndarray):
+        return value
+    if value.nbytes < _LARGE or value.dtype == object:
+        return value.copy()
+    copy = new(value.shape, value.dtype)
+    np.copyto(copy, value)
+    return copy
+
+
+class _Copied:
+    """An attribute that holds an array and gives copies of it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, instance: Any, owner: Any = None) -> Any:
+        return self if instance is None else copied(instance.__dict__[self._name])
+
+    def __set__(self, instance: Any, value: Any) -> None:
+        instance.__dict__[self._name] = value
+
+
+def hands_out_copies(*names: str) -> Callable[[type[T]], type[T]]:
+    """Make these fields of a frozen dataclass, which hold arrays, give copies of them."""
+
+    def with_copies(cls: type[T]) -> type[T]:
+        for name in names:
+            setattr(cls, name, _Copied(name))
+        return cls
+
+    return with_copies
 
 
 def rows(data: Array, batch: Shape) -> Array:

@@ -230,9 +230,16 @@ class Body:
     ) -> Body:
         """From a closed triangle mesh (STL, OBJ or PLY), exactly; `scale` turns its coordinates into metres.
 
-        A missing or corrupt file, an open, inconsistently wound, inside-out or degenerate mesh is an
-        error that says where.
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        ValueError
+            For a corrupt file, and for a mesh that is open, inconsistently wound, inside out or degenerate;
+            with the place.
         """
+        if not os.path.lexists(path):
+            raise FileNotFoundError(f"{os.fspath(path)}: no such file")
         return Body._of(
             _native.Body.from_mesh(os.fspath(path), as_float(scale, "the scale"), *_amount(mass, density))
         )
@@ -311,3 +318,28 @@ def _points(masses: Any, positions: Any) -> tuple[Array, Array]:
     if m.ndim != 1 or x.shape != (m.size, 3):
         raise ValueError(f"from_points needs masses (n,) and positions (n, 3), got {m.shape} and {x.shape}")
     return m, x
+
+
+# --- arrays of bodies
+
+
+def bodies_of(body: Any) -> Any:
+    """Return an array of objects, all of them bodies or inertias, from one or a nested sequence of them."""
+    array: Any = np.empty((), dtype=object)
+    if isinstance(body, list | tuple | np.ndarray):
+        array = np.array(body, dtype=object)
+    else:
+        array[()] = body
+    if not {*map(type, array.flat)} <= {Body, Inertia}:
+        for index, one in np.ndenumerate(array):
+            if not isinstance(one, Body | Inertia):
+                where = f"at index {index}: " if index else ""
+                raise TypeError(f"{where}body must be a Body or an Inertia, got {type(one).__name__}")
+    return array
+
+
+def mapped_objects(f: Callable[[Any], Any], array: Any) -> Any:
+    """Return f of the objects of an array, as such an array."""
+    result: Any = np.empty(array.shape, dtype=object)
+    result.ravel()[:] = [f(one) for one in array.flat]
+    return result

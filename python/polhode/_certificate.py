@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from polhode._arrays import Array
+from polhode._arrays import Array, hands_out_copies
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._state import State
 
 
+@hands_out_copies(
+    "method", "step", "steps", "evaluations", "error_estimate", "conserved", "drift", "norm_drift"
+)
 @dataclass(frozen=True)
 class Certificate:
     """How a run was made, and how far it went astray in what the law conserves.
@@ -60,7 +63,8 @@ class Certificate:
         finished = ~np.isnan(self.norm_drift)
         if not finished.any():
             return np.nan
-        told = ((self.drift[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
+        drifts = self.drift
+        told = ((drifts[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
         columns = [(self.norm_drift, finished), *told]
         return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
 
@@ -71,7 +75,8 @@ class Certificate:
             found = np.asarray(numbers[index])
             return found if found.ndim else found.item()
 
-        kept = [name for name, start in self.conserved.items() if not np.all(np.isnan(start[index]))]
+        conserved, drifts = self.conserved, self.drift
+        kept = [name for name, start in conserved.items() if not np.all(np.isnan(start[index]))]
         estimate = picked(self.error_estimate)
         return Certificate(
             self.method if isinstance(self.method, str) else picked(self.method),
@@ -79,8 +84,8 @@ class Certificate:
             picked(self.steps),
             picked(self.evaluations),
             None if np.ndim(estimate) == 0 and np.isnan(estimate) else estimate,
-            {name: picked(self.conserved[name]) for name in kept},
-            {name: picked(self.drift[name]) for name in kept},
+            {name: picked(conserved[name]) for name in kept},
+            {name: picked(drifts[name]) for name in kept},
             picked(self.norm_drift),
             self.warnings,
         )
@@ -108,6 +113,7 @@ class Failure:
         return f"at index {self.index} after {self.time:.6g} s: {self.message}"
 
 
+@hands_out_copies("time", "rising")
 @dataclass(frozen=True, eq=False)
 class Crossings:
     """When and where an event happened, m times, in the order in which they were met: by `abs(time)`.

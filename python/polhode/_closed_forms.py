@@ -90,7 +90,7 @@ class LagrangeTop(_ClosedForm):
     _solution: _native.LagrangeTop
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, c: Any) -> None:
-        start = _start(inertia, rotor, omega_body)
+        start = _start(inertia, rotor, omega_body, "Body.inertia_about(pivot)")
         c = as_point(c, "c")
         self._solution = _native.LagrangeTop(inertia._core, start.rotor._data, start.omega_body._data, c)
         self._given = inertia, start.rotor, start.omega_body, c
@@ -139,9 +139,9 @@ class LarmorSphere(_ClosedForm):
         self._given = inertia, start.rotor, start.omega_body, b
 
 
-def _start(inertia: Inertia, rotor: Rotor, omega_body: Any) -> State:
+def _start(inertia: Inertia, rotor: Rotor, omega_body: Any, remedy: str = "Body.inertia") -> State:
     if not isinstance(inertia, Inertia):
-        raise TypeError(f"inertia must be an Inertia, got {type(inertia).__name__}; see Body.inertia")
+        raise TypeError(f"inertia must be an Inertia, got {type(inertia).__name__}; see {remedy}")
     start = State(rotor, omega_body)
     if start.rotor.shape or start.omega_body.shape:
         shapes = (start.rotor.shape, start.omega_body.shape)

@@ -55,11 +55,11 @@ def states_at(trajectory: Trajectory, times: Array) -> Samples:
     after = np.clip(np.searchsorted(trajectory.time, times), 1, len(trajectory.time) - 1)
     middles = 0.5 * (trajectory.time[after - 1] + trajectory.time[after])
     rows = np.where(times < middles, after - 1, after)
-    rotors = Rotor._from_rows(trajectory.rotor.components[rows])
+    rotors = Rotor._from_rows(trajectory.rotor._data[rows])
     return Samples(trajectory.time[rows], rotors, trajectory.omega_body[rows])
 
 
 def rotor_at(trajectory: Trajectory, k: int) -> Rotor:
     """Return the rotor at an output time by its number, as a rotor."""
-    rotor: Rotor = Rotor._from_rows(trajectory.rotor.components[k])
+    rotor: Rotor = Rotor._from_rows(trajectory.rotor._data[k])
     return rotor

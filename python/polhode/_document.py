@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from polhode._arrays import as_float
-from polhode._bodies import Body, Inertia
+from polhode._bodies import Body, Inertia, bodies_of
 from polhode._closed_forms import DampedTop, LagrangeTop, LarmorSphere, _ClosedForm
 from polhode._free_motion import FreeMotion
 from polhode._made import finite
@@ -31,7 +31,7 @@ from polhode._simulate import as_force, as_torque, simulate
 from polhode._state import State
 from polhode._trajectory import Trajectory
 from polhode._values import bivector
-from polhode.torque import Torque, damping, heavy, larmor
+from polhode.torque import Torque, damping, heavy, larmor, settled
 
 Document = dict[str, Any]
 
@@ -78,7 +78,9 @@ def document(
         if not isinstance(state, State):
             raise TypeError(f"state must be a State, got {type(state).__name__}")
         law, push = as_torque(torque), None if force is None else as_force(force)
-        return _of_problem(_problem(x, state, law, push, duration))
+        _refuse_batch(state, law)
+        bodies, law = settled(bodies_of(x), law)
+        return _of_problem(_problem(bodies[()], state, law, push, duration))
     _refuse(x, state=state, torque=torque, force=force)
     if isinstance(x, (FreeMotion, _ClosedForm)):
         return _of_problem(_solved(x, duration))
@@ -221,13 +223,17 @@ def _problem(body: Body | Inertia, state: State, torque: Torque | None, force: A
 
 def _of_problem(problem: Problem) -> Document:
     """Return the document of a motion that was only asked for; what no scene can say is followed here."""
-    state, torque = problem.state, problem.torque
-    if state.shape or (torque is not None and torque.shape):
-        raise ValueError("the viewer shows one body, this is a batch; pick one of them")
+    _refuse_batch(problem.state, problem.torque)
     try:
         return {"format": 1, "scene": problem.scene(), "name": "motion.toml"}
     except UnwritableError:
-        return of_trajectory(simulate(problem.body, state, problem.times, torque, problem.force))
+        motion = simulate(problem.body, problem.state, problem.times, problem.torque, problem.force)
+        return of_trajectory(motion)
+
+
+def _refuse_batch(state: State, torque: Torque | None) -> None:
+    if state.rotor.shape or state.omega_body.shape or (torque is not None and torque.shape):
+        raise ValueError("the viewer shows one body, this is a batch; pick one of them")
 
 
 def _solved(motion: FreeMotion | _ClosedForm, duration: float | None) -> Problem:

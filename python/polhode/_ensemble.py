@@ -13,7 +13,6 @@ import numpy as np
 from polhode import _memory, _native
 from polhode._arrays import Array, Shape, frozen
 from polhode._batch import Batch, check_finite, common
-from polhode._bodies import Body, Inertia
 from polhode._certificate import Certificate, Failure
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
@@ -219,28 +218,6 @@ def warn_of(certificate: Certificate) -> None:
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
 
 
-def bodies_of(body: Any) -> Any:
-    """Return an array of objects, all of them bodies or inertias, from one or a nested sequence of them."""
-    array: Any = np.empty((), dtype=object)
-    if isinstance(body, list | tuple | np.ndarray):
-        array = np.array(body, dtype=object)
-    else:
-        array[()] = body
-    if not {*map(type, array.flat)} <= {Body, Inertia}:
-        for index, one in np.ndenumerate(array):
-            if not isinstance(one, Body | Inertia):
-                where = f"at index {index}: " if index else ""
-                raise TypeError(f"{where}body must be a Body or an Inertia, got {type(one).__name__}")
-    return array
-
-
-def mapped_objects(f: Callable[[Any], Any], array: Any) -> Any:
-    """Return f of the objects of an array, as such an array."""
-    result: Any = np.empty(array.shape, dtype=object)
-    result.ravel()[:] = [f(one) for one in array.flat]
-    return result
-
-
 def shape_of(bodies: Any, state: State, torque_shape: Shape) -> Shape:
     """Return the shape to which body, state and torque broadcast."""
     shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque_shape}
@@ -252,6 +229,6 @@ def check_state(state: State) -> None:
     if not isinstance(state, State):
         raise TypeError(f"state must be a State, got {type(state).__name__}")
     for name in ("position", "velocity"):
-        check_finite(getattr(state, name).components, f"the {name}")
-    check_finite(state.omega_body.components, "the angular velocity")
+        check_finite(getattr(state, name)._data, f"the {name}")
+    check_finite(state.omega_body._data, "the angular velocity")
     check_finite(np.asarray(state.time)[..., np.newaxis], "the time of the state")

@@ -143,11 +143,11 @@ class EnsembleFile:
     def _motions(self, rows: slice, trajectory: Trajectory) -> None:
         quaternions = trajectory.rotor.to_quaternion(order="wxyz")
         self._grow(rows, "attitude", ("time", "quaternion"), quaternions, "1", "attitude, body to space")
-        omegas = trajectory.omega_body.components
+        omegas = trajectory.omega_body._data
         self._grow(rows, "omega_body", ("time", "axis"), omegas, "rad/s", "angular velocity in body axes")
         energy = "rotational kinetic and potential energy"
         if kind_of(self._scene) == "free":
-            momenta = trajectory.momentum_space.components[:, 0]
+            momenta = trajectory.momentum_space._data[:, 0]
             text = "angular momentum in space axes, constant"
             self._grow(rows, "momentum_space", ("axis",), momenta, "kg m^2/s", text)
             self._grow(rows, "energy", (), trajectory.energy[:, 0], "J", f"{energy}, constant")
@@ -168,7 +168,7 @@ class EnsembleFile:
             ("position", "m", "centre of mass in space"),
             ("velocity", "m/s", "velocity of the centre of mass"),
         ):
-            values = getattr(trajectory, name).components
+            values = getattr(trajectory, name)._data
             if self._scene.force is not None:
                 self._grow(rows, name, ("time", "axis"), values, units, text)
             else:
@@ -177,7 +177,7 @@ class EnsembleFile:
     @property
     def _moves(self) -> bool:
         state = self._scene.state
-        given = np.any(state.position.components) or np.any(state.velocity.components)
+        given = np.any(state.position._data) or np.any(state.velocity._data)
         return bool(given) or not {"position", "velocity"}.isdisjoint(self._ensemble.varied)
 
     def _proofs(self, rows: slice, trajectory: Trajectory) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, Shape, as_float, as_floats, frozen
+from polhode._arrays import Array, Shape, as_float, as_floats, frozen, hands_out_copies
 from polhode._bodies import Inertia
 from polhode._coefficients import as_coefficients
 from polhode._memory import require
@@ -229,6 +229,15 @@ class FreeMotion:
         )
 
 
+@hands_out_copies(
+    "d_rotor_d_attitude",
+    "d_rotor_d_omega",
+    "d_rotor_d_moments",
+    "d_rotor_dt",
+    "d_omega_d_omega",
+    "d_omega_d_moments",
+    "d_omega_dt",
+)
 @dataclass(frozen=True, eq=False)
 class FlowDerivatives:
     """Derivatives of the state of a free motion at time t, for a batch of times and bodies of shape (...).

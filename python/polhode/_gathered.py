@@ -92,14 +92,14 @@ class Gathered:
 
     def add(self, rows: slice, trajectory: Trajectory) -> None:
         """Take in the motions of the bodies that follow those before."""
-        turns = (trajectory.rotor * ~self.nominal.rotor).components
+        turns = (trajectory.rotor * ~self.nominal.rotor)._data
         self.series["from_nominal"][rows] = 2 * np.arctan2(
             np.linalg.norm(turns[..., 1:], axis=-1), np.abs(turns[..., 0])
         )
-        momenta = trajectory.momentum_space.components
+        momenta = trajectory.momentum_space._data
         path = trajectory.rotor(vector(self.axis)).components
         self.series["tilt"][rows] = _angle(path, momenta if self._reference is None else self._reference)
-        self.series["rate"][rows] = np.linalg.norm(trajectory.omega_body.components, axis=-1)
+        self.series["rate"][rows] = np.linalg.norm(trajectory.omega_body._data, axis=-1)
         self.directions[rows] = path[:, self.shown]
         for end, k in (("start", 0), ("end", -1)):
             self.bodies[f"energy_{end}"][rows] = trajectory.energy[:, k]
@@ -111,12 +111,12 @@ class Gathered:
 
     def _describe(self, rows: slice, trajectory: Trajectory) -> None:
         """Tell of free motions what their starts tell."""
-        starts = trajectory.omega_body.components[:, 0]
+        starts = trajectory.omega_body._data[:, 0]
         known = np.flatnonzero(np.isfinite(starts).all(axis=-1))
         each = isinstance(trajectory.inertia, np.ndarray)
         told = FreeMotion(
             trajectory.inertia[known] if each else trajectory.inertia,
-            Rotor._from_rows(np.ascontiguousarray(trajectory.rotor.components[known, 0])),
+            Rotor._from_rows(np.ascontiguousarray(trajectory.rotor._data[known, 0])),
             starts[known],
         ).describe()
         for name in PERIODS:

@@ -22,7 +22,7 @@ def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
     for value in (R, S):
         if not isinstance(value, Rotor):
             raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
-    step = (~R * S).components
+    step = (~R * S)._data
     shorter = Rotor.from_components(namespace(step).where(step[..., :1] < 0, -step, step))
     path: Rotor = R * shorter**t
     return path
@@ -78,14 +78,14 @@ class RotorSpline:
             i = int(np.argmin(np.diff(knots) > 0))
             raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
         self._times = frozen(knots)
-        self._values = frozen(_one_sheet(rotors.astype(float).components))
+        self._values = frozen(_one_sheet(rotors.astype(float)._data))
         self._slopes = frozen(_spline_slopes(knots, self._values))
         _require_near(knots, self._values, self._slopes)
 
     @property
     def times(self) -> Array:
         """The times (n,) of the rotors."""
-        return self._times
+        return self._times.copy()
 
     @property
     def rotors(self) -> Rotor:

@@ -48,15 +48,15 @@ def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
         return variable((*body, "time", *dims), flat, units, text)
 
     along, axes = (), ("axis",)
-    omega, momentum = trajectory.omega_body.components, trajectory.momentum_space.components
+    omega, momentum = trajectory.omega_body._data, trajectory.momentum_space._data
     variables = {
         "attitude": moving(
             ("quaternion",), trajectory.rotor.to_quaternion(order="wxyz"), "1", "attitude, body to space"
         ),
         "omega_body": moving(axes, omega, "rad/s", "angular velocity in body axes"),
         "momentum_space": moving(axes, momentum, "kg m^2/s", "angular momentum in space axes"),
-        "position": moving(axes, trajectory.position.components, "m", "centre of mass in space"),
-        "velocity": moving(axes, trajectory.velocity.components, "m/s", "velocity of the centre of mass"),
+        "position": moving(axes, trajectory.position._data, "m", "centre of mass in space"),
+        "velocity": moving(axes, trajectory.velocity._data, "m/s", "velocity of the centre of mass"),
         "energy": moving(along, trajectory.energy, "J", "rotational kinetic and potential energy"),
         "inertia": _inertia(trajectory, variable),
     }
@@ -122,7 +122,7 @@ def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
 
     names = np.array([event.name for event in events for _ in event.time], dtype=object)
     attitude = joined(lambda event: event.rotor.to_quaternion(order="wxyz"))
-    omega = joined(lambda event: event.omega_body.components)
+    omega = joined(lambda event: event.omega_body._data)
     return {
         "event_name": (along, names, {"long_name": "what passed zero"}),
         "event_time": variable(along, joined(lambda event: event.time), "s", "time of the event"),
@@ -130,10 +130,10 @@ def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
         "event_attitude": variable(("event", "quaternion"), attitude, "1", "attitude, body to space"),
         "event_omega_body": variable(axes, omega, "rad/s", "angular velocity in body axes"),
         "event_position": variable(
-            axes, joined(lambda event: event.position.components), "m", "centre of mass in space"
+            axes, joined(lambda event: event.position._data), "m", "centre of mass in space"
         ),
         "event_velocity": variable(
-            axes, joined(lambda event: event.velocity.components), "m/s", "velocity of the centre of mass"
+            axes, joined(lambda event: event.velocity._data), "m/s", "velocity of the centre of mass"
         ),
     }
 
@@ -218,9 +218,10 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
 def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arrays and the attributes of a file."""
     library = optional("h5py", "io", "a netCDF file")
+    if not os.path.exists(path):
+        raise FileNotFoundError(f"{path}: no such file")
     if not os.path.isfile(path):
-        missing = "is no regular file" if os.path.exists(path) else "no such file"
-        raise FileNotFoundError(f"{path}: {missing}")
+        raise OSError(f"{path}: not a regular file")
     try:
         with library.File(path, "r") as file:
             attributes = {name: _attribute(x) for name, x in file.attrs.items()}

@@ -79,8 +79,8 @@ class LinearMap:
 
     @property
     def matrix(self) -> Array:
-        """The matrices (..., 3, 3) over e1, e2, e3, or for grade 2 over e2e3, e3e1, e1e2; read-only."""
-        return self._matrix
+        """The matrices (..., 3, 3) over e1, e2, e3, or for grade 2 over e2e3, e3e1, e1e2."""
+        return self._matrix.copy()
 
     @property
     def shape(self) -> Shape:

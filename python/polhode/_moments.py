@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._arrays import Array, as_floats, frozen
+from polhode._arrays import Array, as_floats
 from polhode._multivector import Multivector
 
 
@@ -42,7 +42,7 @@ class Moments:
 
         A ValueError if what is left without the axis has not the shape of what was taken before.
         """
-        array = as_floats(values.components if isinstance(values, Multivector) else values, "values")
+        array = as_floats(values._data if isinstance(values, Multivector) else values, "values")
         if not -array.ndim <= self._axis < array.ndim:
             raise ValueError(f"values of shape {array.shape} have no axis {self._axis}")
         self._merge(_of(array, self._axis))
@@ -97,12 +97,12 @@ class Moments:
     def variance(self) -> Array:
         """The mean square of the deviation from the mean, as `numpy.var`."""
         variance = self._told("_squares", empty=np.nan) / np.maximum(self.count, 1)
-        return frozen(np.asarray(variance))
+        return np.asarray(variance)
 
     @property
     def std(self) -> Array:
         """The square root of the variance."""
-        return frozen(np.asarray(np.sqrt(self.variance)))
+        return np.asarray(np.sqrt(self.variance))
 
     @property
     def minimum(self) -> Array:
@@ -117,11 +117,8 @@ class Moments:
     def _told(self, name: str, empty: float | None = None) -> Array:
         if self._count is None:
             raise ValueError("nothing was taken in; add values first")
-        array = np.asarray(getattr(self, name))
-        if empty is not None:
-            array = np.where(self._count == 0, empty, array)
-        view = array.view()
-        return frozen(view)
+        array = np.array(getattr(self, name))
+        return array if empty is None else np.where(self._count == 0, empty, array)
 
     def __repr__(self) -> str:
         if self._count is None:

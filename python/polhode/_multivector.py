@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from polhode import _comparison, _functions, _native, _parts
-from polhode._arrays import Shape
+from polhode._arrays import Shape, copied
 from polhode._coefficients import as_coefficients
 from polhode._joined import joins
 from polhode._products import coerced, common_algebra, product
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from polhode._algebra import Algebra
 
 
@@ -67,9 +69,14 @@ class Multivector(_native.Multivector):
         return tuple(k for k in range(self._mask.bit_length()) if self._mask >> k & 1)
 
     @property
-    def components(self) -> Any:
-        """Components of the grades present, in basis order: shape ``(*shape, K)``, read-only."""
-        return self._data
+    def components(self) -> NDArray[Any]:
+        """Components of the grades present, in basis order: shape ``(*shape, K)``.
+
+        A new array each time, which may be changed: the value stays. In a loop over a large batch keep it in
+        a variable. Arrays of other libraries are handed out as they are.
+        """
+        data: NDArray[Any] = self._data
+        return data if self._is_one else copied(data)
 
     @property
     def shape(self) -> Shape:
@@ -89,7 +96,7 @@ class Multivector(_native.Multivector):
             raise ValueError(f"{space} has grades 0 to {n}, got {k}")
         return self._part(1 << k)
 
-    def astype(self, dtype: Any) -> Multivector:
+    def astype(self, dtype: Any) -> Self:
         """Return it with components of another type, such as ``np.float32`` or, from fractions, ``float``."""
         data = as_coefficients(self._data, "a component", dtype)
         return self._like(data)
@@ -106,7 +113,7 @@ class Multivector(_native.Multivector):
             raise TypeError("a single multivector has no length; only batches have")
         return self.shape[0]
 
-    def __getitem__(self, index: Any) -> Multivector:
+    def __getitem__(self, index: Any) -> Self:
         parts = index if isinstance(index, tuple) else (index,)
         # The Ellipsis keeps the index off the component axis.
         rest: tuple[Any, ...] = () if any(part is Ellipsis for part in parts) else (Ellipsis,)
@@ -119,10 +126,10 @@ class Multivector(_native.Multivector):
             raise IndexError(f"{error} (batch shape {self.shape}){remedy}") from None
         return self._like(picked)
 
-    def __iter__(self) -> Iterator[Multivector]:
+    def __iter__(self) -> Iterator[Self]:
         return (self[i] for i in range(len(self)))
 
-    def reshape(self, *shape: Any) -> Multivector:
+    def reshape(self, *shape: Any) -> Self:
         """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
         return _parts.reshaped(self, shape)
 
@@ -159,9 +166,9 @@ class Multivector(_native.Multivector):
 
     # --- the values behind the methods
 
-    def _like(self, data: Any) -> Multivector:
+    def _like(self, data: Any) -> Self:
         """Return a value of the same kind and grades."""
-        return self._of(data, self._mask, self.algebra)
+        return self._of(data, self._mask, self.algebra)  # type: ignore[return-value]
 
     @staticmethod
     def _restored(data: Any, mask: int, algebra: Algebra) -> Multivector:
@@ -192,7 +199,7 @@ class Multivector(_native.Multivector):
     def _negated(self) -> Multivector:
         return self._like(-self._data)
 
-    def __pos__(self) -> Multivector:
+    def __pos__(self) -> Self:
         return self
 
     def _divide(self, other: Any) -> Multivector:

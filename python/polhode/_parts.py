@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from polhode._products import coerced, common_algebra
 
 if TYPE_CHECKING:
     from polhode._multivector import Multivector
+
+V = TypeVar("V", bound="Multivector")
 
 
 def with_grades(value: Multivector, mask: int) -> Any:
@@ -93,7 +95,7 @@ def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
         np.broadcast_to(np.int8(0), shape)[index]
 
 
-def reshaped(value: Multivector, shape: tuple[Any, ...]) -> Multivector:
+def reshaped(value: V, shape: tuple[Any, ...]) -> V:
     """Return a batch of another shape."""
     if len(shape) == 1 and not hasattr(shape[0], "__index__"):
         shape = tuple(shape[0])
@@ -110,7 +112,7 @@ def reshaped(value: Multivector, shape: tuple[Any, ...]) -> Multivector:
     return value._like(coefficients_reshaped(data, (*lengths, data.shape[-1])))
 
 
-def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:
+def stack(values: Iterable[V], axis: int = 0) -> V:
     """Join values of one batch shape along a new batch axis; all rotors give rotors.
 
     Values of different grades are joined over the grades of all. `axis` counts batch axes.
@@ -119,7 +121,7 @@ def stack(values: Iterable[Multivector], axis: int = 0) -> Multivector:
     if len(shapes) > 1:
         raise ValueError(f"stack needs values of one batch shape, got {_listed(shapes)}")
     axis = _batch_axis(axis, len(next(iter(shapes))) + 1)
-    return build(namespace(parts[0]).stack(parts, axis=axis))
+    return build(namespace(parts[0]).stack(parts, axis=axis))  # type: ignore[return-value]
 
 
 def summed(value: Multivector, axis: int | tuple[int, ...] | None) -> Multivector:
@@ -131,7 +133,7 @@ def summed(value: Multivector, axis: int | tuple[int, ...] | None) -> Multivecto
     return _native.Multivector._of(total, value._mask, value.algebra)
 
 
-def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:
+def concatenate(values: Iterable[V], axis: int = 0) -> V:
     """Join batches along an existing batch axis; all rotors give rotors. `axis` counts batch axes."""
     parts, shapes, build = _unified(values, "concatenate")
     dimensions = {len(shape) for shape in shapes}
@@ -140,7 +142,7 @@ def concatenate(values: Iterable[Multivector], axis: int = 0) -> Multivector:
     axis = _batch_axis(axis, dimensions.pop())
     if len({shape[:axis] + shape[axis + 1 :] for shape in shapes}) > 1:
         raise ValueError(f"the batch shapes differ elsewhere than in axis {axis}: {_listed(shapes)}")
-    return build(namespace(parts[0]).concat(parts, axis=axis))
+    return build(namespace(parts[0]).concat(parts, axis=axis))  # type: ignore[return-value]
 
 
 def _listed(shapes: Iterable[Shape]) -> str:

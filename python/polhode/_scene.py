@@ -12,7 +12,7 @@ import numpy as np
 
 from polhode import _native
 from polhode import force as forces
-from polhode._arrays import Array, frozen
+from polhode._arrays import Array, frozen, hands_out_copies
 from polhode._bodies import Body
 from polhode._drawn import EnsembleSpec, torque_of
 from polhode._rotor import Rotor
@@ -32,6 +32,11 @@ DRIFT_BOUND = 1e-8
 _BLOCK, _BLOCKS, _FEW = 32 << 20, 64, 512
 
 
+class SceneNotFoundError(_native.SceneError, FileNotFoundError):
+    """A scene file that does not exist."""
+
+
+@hands_out_copies("shift", "times")
 @dataclass(frozen=True, eq=False)
 class Scene:
     """What a scene file says, in SI units, ready to run. Made by `Scene.read`.
@@ -95,8 +100,15 @@ class Scene:
         ------
         SceneError
             A ValueError whose text gives file, line and column of everything that is wrong, with the line.
+        FileNotFoundError
+            If there is no such file; it is a SceneError too.
         """
-        fields = _native.read_scene(os.fspath(path))
+        try:
+            fields = _native.read_scene(os.fspath(path))
+        except _native.SceneError as error:
+            if os.path.lexists(path):
+                raise
+            raise SceneNotFoundError(str(error)) from None
         return Scene(
             path=Path(path),
             text=fields["text"],
@@ -167,7 +179,9 @@ class Scene:
         Errors, `progress` and `threads` as for `polhode.simulate`.
         """
         if self.ensemble is None:
-            return self._moved(self.body, self.state, self.torque, progress, threads)
+            # Moments in a file may be those about the fixed point, without a centre of mass.
+            body = self.body.inertia_about(0) if self.held else self.body
+            return self._moved(body, self.state, self.torque, progress, threads)
         return self._drawn(slice(0, self.ensemble.number), progress, threads)
 
     def view(self) -> Viewer:

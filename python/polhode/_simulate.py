@@ -10,19 +10,11 @@ import numpy as np
 
 from polhode import _native
 from polhode import force as forces
-from polhode._arrays import as_count, as_float, as_floats
-from polhode._bodies import Body, Inertia
+from polhode._arrays import as_count, as_float, as_floats, output_times
+from polhode._bodies import Body, Inertia, bodies_of, mapped_objects
 from polhode._certificate import Certificate
 from polhode._coefficients import as_coefficients
-from polhode._ensemble import (
-    Ensemble,
-    StepLimits,
-    bodies_of,
-    check_state,
-    mapped_objects,
-    shape_of,
-    warn_of,
-)
+from polhode._ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
 from polhode._multivector import Multivector
 from polhode._scene_text import Problem
 from polhode._state import State
@@ -30,7 +22,7 @@ from polhode._trajectory import Trajectory
 from polhode._values import as_point, vector
 from polhode.event import Event
 from polhode.force import Force
-from polhode.torque import Torque, constant_body, function
+from polhode.torque import Torque, constant_body, function, settled
 
 # Bytes of the results in a block, where nobody says how long it is to be.
 _BLOCK = 32 << 20
@@ -65,14 +57,16 @@ def simulate(
     Parameters
     ----------
     body
-        A `Body` or its `Inertia` in kg m². With `ph.torque.heavy` a body is held at the origin of its
-        axes, and an inertia is that about the fixed point. Or a nested sequence or array of them, (...).
+        A `Body` or its `Inertia` in kg m². `ph.torque.gravity` holds a body at its pivot, `ph.torque.heavy`
+        at the origin of its axes; an inertia is then that about the fixed point, which is also what position
+        and velocity of the state are those of. Or a nested sequence or array of them, (...).
     state
         The state at the start, ``state.time``; rotor, angular velocity, position, velocity and time may be
         batches, (...).
     times
-        Output times in s, (n,), not decreasing, on the same clock as ``state.time`` and what laws call t;
-        those before the start are reached by going backwards.
+        Output times in s, (n,), not decreasing, on the same clock as ``state.time`` and what laws call t:
+        ``[60.0]`` for one, ``np.linspace(0, 60, 601)`` for a motion of 60 s. Those before the start are
+        reached by going backwards.
     torque
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
         free motion. Its numbers may be batches, (...).
@@ -157,10 +151,11 @@ def simulate(
     )
     certificate = Certificate(**motion.certificate())
     warn_of(certificate)
+    bodies, law = settled(bodies_of(body), as_torque(torque))
     problem = Problem(
-        bodies_of(body)[()],
+        bodies[()],
         state,
-        as_torque(torque),
+        law,
         None if force is None else as_force(force),
         given.times,
         given.method,
@@ -251,18 +246,15 @@ def _given(
     limits: StepLimits,
 ) -> Ensemble:
     """Return what is to be simulated, checked."""
-    torque = as_torque(torque)
+    bodies, torque = settled(bodies_of(body), as_torque(torque))
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     check_state(state)
-    bodies = bodies_of(body)
-    when = np.atleast_1d(as_floats(times, "times"))
-    if when.ndim != 1:
-        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
+    when = output_times(times)
     pushes, thrust = _forces(force, bodies)
     held = torque is not None and torque.holds
     if held and pushes:
-        raise ValueError("with ph.torque.heavy the body is held at a fixed point: no force moves it")
+        raise ValueError("gravity and heavy of ph.torque hold the body at a fixed point: no force moves it")
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
@@ -271,9 +263,9 @@ def _given(
         mapped_objects(lambda one: _ruling_inertia(one, held), bodies),
         np.array(state.time),
         as_coefficients(state.rotor._data, "the rotor", float),
-        state.omega_body.components,
-        state.position.components,
-        state.velocity.components,
+        state.omega_body._data,
+        state.position._data,
+        state.velocity._data,
         np.array(masses).reshape(bodies.shape),
         torque.laws if torque else (),
         tuple(pushes),

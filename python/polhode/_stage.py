@@ -131,7 +131,8 @@ class Stage:
         """Return the momentum of wheels in space: of them L has more than the body's own."""
         start = self.trajectory
         turned_back = (~rotor_at(start, 0))(start.momentum_space[0])
-        return rotor(turned_back - start.inertia(start.omega_body[0]))
+        wheel: Multivector = turned_back - start.inertia(start.omega_body[0])
+        return rotor(wheel)
 
     def _paint_trace(self, painter: Painter, rotor: Rotor, time: float, tail: float) -> None:
         """Add the path of the traced point up to now, paler the longer ago."""

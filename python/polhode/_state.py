@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from polhode._batch import common
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import as_bivectors, as_vectors, bivector, vector
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 _ORIGIN = vector([0.0, 0.0, 0.0])
 
@@ -53,12 +56,12 @@ class State:
     def __init__(
         self,
         rotor: Rotor,
-        omega_body: Any = None,
-        position: Any = 0,
-        velocity: Any = 0,
+        omega_body: Multivector | ArrayLike | None = None,
+        position: Multivector | ArrayLike = 0,
+        velocity: Multivector | ArrayLike = 0,
         *,
-        time: Any = 0.0,
-        omega_space: Any = None,
+        time: ArrayLike = 0.0,
+        omega_space: Multivector | ArrayLike | None = None,
     ) -> None:
         if not isinstance(rotor, Rotor):
             raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Array, Shape, as_floats, frozen
+from polhode._arrays import Array, Shape, as_floats, frozen, hands_out_copies
 from polhode._bodies import Inertia
 from polhode._certificate import Certificate, Crossings, Failure
 from polhode._multivector import Multivector
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from polhode._widget import Viewer
 
 
+@hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """A motion at n times, or those of a batch of bodies at the same times.
@@ -186,11 +187,12 @@ class Trajectory:
         places = zip(np.argwhere(picked >= 0).tolist(), picked[picked >= 0].tolist(), strict=True)
         return tuple(replace(self.failures[k], index=tuple(place)) for place, k in places)
 
-    def _require_one(self, what: str) -> None:
+    def _require_one(self, what: str, *, alone: bool = False) -> None:
+        """Raise a ValueError for a batch; `alone` where one picked from a batch does not serve either."""
         if self.shape:
-            raise ValueError(
-                f"{what} is for one body, this is a batch of shape {self.shape}; simulate that body alone"
-            )
+            first = ", ".join("0" for _ in self.shape)
+            remedy = "simulate that body alone" if alone else f"pick one of them, as in trajectory[{first}]"
+            raise ValueError(f"{what} is for one body, this is a batch of shape {self.shape}; {remedy}")
 
     def at(self, t: Any) -> State:
         """Return the state at any time t in s between the first and the last; an array gives a batch.
@@ -202,7 +204,7 @@ class Trajectory:
         output time before, so that it is as accurate as the states at the output times. A ValueError outside,
         and for a batch of bodies.
         """
-        self._require_one("at")
+        self._require_one("at", alone=True)
         if self._motion is None:
             raise ValueError(
                 "this trajectory was picked from a batch, read or unpickled: it has no states but its own; "
@@ -212,10 +214,10 @@ class Trajectory:
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))
         shape = times.shape
         return State(
-            Rotor._from_rows(found.rotor.components.reshape(*shape, 4)),
-            bivector(found.omega_body.components.reshape(*shape, 3)),
-            vector(found.position.components.reshape(*shape, 3)),
-            vector(found.velocity.components.reshape(*shape, 3)),
+            Rotor._from_rows(found.rotor._data.reshape(*shape, 4)),
+            bivector(found.omega_body._data.reshape(*shape, 3)),
+            vector(found.position._data.reshape(*shape, 3)),
+            vector(found.velocity._data.reshape(*shape, 3)),
             time=times,
         )
 
@@ -228,10 +230,10 @@ class Trajectory:
         if not len(self.time):
             raise ValueError("there is no last state: the motion has no output times")
         return State(
-            Rotor._from_rows(np.ascontiguousarray(self.rotor.components[..., -1, :])),
-            bivector(self.omega_body.components[..., -1, :]),
-            vector(self.position.components[..., -1, :]),
-            vector(self.velocity.components[..., -1, :]),
+            Rotor._from_rows(np.ascontiguousarray(self.rotor._data[..., -1, :])),
+            bivector(self.omega_body._data[..., -1, :]),
+            vector(self.position._data[..., -1, :]),
+            vector(self.velocity._data[..., -1, :]),
             time=float(self.time[-1]),
         )
 
@@ -240,7 +242,7 @@ class Trajectory:
 
         Of one body; a ValueError for a batch.
         """
-        self._require_one("drifts")
+        self._require_one("drifts", alone=True)
         return dict(self._motion.drifts()) if self._motion is not None else {}
 
     def __getstate__(self) -> dict[str, Any]:
@@ -414,7 +416,7 @@ class _Points:
             name,
             frozen(self.time[chosen]),
             frozen(rising),
-            Rotor._from_rows(self.rotor.components[chosen]),
+            Rotor._from_rows(self.rotor._data[chosen]),
             self.omega_body[chosen],
             self.position[chosen],
             self.velocity[chosen],

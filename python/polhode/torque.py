@@ -15,6 +15,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from polhode import _native
 from polhode._arrays import Shape, as_float, as_floats
 from polhode._batch import (
@@ -28,7 +30,8 @@ from polhode._batch import (
     together,
     vectors,
 )
-from polhode._bodies import Body, Inertia
+from polhode._bodies import Body, Inertia, bodies_of
+from polhode._held import HOLDING, about_pivot
 from polhode._made import finite, function_of, made_of_formula, shown
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
@@ -44,6 +47,7 @@ __all__ = [
     "damping",
     "formula",
     "function",
+    "gravity",
     "gravity_gradient",
     "gyrostat",
     "heavy",
@@ -88,8 +92,8 @@ class Torque:
 
     @property
     def holds(self) -> bool:
-        """Whether a law holds the body at the origin of its axes, as `heavy` does."""
-        return any(law.name == "heavy" for law in self.laws)
+        """Whether a law holds the body at a fixed point, as `gravity` and `heavy` do."""
+        return any(law.name in HOLDING for law in self.laws)
 
     def at(self, inertia: Inertia | Body, state: State, t: float | None = None) -> Multivector:
         """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
@@ -100,15 +104,17 @@ class Torque:
         """
         if self.shape:
             raise ValueError(f"the torque must be that of a single body, got batch shape {self.shape}")
-        if isinstance(inertia, Body):
-            inertia = inertia.inertia_about(0) if self.holds else inertia.inertia
-        if not isinstance(inertia, Inertia):
+        if not isinstance(inertia, Inertia | Body):
             raise TypeError(f"inertia must be an Inertia or a Body, got {type(inertia).__name__}")
         if state.shape:
             raise ValueError(f"the state must be a single one, got batch {state.shape}")
-        rotor, omega = state.rotor.components, state.omega_body.components
+        bodies, laws = about_pivot(bodies_of(inertia), self.laws)
+        body = bodies[()]
+        if isinstance(body, Body):
+            body = body.inertia_about(0) if self.holds else body.inertia
+        rotor, omega = state.rotor._data, state.omega_body._data
         time = finite(as_float(state.time if t is None else t, "t"), "t")
-        return bivector(_native.torque_at(list(self.laws), inertia._core, rotor, omega, time))
+        return bivector(_native.torque_at(list(laws), body._core, rotor, omega, time))
 
 
 def __dir__() -> list[str]:
@@ -118,12 +124,50 @@ def __dir__() -> list[str]:
 # --- fields
 
 
+def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
+    """Uniform gravity along −e3 on a body held at a pivot.
+
+    ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes, ``c = m g (centre of mass − pivot)``. Under
+    it `simulate` moves the same body by its inertia about the pivot. The position of a state is that of the
+    pivot; the centre of mass is at ``position + R (centre of mass − pivot) ~R``.
+
+    Parameters
+    ----------
+    body
+        A `Body`, or a nested sequence or array of them, (...).
+    g
+        The acceleration in m/s², (...).
+    pivot
+        The fixed point in body axes, a vector or (..., 3) in m; by default the origin of these axes. At the
+        centre of mass there is no torque.
+
+    Raises
+    ------
+    TypeError
+        For an `Inertia`, which has no mass; see `heavy`.
+    """
+    bodies = bodies_of(body)
+    if Inertia in {*map(type, bodies.flat)}:
+        raise TypeError("gravity needs a Body, which has a mass, got an Inertia; see ph.torque.heavy(c)")
+    masses = np.array([one.mass for one in bodies.flat]).reshape(bodies.shape)
+    centers = np.array([one._core.center_of_mass() for one in bodies.flat]).reshape(*bodies.shape, 3)
+    return _law(
+        "gravity",
+        numbers(g, "g"),
+        numbers(masses, "the mass"),
+        vectors(centers, "the centre of mass"),
+        vectors(pivot, "the pivot"),
+    )
+
+
 def heavy(c: Any) -> Torque:
     """Uniform gravity along −e3 on a body held at a fixed point, the origin of its axes.
 
     ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body
     axes, a vector or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is
-    taken as such, a `Body` is taken about the origin of its axes. A batch is one of vectors, or (..., 3).
+    taken as such, a `Body` is taken about the origin of its axes, and `simulate` refuses one whose centre of
+    mass lies elsewhere than along c. `gravity` finds both from a body. A batch is one of vectors, or
+    (..., 3).
     """
     return _law("heavy", vectors(c, "c"))
 
@@ -320,6 +364,14 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     return _law("function", function_of(f, "t, rotor and omega_body"))
 
 
+def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:
+    """Return bodies whose fixed point, if there is one, is the origin of their axes, and their torque."""
+    if torque is None:
+        return bodies, None
+    bodies, laws = about_pivot(bodies, torque.laws)
+    return bodies, Torque(laws)
+
+
 # --- what laws are given
 
 
@@ -340,6 +392,9 @@ def _shown(law: _native.Law) -> str:
     if law.name == "tabulated":
         times, _, frame, kind = law.arguments
         return f"tabulated({len(times)} rows, {times[0]:.6g} s to {times[-1]:.6g} s, {frame=}, {kind=})"
+    if law.name == "gravity":
+        g, mass, center, pivot = law.arguments
+        return shown("gravity", [], {"mass": mass, "center_of_mass": center, "g": g, "pivot": pivot})
     if law.name == "formula":
         text, frame, values = law.arguments
         named = {"frame": frame} if frame != "body" else {}

@@ -156,6 +156,12 @@ impl Body {
         self.0.inertia_about(Vector(one(&point)?)).map(Inertia).map_err(bad)
     }
 
+    /// The first of some moments of the weight about the origin, rows (n, 3), that contradicts the centre of mass.
+    fn other_weight(&self, moments: Rows<'_>) -> PyResult<Option<usize>> {
+        let rows = numbers(&moments)?.as_chunks::<3>().0;
+        Ok(rows.iter().position(|c| !self.0.has_weight_moment(Vector(*c))))
+    }
+
     fn moved(&self, rotor_row: Rows<'_>, position: Rows<'_>) -> PyResult<Body> {
         self.0.moved(rotor(&rotor_row)?, Vector(one(&position)?)).map(Body).map_err(bad)
     }

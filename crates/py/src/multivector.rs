@@ -37,15 +37,11 @@ impl Multivector {
         wrap(py, held(py, data, Grades(grades), algebra)?, false)
     }
 
-    /// The components of the grades present.
+    /// The components of the grades present: of a single value a new array.
     #[getter]
     fn _data<'py>(&self, py: Python<'py>) -> Object<'py> {
         match &self.held {
-            Held::One(graded) => {
-                let array = PyArray1::from_slice(py, graded.components()).into_any();
-                array.call_method1(intern!(py, "setflags"), (false,))?;
-                Ok(array)
-            }
+            Held::One(graded) => Ok(PyArray1::from_slice(py, graded.components()).into_any()),
             Held::Many { data, .. } => Ok(data.bind(py).clone()),
         }
     }
@@ -340,8 +336,9 @@ impl Rotor {
 
 fn not_made_directly(cls: &Bound<'_, PyType>) -> PyErr {
     let name = cls.name().map_or_else(|_| "Multivector".into(), |name| name.to_string());
-    PyTypeError::new_err(format!(
-        "{name} is not made directly; use ph.vector, ph.bivector, ph.multivector, or one of the \
-         Rotor.from_… constructors"
-    ))
+    let makers = match &*name {
+        "Rotor" => "Rotor.from_components, Rotor.from_plane_angle, or another of its from_… constructors",
+        _ => "ph.scalar, ph.vector, ph.bivector, ph.trivector or ph.multivector",
+    };
+    PyTypeError::new_err(format!("{name} is not made directly; use {makers}"))
 }

@@ -8,6 +8,7 @@ use crate::made::{
 };
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::body::weight_moment;
 use polhode_rigid::phase::{Gyrostat, Phase};
 use polhode_rigid::torque::{
     Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque, total, wheel,
@@ -58,6 +59,16 @@ impl Law {
         let given = Arguments::of(&name, &arguments)?;
         let law = Law { torques: made(&name, &given, &raised)?, shape: given.shape };
         Ok(PyClassInitializer::from(Made::new(name, arguments, raised)).add_subclass(law))
+    }
+
+    /// The moments of the weight, rows (n, 3) in body axes, of a law that holds the body; none of others.
+    fn weight_moments<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
+        let moments: Option<Vec<[f64; 3]>> = self
+            .torques
+            .iter()
+            .map(|torque| if let Torque::Heavy(c) = torque { Some(c.0) } else { None })
+            .collect();
+        moments.map(|rows| table(py, rows.into_iter())).transpose()
     }
 
     /// Shape of the batch of bodies; () for one.
@@ -112,6 +123,15 @@ fn made(name: &str, given: &Arguments<'_, '_>, raised: &Raised) -> PyResult<Vec<
     let arguments = given.all;
     match name {
         "heavy" => given.each_vector(Torque::Heavy),
+        "gravity" => {
+            let (acceleration, mass) = (given.column(0)?, given.column(1)?);
+            let (center, pivot) = (given.column(2)?, given.column(3)?);
+            given.each_sound(|k| {
+                let ([acceleration], [mass]) = (acceleration.of(k), mass.of(k));
+                let arm = Vector(center.of(k)) - Vector(pivot.of(k));
+                Torque::Heavy(weight_moment(mass, acceleration, arm))
+            })
+        }
         "gravity_gradient" => {
             let (rate, eccentricity, anomaly) = (given.column(0)?, given.column(1)?, given.column(2)?);
             given.each(|k| {

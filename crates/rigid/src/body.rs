@@ -14,6 +14,11 @@ use polhode_ga::{Rotor, Vector};
 use std::array::from_fn;
 use std::fmt;
 
+/// Largest angle in rad between a weight's moment and the centre of mass that counts as rounding of typed numbers.
+const ALIGNED: f64 = 1e-6;
+/// Larger accelerations in m/s² are those of a centre of mass that lies at the fixed point but for rounding.
+const LARGEST_ACCELERATION: f64 = 1e6;
+
 /// A rigid body: mass in kg, centre of mass in m, inertia about the centre of mass in kg m², all in body
 /// axes. [`Body::new`] checks them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +82,21 @@ impl Body {
         Inertia::from_symmetric(sum(self.inertia.matrix(), shift))
     }
 
+    /// The [`weight_moment`] about a point.
+    pub fn weight_moment(&self, acceleration: f64, point: Vector) -> Vector {
+        weight_moment(self.mass, acceleration, self.center_of_mass - point)
+    }
+
+    /// Whether c is the moment of this body's weight about the origin for some acceleration `g >= 0`.
+    pub fn has_weight_moment(&self, c: Vector) -> bool {
+        let (size, distance) = (c.norm(), self.center_of_mass.norm());
+        if size == 0.0 || size > LARGEST_ACCELERATION * self.mass * distance {
+            return size == 0.0;
+        }
+        let (along, axis) = (c * size.recip(), self.center_of_mass * distance.recip());
+        along.dot(axis) > 0.0 && along.wedge(axis).norm() <= ALIGNED
+    }
+
     /// The body after `x ↦ R x ~R + position`.
     pub fn moved(&self, rotor: Rotor, position: Vector) -> Result<Body, BodyError> {
         Body::new(self.mass, self.inertia.rotated(rotor), rotor.apply(self.center_of_mass) + position)
@@ -92,6 +112,12 @@ impl Body {
         let matrix = sum(sum(self.inertia.matrix(), other.inertia.matrix()), reduced);
         Body::new(mass, Inertia::from_symmetric(matrix)?, self.center_of_mass + distance * share)
     }
+}
+
+/// The moment of a weight, `m g (centre of mass − pivot)`: the c of [`crate::torque::Torque::Heavy`] on a body held at
+/// the pivot.
+pub fn weight_moment(mass: f64, acceleration: f64, arm: Vector) -> Vector {
+    arm * (mass * acceleration)
 }
 
 /// The matrix of `B ↦ m d∧(d·B)`, `m (d² − d dᵀ)`.

@@ -126,6 +126,31 @@ proptest! {
         prop_assert!((about.apply(b) - expected).norm() <= 64.0 * EPS * largest(about.matrix()) * b.norm());
     }
 
+    /// About a point P, `Σ m g (x − P)`; on the body about P no other direction is that of its weight.
+    #[test]
+    fn weights_of_points((masses, positions) in points(), p in vector(), g in 0.1..20.0_f64) {
+        let body = Body::from_points(&masses, &positions).unwrap();
+        let mut expected = Vector::default();
+        for (&m, &x) in masses.iter().zip(&positions) {
+            expected = expected + (x - p) * (m * g);
+        }
+        let c = body.weight_moment(g, p);
+        let size = body.mass * g * 6.0 * 3.0_f64.sqrt();
+        prop_assert!((c - expected).norm() <= 64.0 * EPS * size);
+        let held = body.moved(Rotor::IDENTITY, -p).unwrap();
+        let turned = |angle: f64| {
+            let aside = c.wedge(axis((0..3).min_by(|&i, &j| c.0[i].abs().total_cmp(&c.0[j].abs())).unwrap()));
+            Rotor::from_plane_angle(aside, angle).unwrap().apply(c)
+        };
+        prop_assume!(c.norm() > 1e-3 * size);
+        prop_assert!(held.has_weight_moment(c) && held.has_weight_moment(turned(1e-7)));
+        prop_assert!(!held.has_weight_moment(-c) && !held.has_weight_moment(turned(1e-5)));
+        prop_assert!(held.has_weight_moment(Vector::default()));
+        // Were the centre of mass at the fixed point but for rounding, it would take no such weight.
+        let centered = Body { center_of_mass: held.center_of_mass * 1e-16, ..held };
+        prop_assert!(!centered.has_weight_moment(c) && centered.has_weight_moment(c * 1e-16));
+    }
+
     /// A rigid set of points in a plane is a valid body however it is turned, with i1 + i2 = i3.
     #[test]
     fn flat_bodies_are_valid(r in rotor(), angles in prop::collection::vec(0.0..6.3_f64, 3..9)) {

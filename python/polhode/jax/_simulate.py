@@ -5,11 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from polhode._bodies import Body
+import numpy as np
+
+from polhode import torque as native
+from polhode._bodies import Body, bodies_of
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split
-from polhode.jax._laws import Function, Torque
+from polhode.jax._laws import Function, Heavy, Torque
 from polhode.jax._library import jax, jnp, lax
 from polhode.jax._phase import Gyrostat, Phase
 from polhode.jax._rk4 import RungeKutta
@@ -45,7 +48,8 @@ def simulate(
     ----------
     inertia
         Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`,
-        about its centre of mass, with `heavy` about the origin of its axes.
+        about its centre of mass, with `heavy` about the origin of its axes, with
+        `polhode.torque.gravity` about the pivot.
     rotor
         From body axes to space at the start: a `Rotor`, or its components (..., 4), which are divided by
         their norm.
@@ -90,12 +94,23 @@ def simulate(
 
 def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str) -> tuple[Start, Torque]:
     """Return bodies, starts and torque in principal axes; an error if the method is none for the torque."""
+    if isinstance(inertia, Body) and isinstance(torque, native.Torque):
+        bodies, torque = native.settled(bodies_of(inertia), torque)
+        inertia = bodies[()]
     force = laws.of(torque)
     _check(method, force)
     if isinstance(inertia, Body):
+        _check_weights(inertia, force)
         inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
     given = start(inertia, rotor, omega_body)
     return given, force if given.frame is None else force.in_axes(given.frame)
+
+
+def _check_weights(body: Body, torque: Torque) -> None:
+    """Refuse weights that contradict the centre of mass, where they are not traced."""
+    for law in torque.laws:
+        if isinstance(law, Heavy) and not any(isinstance(x, jax.core.Tracer) for x in law.c):
+            native.settled(bodies_of(body), native.heavy(np.stack(law.c, axis=-1)))
 
 
 def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from polhode._arrays import as_float, as_floats
+from polhode._arrays import as_float, check_line, output_times
 from polhode.jax._laws import Torque
-from polhode.jax._library import jax, jnp
+from polhode.jax._library import jax
 from polhode.jax._table import Table
 
 Array = Any
@@ -47,10 +47,11 @@ def ways(
     if isinstance(times, jax.core.Tracer) or isinstance(start, jax.core.Tracer):
         if steps is None:
             raise ValueError("with traced times the number of steps is not known; give steps instead of step")
-        when = jnp.atleast_1d(times)
+        when = jax.numpy.asarray(times)
+        check_line(when.shape, times)
         counts = np.full(when.shape, steps)
         return start, [(Way(when, counts, steps, True, tuple(range(1, when.size + 1))), False)]
-    when, begin = np.atleast_1d(as_floats(times, "times")), as_float(start, "start_time")
+    when, begin = output_times(times), as_float(start, "start_time")
     _check(when, tables, begin)
     length = _positive(step)
     breaks = np.unique([t for law in tables for t in law.times])
@@ -89,8 +90,6 @@ def _way(begin: float, when: Any, breaks: Any, step: float | None, steps: int | 
 def _check(when: Any, tables: list[Table], start: float) -> None:
     if not np.isfinite(start):
         raise ValueError(f"start_time is {start}; it must be finite")
-    if when.ndim != 1:
-        raise ValueError(f"times must be one-dimensional, got shape {when.shape}")
     for index, time in enumerate(when.tolist()):
         if not np.isfinite(time) or (index and time < when[index - 1]):
             raise ValueError(f"times[{index}] = {time}; times must be finite and must not decrease")

@@ -162,6 +162,8 @@ def _of_native(law: Any) -> Torque:
     if law.name == "formula":
         text, frame, values = law.arguments
         return formula(text, frame=frame, **dict(values))
+    if law.name == "gravity":
+        return heavy(law.weight_moments().reshape(*law.shape, 3))
     made: Torque = globals()[law.name](*law.arguments)
     return made
 

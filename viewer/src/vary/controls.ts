@@ -127,7 +127,7 @@ export class Controls {
       parts.push(bodyTable(body));
       const moved = body.form === "masses" || !about.body.solid;
       if (about.held && moved && !chosen) parts.push(this.weightAsBefore(about));
-    } else if (chosen && about.held && laws.on.has("heavy")) {
+    } else if (chosen && laws.on.has("heavy")) {
       // The weight acts on a body that is held at the origin of its axes, so its moments are said about that.
       parts.push(bodyTable({ ...body, form: "masses" }));
     }

@@ -17,7 +17,7 @@ pub type MeshSource<'a> = &'a dyn Fn(&Path) -> Result<TriangleMesh, MeshError>;
 impl Gravity {
     /// The law on a body whose fixed point is the origin of its axes.
     pub(super) fn law(&self, body: &Body) -> Law {
-        let torque = Torque::Heavy(body.center_of_mass * (body.mass * self.acceleration));
+        let torque = Torque::Heavy(body.weight_moment(self.acceleration, Vector::default()));
         Law { name: "gravity", torque, formula: None }
     }
 }
@@ -47,11 +47,35 @@ impl Scene {
             let message = "the body is held at a fixed point, where no force moves it; remove [force]";
             return Err(vec![self.diagnose("force", message)]);
         }
+        self.check_weight(&body)?;
         let inertia = if held { body.inertia_about(Vector::default()) } else { Ok(body.inertia) };
         let inertia = inertia.map_err(|error| vec![self.diagnose("gravity.pivot", error.to_string())])?;
         check_moments(inertia.principal_moments())
             .map_err(|error| vec![self.diagnose(self.shape_field(), error.to_string())])?;
         Ok((body, laws))
+    }
+
+    /// The weight of `heavy` must act at the centre of mass. Moments without a centre of mass are those about the fixed
+    /// point, and leave it open.
+    fn check_weight(&self, body: &Body) -> Result<(), Vec<Diagnostic>> {
+        let open = match self.body {
+            BodySpec::Moments { center_of_mass, .. } | BodySpec::Inertia { center_of_mass, .. } => {
+                center_of_mass == Vector::default()
+            }
+            BodySpec::Mesh { .. } | BodySpec::Solid { .. } => false,
+        };
+        for law in self.torques.iter().filter(|_| !open) {
+            if let Torque::Heavy(c) = law.torque
+                && !body.has_weight_moment(c)
+            {
+                let (Vector([a, b, c]), Vector([x, y, z])) = (c, body.center_of_mass);
+                let message = format!(
+                    "({a}, {b}, {c}) N m is not m g times the centre of mass, which is ({x}, {y}, {z}) m from the fixed point; use [gravity] with a pivot, or give the moments about the fixed point and no centre of mass"
+                );
+                return Err(vec![self.diagnose("torque.heavy", message)]);
+            }
+        }
+        Ok(())
     }
 
     /// The body alone, its mesh read from its file.

@@ -182,6 +182,26 @@ fn forces_move_the_centre_of_mass() {
 }
 
 #[test]
+fn a_weight_acts_at_the_centre_of_mass() {
+    let held = |body: &str, c: &str| {
+        let text =
+            LEAST.replace("[3, 2, 1]", body).replace("[run]", &format!("[torque]\nheavy = {c}\n[run]"));
+        scene(&text).build().map(|(body, _)| body.center_of_mass)
+    };
+    let above = "[3, 2, 1]\nmass = 2\ncenter_of_mass = [0, 0.1, 1]";
+    assert!(held(above, "[0, 1.962, 19.62]").is_ok());
+    assert!(held(above, "[0, 0, 0]").is_ok());
+    // Moments without a centre of mass are those about the fixed point.
+    assert!(held("[3, 2, 1]\nmass = 2", "[0, 3, 4]").is_ok());
+    assert!(held("[3, 2, 1]", "[0, 3, 4]").is_ok());
+    for c in ["[0, 0, 1]", "[0, -1.962, -19.62]"] {
+        let message = held(above, c).unwrap_err()[0].to_string();
+        assert!(message.contains(": error: (0, ") && message.contains("(0, 0.1, 1) m"), "{message}");
+        assert!(message.contains("[gravity] with a pivot") && message.contains("heavy = "), "{message}");
+    }
+}
+
+#[test]
 fn forces_need_a_mass_and_a_body_that_is_not_held() {
     let message =
         |text: &str| scene(text).build().unwrap_err()[0].to_string().lines().next().unwrap().to_owned();

@@ -142,10 +142,10 @@ def function(name: str, value: Multivector) -> Multivector:
     """Return a function of any value: native over floats, else by the generic formulas."""
     algebra, data = value.algebra, value._data
     if is_float(data):
-        mask = algebra._grades_of_function(name, value._mask)
+        mask, single = algebra._grades_of_function(name, value._mask), data.dtype == np.float32
 
         def native(rows: Array) -> Array:
-            return _native.function(algebra, name, rows)[..., algebra._indices(mask)]
+            return _native.function(algebra, name, rows, single)[..., algebra._indices(mask)]
 
         result = mapped(native, _parts.over_grades(value, algebra._all))
         in_range = np.isfinite(result).all(axis=-1)

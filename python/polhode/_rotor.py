@@ -143,11 +143,7 @@ class Rotor(_native.Rotor, Multivector):
         """
         from polhode import _euler
 
-        total: Any = Rotor.identity()
-        for turn in _euler.rotation_vectors(seq, angles, degrees):
-            total = Rotor.from_rotation_vector(turn) * total
-        result: Rotor = total
-        return result
+        return _euler.from_euler(seq, angles, degrees)
 
     @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
@@ -181,7 +177,7 @@ class Rotor(_native.Rotor, Multivector):
         quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
         return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
 
-    def to_euler(self, seq: str, degrees: bool = False) -> Array:
+    def to_euler(self, seq: str, degrees: bool = False) -> Any:
         """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
 
         The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same

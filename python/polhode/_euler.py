@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import itertools
 import re
 from typing import Any
@@ -17,6 +16,7 @@ from polhode._values import bivector
 
 # e2e3, e3e1 and e1e2, the planes of turns about e1, e2 and e3.
 _PLANES = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
+
 
 def from_euler(seq: str, angles: Any, degrees: bool) -> Rotor:
     """Return the product of the turns about each axis.
@@ -33,9 +33,14 @@ def from_euler(seq: str, angles: Any, degrees: bool) -> Rotor:
         )
     if degrees:
         theta = _generic.euler.to_radians(kind_of(theta), theta)
-    turns = [Rotor.from_plane_angle(bivector(_PLANES[axis]), theta[..., k]) for k, axis in enumerate(axes)]
-    total: Any = functools.reduce(lambda first, turn: turn * first, turns[::-1] if seq.isupper() else turns)
-    return total.astype(theta.dtype) if is_float(theta) else total
+    turns: list[Any] = [
+        Rotor.from_plane_angle(bivector(_PLANES[axis]), theta[..., k]) for k, axis in enumerate(axes)
+    ]
+    total, *others = turns[::-1] if seq.isupper() else turns
+    for turn in others:
+        total = turn * total
+    result: Rotor = total.astype(theta.dtype) if is_float(theta) else total
+    return result
 
 
 def to_euler(R: Rotor, seq: str, degrees: bool) -> Any:

@@ -168,10 +168,12 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
     terms, _ = algebra._terms("geometric", everything, everything)
     full = _parts.over_grades(value, everything)
+    regular = algebra.dimension - algebra.signature[2]
+    null = [(bits >> regular).bit_count() for bits, _ in algebra._blades()]
     if name == "exp":
-        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full)
+        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full, null)
     else:
-        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full)
+        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full, null)
     return taken(rows, algebra._indices(mask)), mask
 
 

@@ -13,7 +13,6 @@ from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import bivector
 
-
 # Roundings of a sum of four products of rounded numbers.
 _HALF_TURN = 4
 
@@ -59,7 +58,9 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
         raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
     kind = kind_of(R._data)
     if kind.exact:
-        raise TypeError(f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)")
+        raise TypeError(
+            f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)"
+        )
     if not is_float(R._data):
         return _foreign_mean(R, weights)
     w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")

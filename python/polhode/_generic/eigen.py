@@ -1,4 +1,4 @@
-"""The largest eigenvalue's eigenvector of a symmetric matrix, with derivatives, over floating-point arrays."""
+"""Eigenvectors of largest eigenvalues, over floating-point arrays and with derivatives."""
 
 from __future__ import annotations
 

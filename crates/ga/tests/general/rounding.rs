@@ -24,9 +24,9 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// `~M M` is 1 to rounding, and so is its root; its logarithm is that rounding, at most `ε|M|²` by sums
-    /// of 2ⁿ products. So it is of translations so far that their rounding is larger than 1e-12.
+    /// of 2ⁿ products. So it is of translations so far that their rounding is larger than 1e-12, but below √ε.
     #[test]
-    fn what_cancels_leaves_rounding(x in numbers(), e in -3.0..6.0f64) {
+    fn what_cancels_leaves_rounding(x in numbers(), e in -3.0..4.0f64) {
         for (p, q, r) in DEGENERATE {
             let space = Space::new(p, q, r);
             let b = space.of_grade(2, &x);
@@ -51,7 +51,7 @@ proptest! {
             let b = scaled(&turn, 1.0 / (1.0 + norm(&turn)));
             let blades = space.algebra.blades();
             let even: Vec<f64> =
-                (0..space.size()).map(|i| if blades[i].grade() % 2 == 0 { y[i] } else { 0.0 }).collect();
+                (0..space.size()).map(|i| if blades[i].grade().is_multiple_of(2) { y[i] } else { 0.0 }).collect();
             let noise = scaled(&split(&space, r, &even).1, 10f64.powf(-e));
             let rotor: Vec<f64> = exp(&space, &b).iter().zip(&noise).map(|(a, b)| a + b).collect();
             let log = space.calculus.log(&rotor);
@@ -132,7 +132,7 @@ fn what_is_not_a_versor_stays_an_error() {
     let rotor = four.sum(&[(1.0, &[]), (1e-3, &[1, 2, 3, 4])]);
     let single = four.calculus.clone().rounded_to(f64::from(f32::EPSILON));
     assert!(matches!(single.log(&rotor), Err(MathError::NotVersor { .. })));
-    assert!(matches!(projective.calculus.log(&projective.sum(&[(1e-17, &[1, 4])])), Err(_)));
+    assert!(projective.calculus.log(&projective.sum(&[(1e-17, &[1, 4])])).is_err());
 }
 
 /// Null parts of rounding do not count in the condition of the inverse, whose own null parts they make.

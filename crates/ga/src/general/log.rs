@@ -137,7 +137,13 @@ impl Calculus {
         if self.null == 0 || deviation <= self.tolerances.rounding {
             return self.require_versor(m, deviation);
         }
-        let deviation = self.deviation(&self.without_null(&m));
+        let rotor = self.without_null(&m);
+        if self.scalar_product(&rotor, &reverse(&rotor)).abs()
+            <= self.tolerances.rounding * dot(&rotor, &rotor)
+        {
+            return Err(MathError::NoLogarithm);
+        }
+        let deviation = self.deviation(&rotor);
         let versor = self.require_versor(self.nearest_in_null(&m), deviation)?;
         let unbalanced = 1.0 / null_factor.max(1.0);
         let (mut change, mut given) = (versor.clone(), m);

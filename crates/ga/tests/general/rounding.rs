@@ -128,6 +128,11 @@ fn what_is_not_a_versor_stays_an_error() {
     let single = projective.calculus.clone().rounded_to(f64::from(f32::EPSILON));
     assert_eq!(single.log(&with(1e-5)).unwrap(), projective.scalar(0.0));
     assert!(matches!(single.log(&with(1e-3)), Err(MathError::NotVersor { .. })));
+    // Without a rotor there is nothing that the null parts could be of.
+    let null = Space::new(2, 0, 2).sum(&[(1.0, &[1, 3]), (0.5, &[1, 4]), (0.3, &[1, 2, 3, 4])]);
+    assert_eq!(Space::new(2, 0, 2).calculus.log(&null), Err(MathError::NoLogarithm));
+    let light = Space::new(1, 1, 1).sum(&[(1.0, &[]), (1.0, &[1, 2]), (0.3, &[1, 3])]);
+    assert_eq!(Space::new(1, 1, 1).calculus.log(&light), Err(MathError::NoLogarithm));
     let four = Space::new(4, 0, 0);
     let rotor = four.sum(&[(1.0, &[]), (1e-3, &[1, 2, 3, 4])]);
     let single = four.calculus.clone().rounded_to(f64::from(f32::EPSILON));

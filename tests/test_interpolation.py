@@ -121,6 +121,7 @@ def test_means_stay_in_the_arrays_given(name):
             assert type(mean.components) is type(asarray(w))
             # Eigenvectors are known to the rounding over the gap, here a tenth of the largest value.
             assert np.allclose(np.asarray(mean.components), ph.mean(rotors, weights).components, 0, 64 * EPS)
+        assert type(ph.mean(rotors, asarray(w)).components) is type(asarray(w))
         with pytest.raises(ValueError, match="no mean"):
             ph.mean(ph.Rotor.from_components(asarray(np.eye(4))))
         with pytest.raises(ValueError, match="weights must be 30 finite numbers"):

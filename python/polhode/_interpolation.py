@@ -52,7 +52,9 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
 
     The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
     Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
-    ValueError where no attitude is closer than all others, as for half turns about three axes.
+    ValueError where no attitude is closer than all others, as for half turns about three axes; while JAX
+    traces, the result is arbitrary there. Arrays of other libraries stay theirs; derivatives are right up to
+    the third.
     """
     if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
         raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
@@ -61,7 +63,8 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
         raise TypeError(
             f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)"
         )
-    if not is_float(R._data):
+    others = None if weights is None else foreign_kind(weights)
+    if not is_float(R._data) or (others is not None and not others.exact):
         return _foreign_mean(R, weights)
     w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
     if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):

@@ -139,7 +139,8 @@ class Rotor(_native.Rotor, Multivector):
 
         ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
-        For one axis a single angle needs no array.
+        For one axis a single angle needs no array. Angles are numbers, SymPy expressions, or arrays of any
+        library, which stay theirs.
         """
         from polhode import _euler
 

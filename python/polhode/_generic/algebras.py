@@ -115,8 +115,10 @@ def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Ar
         if count:
             ratio = d.xp.abs(d.constant(data[..., i])) / size
             root = d.xp.maximum(root, ratio if count == 1 else ratio ** (1 / count))
-    root = d.where(d.xp.isfinite(root), root, 1.0)
-    factor = 2.0 ** -d.xp.ceil(d.xp.log2(root))
+    exponent = d.xp.ceil(d.xp.log2(d.where(d.xp.isfinite(root), root, 1.0)))
+    # Even the factor of a blade with all of them must not leave the range.
+    most = 0.875 * math.log2(float(d.xp.finfo(d.dtype).max)) // max(null)
+    factor = 2.0 ** -d.where(exponent > most, most, exponent)
     powers = [d.zeros_like(factor) + 1.0]
     for _ in range(max(null)):
         powers.append(powers[-1] * factor)

@@ -156,3 +156,69 @@ def test_numpy_quaternion_is_asked_for_by_name(monkeypatch):
     for use in (ph.Rotor.identity().to_numpy_quaternion, lambda: ph.Rotor.from_numpy_quaternion([1])):
         with pytest.raises(ImportError, match=r"needs quaternion: pip install 'polhode\[quaternion\]'"):
             use()
+
+
+@pytest.mark.parametrize("name", ["jax.numpy", "array_api_strict"])
+@pytest.mark.parametrize("seq", SEQUENCES)
+def test_angles_stay_in_the_arrays_given(name, seq):
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        module = pytest.importorskip(name)
+        theta = some_angles(seq, (20,), 4)
+        R = ph.Rotor.from_euler(seq, module.asarray(theta))
+        found, expected = R.to_euler(seq), ph.Rotor.from_euler(seq, theta)
+        assert type(R.components) is type(found) is type(module.asarray(theta))
+        assert np.all(abs(np.asarray(R.components) - expected.components) <= 8 * EPS)
+        again = ph.Rotor.from_euler(seq, np.asarray(found))
+        assert np.all(again.distance(expected) <= 32 * EPS)
+        degrees = R.to_euler(seq, degrees=True)
+        assert np.all(abs(np.asarray(degrees) - np.rad2deg(np.asarray(found))) <= 4 * EPS * 180)
+
+
+@pytest.mark.parametrize("seq", ["zxz", "XYZ", "zyx"])
+def test_jax_differentiates_angles(seq):
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        theta = jax.numpy.asarray([0.3, 0.4, -0.5])
+
+        def there_and_back(theta):
+            return ph.Rotor.from_euler(seq, theta).to_euler(seq)
+
+        assert np.all(abs(jax.jit(there_and_back)(theta) - theta) <= 16 * EPS)
+        # The derivative of the identity; the middle angle is far from both locks.
+        assert np.all(abs(jax.jacobian(there_and_back)(theta) - np.eye(3)) <= 64 * EPS)
+        lock = jax.numpy.asarray([0.3, np.pi / 2 if len(set(seq)) == 3 else 0.0, -0.5])
+        assert np.all(np.isfinite(jax.jacobian(there_and_back)(lock)))
+
+
+def test_symbols_are_angles():
+    sympy = pytest.importorskip("sympy")
+    a, b, c = sympy.symbols("a b c", real=True)
+    R = ph.Rotor.from_euler("zxz", [a, b, c])
+    values = {a: 0.3, b: 0.7, c: -1.1}
+    numbers = np.array([float(x.subs(values)) for x in R.components])
+    assert np.all(abs(numbers - ph.Rotor.from_euler("zxz", [0.3, 0.7, -1.1]).components) <= 4 * EPS)
+    angles = [float(x.subs(values)) for x in R.to_euler("zxz")]
+    assert np.all(abs(np.array(angles) - [0.3, 0.7, -1.1]) <= 16 * EPS)
+    quarter = ph.Rotor.from_euler("x", sympy.Integer(90), degrees=True)
+    assert list(quarter.components) == [sympy.sqrt(2) / 2, -sympy.sqrt(2) / 2, 0, 0]
+    assert quarter.to_euler("xyz")[0] == sympy.pi / 2
+
+
+def test_multiprecision_angles_keep_their_digits():
+    mpmath = pytest.importorskip("mpmath")
+    with mpmath.workdps(40):
+        theta = [mpmath.mpf(1) / 3, mpmath.mpf(2) / 7, -mpmath.mpf(1) / 9]
+        for seq in ("xyz", "ZXZ"):
+            found = ph.Rotor.from_euler(seq, theta).to_euler(seq)
+            assert max(abs(x - y) for x, y in zip(found, theta, strict=True)) < 1e-38
+        degrees = ph.Rotor.from_euler("xyz", theta).to_euler("xyz", degrees=True)
+        assert abs(degrees[0] - 60 / mpmath.pi) < 1e-36
+
+
+def test_single_precision_angles_stay_single():
+    theta = some_angles("xyz", (50,), 5).astype(np.float32)
+    R = ph.Rotor.from_euler("xyz", theta)
+    assert R.dtype == R.to_euler("xyz").dtype == np.float32
+    again = ph.Rotor.from_euler("xyz", R.to_euler("xyz"))
+    assert np.all(again.distance(R) <= 32 * np.finfo(np.float32).eps)

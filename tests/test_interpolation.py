@@ -72,3 +72,100 @@ def test_there_may_be_no_mean():
         ph.mean(half_turns, [1, -1, 1, 1])
     with pytest.raises(ValueError, match=r"shape \(n,\)"):
         ph.mean(ph.Rotor.identity())
+
+
+def half_turns(count, seed):
+    """Rotors, and turns by π in any planes to follow them."""
+    planes = np.random.default_rng(seed).standard_normal((count, 3))
+    return ph.Rotor.random(count, rng=seed), ph.Rotor.from_components(np.insert(planes, 0, 0.0, axis=-1))
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_slerp_over_half_a_turn_keeps_the_sign(dtype):
+    start, half = (R.astype(dtype) for R in half_turns(20000, 5))
+    quarter = half**0.5
+    middle = ph.slerp(start, start * half, 0.5)
+    assert middle.dtype == dtype
+    # The angle of a half turn is known to some roundings, the middle to half of them.
+    assert np.all(middle.distance(start * quarter) <= 32 * np.finfo(dtype).eps)
+    back = ph.slerp(start, -(start * half), 0.5)
+    assert np.all(back.distance(start * ~quarter) <= 32 * np.finfo(dtype).eps)
+    # Beyond half a turn by more than rounding the other way is shorter.
+    beyond = ph.Rotor.from_plane_angle(e1 ^ e2, np.pi + 1e-6)
+    assert ph.slerp(start[0], start[0] * beyond, 0.5).distance(start[0]) <= np.pi / 2
+
+
+def test_splines_over_half_turns_keep_the_signs():
+    start, half = half_turns(2000, 6)
+    for k in range(0, 2000, 20):
+        spline = ph.RotorSpline(
+            [0, 1], ph.Rotor.from_components([start[k].components, (start * half)[k].components])
+        )
+        assert spline(0.5).distance(start[k] * half[k] ** 0.5) <= 32 * EPS
+
+
+def foreign(name):
+    module = pytest.importorskip(name)
+    return module.asarray
+
+
+@pytest.mark.parametrize("name", ["jax.numpy", "array_api_strict"])
+def test_means_stay_in_the_arrays_given(name):
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        asarray = foreign(name)
+        rotors, w = ph.Rotor.random(30, rng=7), np.random.default_rng(7).uniform(0, 1, 30)
+        theirs = ph.Rotor.from_components(asarray(rotors.components))
+        for weights in (None, w):
+            mean = ph.mean(theirs, None if weights is None else asarray(weights))
+            assert type(mean.components) is type(asarray(w))
+            # Eigenvectors are known to the rounding over the gap, here a tenth of the largest value.
+            assert np.allclose(np.asarray(mean.components), ph.mean(rotors, weights).components, 0, 64 * EPS)
+        assert type(ph.mean(rotors, asarray(w)).components) is type(asarray(w))
+        with pytest.raises(ValueError, match="no mean"):
+            ph.mean(ph.Rotor.from_components(asarray(np.eye(4))))
+        with pytest.raises(ValueError, match="weights must be 30 finite numbers"):
+            ph.mean(theirs, asarray(-w))
+        half = ph.Rotor.from_components(asarray([0.0, 1.0, 0.0, 0.0]))
+        assert np.all(
+            np.asarray(ph.slerp(theirs, theirs * half, 0.5).distance(theirs * half**0.5)) <= 32 * EPS
+        )
+        with pytest.raises(TypeError, match="a spline needs NumPy floats"):
+            ph.RotorSpline(np.arange(30.0), theirs)
+
+
+def test_derivatives_of_the_mean():
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        rows = jax.numpy.asarray(ph.Rotor.random(6, rng=8).components)
+
+        @jax.jit
+        def mean(rows):
+            return ph.mean(ph.Rotor.from_components(rows)).components
+
+        expected = ph.mean(ph.Rotor.from_components(np.asarray(rows))).components
+        assert np.allclose(mean(rows), expected, 0, 64 * EPS)
+        direction = jax.numpy.asarray(np.random.default_rng(9).standard_normal((6, 4)))
+
+        def along(s):
+            return mean(rows + s * direction)
+
+        h = 1e-4  # central differences err by h² and by ε/h, or ε/h²
+        rate = jax.jacfwd(along)
+        first, second = jax.jit(rate)(0.0), jax.jit(jax.jacfwd(rate))(0.0)
+        assert np.allclose(first, (along(h) - along(-h)) / (2 * h), 0, 1e-5 * (1 + abs(first).max()))
+        assert np.allclose(
+            second, (along(h) - 2 * along(0.0) + along(-h)) / h**2, 0, 1e-4 * (1 + abs(second).max())
+        )
+        # Where the smaller eigenvalues agree, a library's derivatives of eigenvectors are NaN.
+        same = jax.numpy.broadcast_to(rows[0], (3, 4))
+        assert np.all(np.isfinite(jax.jit(jax.jacfwd(mean))(same)))
+
+
+def test_exact_rotors_have_no_mean():
+    from fractions import Fraction
+
+    R = ph.Rotor.from_components(np.array([[Fraction(3, 5), Fraction(4, 5), 0, 0]], dtype=object))
+    with pytest.raises(TypeError, match=r"convert exact numbers with \.astype\(float\)"):
+        ph.mean(R)
+    assert ph.mean(R.astype(float)).is_close(R.astype(float), rtol=4 * EPS)

@@ -142,10 +142,10 @@ def function(name: str, value: Multivector) -> Multivector:
     """Return a function of any value: native over floats, else by the generic formulas."""
     algebra, data = value.algebra, value._data
     if is_float(data):
-        mask = algebra._grades_of_function(name, value._mask)
+        mask, single = algebra._grades_of_function(name, value._mask), data.dtype == np.float32
 
         def native(rows: Array) -> Array:
-            return _native.function(algebra, name, rows)[..., algebra._indices(mask)]
+            return _native.function(algebra, name, rows, single)[..., algebra._indices(mask)]
 
         result = mapped(native, _parts.over_grades(value, algebra._all))
         in_range = np.isfinite(result).all(axis=-1)
@@ -168,10 +168,12 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
     mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
     terms, _ = algebra._terms("geometric", everything, everything)
     full = _parts.over_grades(value, everything)
+    regular = algebra.dimension - algebra.signature[2]
+    null = [(bits >> regular).bit_count() for bits, _ in algebra._blades()]
     if name == "exp":
-        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full)
+        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full, null)
     else:
-        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full)
+        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full, null)
     return taken(rows, algebra._indices(mask)), mask
 
 

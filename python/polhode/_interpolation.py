@@ -6,26 +6,45 @@ from typing import Any
 
 import numpy as np
 
-from polhode._arrays import Array, as_floats, frozen
-from polhode._coefficients import namespace
+from polhode import _generic
+from polhode._arrays import Array, as_floats, frozen, is_float
+from polhode._coefficients import as_coefficients, foreign_kind, kind_of, namespace
 from polhode._multivector import Multivector
 from polhode._rotor import Rotor
 from polhode._values import bivector
+
+# Roundings of a sum of four products of rounded numbers.
+_HALF_TURN = 4
+
+_NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
+_WEIGHTS = "weights must be {} finite numbers >= 0, not all 0, got {}"
 
 
 def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
     """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
 
     The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
-    or −S.
+    or −S. Where the attitudes are half a turn apart, to rounding, both ways are as long, and S keeps its
+    sign: from R to S and from R to −S go opposite ways round.
     """
     for value in (R, S):
         if not isinstance(value, Rotor):
             raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
     step = (~R * S)._data
-    shorter = Rotor.from_components(namespace(step).where(step[..., :1] < 0, -step, step))
+    longer = step[..., :1] < -_half_turn(step)
+    shorter = Rotor.from_components(namespace(step).where(longer, -step, step))
     path: Rotor = R * shorter**t
     return path
+
+
+def _half_turn(components: Any) -> float:
+    """Return how far from 0 rounding leaves the scalar part of ``~R S`` where it turns by half a turn.
+
+    It is a sum of four products of components that are rounded themselves, in sizes a sum of at most 1.
+    """
+    return _HALF_TURN * (
+        float(np.finfo(components.dtype).eps) if is_float(components) else kind_of(components).eps
+    )
 
 
 def mean(R: Rotor, weights: Any = None) -> Rotor:
@@ -33,19 +52,47 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
 
     The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
     Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
-    ValueError where no attitude is closer than all others, as for half turns about three axes.
+    ValueError where no attitude is closer than all others, as for half turns about three axes; while JAX
+    traces, the result is arbitrary there. Arrays of other libraries stay theirs; derivatives are right up to
+    the third.
     """
     if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
         raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
+    kind = kind_of(R._data)
+    if kind.exact:
+        raise TypeError(
+            f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)"
+        )
+    others = None if weights is None else foreign_kind(weights)
+    if not is_float(R._data) or (others is not None and not others.exact):
+        return _foreign_mean(R, weights)
     w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
     if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
-        raise ValueError(f"weights must be {R.shape[0]} finite numbers >= 0, not all 0, got {w.tolist()}")
-    rows = as_floats(np.asarray(R.components, dtype=float), "a component")
+        raise ValueError(_WEIGHTS.format(R.shape[0], w.tolist()))
+    rows = as_floats(R.components, "a component")
     values, vectors = np.linalg.eigh((w[:, np.newaxis] * rows).T @ rows)
-    if values[3] - values[2] <= 8 * np.finfo(float).eps * values[3]:
-        raise ValueError("the rotors have no mean: two attitudes are equally close to all of them")
+    if values[3] - values[2] <= 8 * np.finfo(R.dtype).eps * values[3]:
+        raise ValueError(_NO_MEAN)
     best = vectors[:, 3]
-    return Rotor.from_components(-best if best[0] < 0 else best)
+    return Rotor.from_components((-best if best[0] < 0 else best).astype(R.dtype))
+
+
+def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
+    """Return the mean of arrays of another library, in its own arrays and with their derivatives."""
+    given = [] if weights is None else [as_coefficients(weights, "weights")]
+    kind = kind_of(R._data, *given)
+    rows, xp = kind.asarray(R._data), kind.xp
+    if given:
+        w = kind.asarray(given[0])
+        if tuple(w.shape) != R.shape:
+            raise ValueError(_WEIGHTS.format(R.shape[0], f"shape {tuple(w.shape)}"))
+        usable = xp.all(xp.isfinite(w) & (w >= 0)) & xp.any(w > 0)
+        kind.require(usable, _WEIGHTS.format(R.shape[0], w))
+        weighted = w[:, None] * rows
+    else:
+        weighted = rows
+    best = _generic.eigen.largest(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows), _NO_MEAN)
+    return Rotor.from_components(kind.where(best[0] < 0, -best, best))
 
 
 class RotorSpline:
@@ -57,7 +104,8 @@ class RotorSpline:
     by their distance to the fourth power, in the rate to the third.
 
     Each rotor first takes the sign that is nearer to the one before it, so that the path goes the short
-    way round and stays on one sheet of the double cover; it begins at ``rotors[0]``. At each end the first
+    way round and stays on one sheet of the double cover; it begins at ``rotors[0]``. Half a turn apart, where
+    both signs are as near, two neighbours keep theirs, as in `slerp`. At each end the first
     two intervals share one cubic ("not a knot"); three rotors give a parabola, two a line, along which the
     rate is not constant as that of `slerp` is. A steady turn is likewise met closely, not exactly. Where the
     times are so uneven that the path could swing half a turn away from its rotors, a ValueError says so.
@@ -71,6 +119,11 @@ class RotorSpline:
     def __init__(self, times: Any, rotors: Rotor) -> None:
         if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:
             raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {rotors!r}")
+        if not is_float(rotors._data) or foreign_kind(times) is not None:
+            raise TypeError(
+                "a spline needs NumPy floats; convert exact numbers with .astype(float), the arrays of other "
+                "libraries with np.asarray(rotors.components)"
+            )
         knots = np.array(as_floats(times, "times"))
         if knots.shape != rotors.shape or not np.isfinite(knots).all():
             raise ValueError(f"times must be {len(rotors)} finite numbers, one for each rotor, got {knots}")
@@ -133,8 +186,11 @@ class RotorSpline:
 
 
 def _one_sheet(components: Array) -> Array:
-    """Return the rotors' components with the signs that keep neighbours less than a right angle apart."""
-    apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < 0
+    """Return the rotors' components with the signs that keep neighbours at most a right angle apart.
+
+    Where they are a right angle apart to rounding, attitudes half a turn apart, they keep the signs given.
+    """
+    apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < -_half_turn(components)
     signs = np.cumprod(np.where(apart, -1.0, 1.0))
     return np.concatenate([components[:1], signs[:, np.newaxis] * components[1:]])
 

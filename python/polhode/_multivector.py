@@ -291,8 +291,9 @@ class Multivector(_native.Multivector):
     def join(self, other: Multivector) -> Multivector:
         """Return the unit blade of the smallest subspace that contains both blades.
 
-        Directions within 1e-10 of a subspace count as lying in it. Components are compared as lengths, the
-        basis vectors as orthonormal, whatever the metric. A ValueError for values that are no blades.
+        Directions within 1e-10 (in single precision 3e-5) of a subspace count as lying in it. Components are
+        compared as lengths, the basis vectors as orthonormal, whatever the metric. For the sign see `meet`. A
+        ValueError for a value that is not a blade.
         """
         from polhode import _subspaces
 
@@ -301,8 +302,16 @@ class Multivector(_native.Multivector):
     def meet(self, other: Multivector) -> Multivector:
         """Return the unit blade of the subspace common to both blades; the scalar 1 where it is zero only.
 
-        Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``, so that
-        M is a positive multiple of ``A∨B`` where A and B span the whole space. Tolerance as for `join`.
+        Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``. Their
+        signs are, where
+
+        - A and B have nothing in common: ``M = 1``, and J has the sign of ``A∧B``;
+        - A contains B: ``J = A``, ``M = B``, divided by their sizes; where only B contains A, ``J = B``,
+          ``M = A``;
+        - elsewhere: the first of the largest components of J is positive. So where the two span the whole
+          space, ``J = I``, and M has the sign of ``A∨B``; in the first two cases it need not.
+
+        Tolerance as for `join`.
         """
         from polhode import _subspaces
 

@@ -139,15 +139,12 @@ class Rotor(_native.Rotor, Multivector):
 
         ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
-        For one axis a single angle needs no array.
+        For one axis a single angle needs no array. Angles are numbers, SymPy expressions, or arrays of any
+        library, which stay theirs.
         """
         from polhode import _euler
 
-        total: Any = Rotor.identity()
-        for turn in _euler.rotation_vectors(seq, angles, degrees):
-            total = Rotor.from_rotation_vector(turn) * total
-        result: Rotor = total
-        return result
+        return _euler.from_euler(seq, angles, degrees)
 
     @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
@@ -181,7 +178,7 @@ class Rotor(_native.Rotor, Multivector):
         quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
         return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
 
-    def to_euler(self, seq: str, degrees: bool = False) -> Array:
+    def to_euler(self, seq: str, degrees: bool = False) -> Any:
         """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
 
         The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same

@@ -53,5 +53,6 @@ def joined(left: Multivector, right: Multivector, name: str) -> Multivector:
         for value in (left, right)
     )
     dtype = np.result_type(left._data, right._data)
-    result = left._of(_native.subspaces(algebra, name, a, b), everything, algebra)
+    single = np.float32 in (left._data.dtype, right._data.dtype)
+    result = left._of(_native.subspaces(algebra, name, a, b, single), everything, algebra)
     return result._part(result._held() or 1).astype(dtype)

@@ -8,6 +8,7 @@ use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::batch::{Element, turn_threads};
 use polhode_ga::compose::compose;
 use polhode_ga::functions::Function;
+use polhode_ga::general::Calculus;
 use polhode_ga::maps;
 use polhode_ga::product::Grades;
 use polhode_ga::table::G3;
@@ -68,17 +69,29 @@ fn fill<T: Element + numpy::Element>(
     Ok(())
 }
 
-/// `inverse`, `exp`, `log` or `sqrt` of rows of all components of an algebra.
+/// The functions of an algebra for components that were, or were not, rounded to float32.
+fn calculus(algebra: &Algebra, single: bool) -> &Calculus {
+    if single { algebra.single_calculus() } else { algebra.calculus() }
+}
+
+/// `inverse`, `exp`, `log` or `sqrt` of rows of all components of an algebra, `single` if they were float32.
 #[pyfunction]
-pub(crate) fn function<'py>(py: Python<'py>, algebra: &Algebra, name: &str, m: Rows<'py>) -> Out<'py> {
+pub(crate) fn function<'py>(
+    py: Python<'py>,
+    algebra: &Algebra,
+    name: &str,
+    m: Rows<'py>,
+    single: bool,
+) -> Out<'py> {
     let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
     if algebra.is_g3() {
         return map_rows(py, &m, |c| f.apply(Multivector(c)).map(|m| m.0));
     }
-    map_long_rows(py, [&m], |rows| algebra.calculus().apply(f, rows[0]))
+    let calculus = calculus(algebra, single);
+    map_long_rows(py, [&m], |rows| calculus.apply(f, rows[0]))
 }
 
-/// The join or the meet of blades, rows of all components of an algebra.
+/// The join or the meet of blades, rows of all components of an algebra, `single` if they were float32.
 #[pyfunction]
 pub(crate) fn subspaces<'py>(
     py: Python<'py>,
@@ -86,8 +99,9 @@ pub(crate) fn subspaces<'py>(
     name: &str,
     a: Rows<'py>,
     b: Rows<'py>,
+    single: bool,
 ) -> Out<'py> {
-    let calculus = algebra.calculus();
+    let calculus = calculus(algebra, single);
     match name {
         "join" => map_long_rows(py, [&a, &b], |rows| calculus.join(rows[0], rows[1])),
         "meet" => map_long_rows(py, [&a, &b], |rows| calculus.meet(rows[0], rows[1])),

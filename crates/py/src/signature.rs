@@ -18,6 +18,7 @@ pub(crate) struct Algebra {
     pub table: table::Algebra,
     plans: Mutex<HashMap<Key, Arc<Plan>>>,
     calculus: OnceLock<Calculus>,
+    single_calculus: OnceLock<Calculus>,
 }
 
 /// A term of a product: components of the left factor, the right factor and the product, and the sign.
@@ -63,6 +64,11 @@ impl Algebra {
         self.calculus.get_or_init(|| Calculus::new(&self.table))
     }
 
+    /// The same functions, of components that were rounded to float32.
+    pub fn single_calculus(&self) -> &Calculus {
+        self.single_calculus.get_or_init(|| self.calculus().clone().rounded_to(f32::EPSILON.into()))
+    }
+
     /// Whether it is the algebra of 3-d space.
     pub fn is_g3(&self) -> bool {
         self.table.signature() == table::G3.signature()
@@ -91,7 +97,12 @@ impl Algebra {
                 table::MAX_GENERATORS
             )));
         };
-        Ok(Algebra { table, plans: Mutex::default(), calculus: OnceLock::new() })
+        Ok(Algebra {
+            table,
+            plans: Mutex::default(),
+            calculus: OnceLock::new(),
+            single_calculus: OnceLock::new(),
+        })
     }
 
     /// How many generators square to +1, −1 and 0.

@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from polhode._generic import algebras as algebras
     from polhode._generic import coefficients as coefficients
+    from polhode._generic import eigen as eigen
+    from polhode._generic import euler as euler
     from polhode._generic import functions as functions
+    from polhode._generic import numeric as numeric
     from polhode._generic import products as products
     from polhode._generic import pytrees as pytrees
     from polhode._generic import rotors as rotors

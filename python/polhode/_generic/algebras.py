@@ -33,8 +33,12 @@ _RESIDUAL = 2.0**-10
 # --- inverse
 
 
-def inverse(d: Coefficients, terms: Sequence[Term], generators: int, data: Array) -> Array:
+def inverse(
+    d: Coefficients, terms: Sequence[Term], generators: int, data: Array, null: Sequence[int] = ()
+) -> Array:
     """``U⁻¹``, exact for exact coefficients; a ValueError with the batch index where there is none.
+
+    `null` counts the generators of square 0 in each blade, where there are any.
 
     By Faddeev and LeVerrier's recursion for the characteristic polynomial, whose trace is N times the
     scalar part for matrices of size ``N = 2^⌈n/2⌉`` (Shirokov, Comput. Appl. Math. 40 (2021)):
@@ -46,7 +50,11 @@ def inverse(d: Coefficients, terms: Sequence[Term], generators: int, data: Array
     """
     if isinstance(d, Numeric):
         with np.errstate(all="ignore"):
-            return _refined_inverse(d, terms, generators, data)
+            regular = [data[..., i] for i in range(data.shape[-1]) if not null or null[i] == 0]
+            factors = _null_factors(d, null, data, _largest(d, regular))
+            result = _refined_inverse(d, terms, generators, data * factors) / factors
+            require_in_range(d, result)
+            return result
     adjugate, determinant = _adjugate(d, terms, generators, data)
     singular = np.frompyfunc(is_zero, 1, 1)(determinant)
     d.require(np.logical_not(np.asarray(singular, dtype=bool)), "no inverse: the multivector is singular")
@@ -86,11 +94,44 @@ def _number(d: Coefficients, like: Array, value: int) -> Array:
     return d.stack([zero + value] + [zero] * (like.shape[-1] - 1))
 
 
+def _largest(d: Numeric, parts: list[Array]) -> Array:
+    """Return the largest magnitude, as a constant; 1 where all are 0."""
+    largest = d.xp.abs(d.constant(parts[0]))
+    for x in parts[1:]:
+        largest = d.xp.maximum(largest, d.xp.abs(d.constant(x)))
+    return d.where(largest > 0, largest, 1.0)
+
+
+def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Array:
+    """Return factors of the components (..., 2ⁿ) that bring those with generators of square 0 down to a size.
+
+    To scale these generators by a number is an automorphism, so that far translations need not drown the
+    turns beside them, nor add to the halvings of an exponent.
+    """
+    root = d.zeros_like(data[..., 0]) + 1.0
+    if not any(null):
+        return root[..., None]
+    for i, count in enumerate(null):
+        if count:
+            ratio = d.xp.abs(d.constant(data[..., i])) / size
+            root = d.xp.maximum(root, ratio if count == 1 else ratio ** (1 / count))
+    exponent = d.xp.ceil(d.xp.log2(d.where(d.xp.isfinite(root), root, 1.0)))
+    # Even the factor of a blade with all of them must not leave the range.
+    most = 0.875 * math.log2(float(d.xp.finfo(d.dtype).max)) // max(null)
+    factor = 2.0 ** -d.where(exponent > most, most, exponent)
+    powers = [d.zeros_like(factor) + 1.0]
+    for _ in range(max(null)):
+        powers.append(powers[-1] * factor)
+    return d.stack([powers[count] for count in null])
+
+
 # --- exp
 
 
-def exp(d: Coefficients, terms: Sequence[Term], held: Sequence[int], data: Array) -> Array:
-    """``exp M``; `held` are the blades that M may have, its other components being 0.
+def exp(
+    d: Coefficients, terms: Sequence[Term], held: Sequence[int], data: Array, null: Sequence[int] = ()
+) -> Array:
+    """``exp M``; `held` are the blades that M may have, its other components being 0, `null` as in `inverse`.
 
     Where all blades held (but 1) anticommute, as those of vectors, the square of what they span is a number
     and the result a closed form. Elsewhere the series is summed after halving, and squared back; exact and
@@ -98,6 +139,7 @@ def exp(d: Coefficients, terms: Sequence[Term], held: Sequence[int], data: Array
 
     A value that only happens to have it, like a simple bivector in four dimensions, takes the series as well:
     derivatives lead off such values. Values traced by JAX are computed up to ``Σ|m| = 2048``; beyond, NaN.
+    Components with generators of square 0 may have any size.
     """
     if not isinstance(d, Numeric):
         rows = range(data.shape[-1])
@@ -105,7 +147,11 @@ def exp(d: Coefficients, terms: Sequence[Term], held: Sequence[int], data: Array
     with np.errstate(all="ignore"):
         d.require_finite(components(data))
         simple = _anticommute(terms, [i for i in held if i != 0])
-        result = _closed_exp(d, terms, data) if simple else _series_exp(d, terms, data)
+        if simple:
+            result = _closed_exp(d, terms, data)
+        else:
+            factors = _null_factors(d, null, data, 1.0)
+            result = _series_exp(d, terms, data * factors) / factors
         require_in_range(d, result)
     return result
 

@@ -140,6 +140,18 @@ def _point(x: Any, sign: int) -> dict[Any, Any]:
     return values
 
 
+def is_rounding(x: Any, tolerance: float) -> bool:
+    """Whether x is 0; of a float or a multiprecision number, whether it is no larger than the tolerance."""
+    if is_symbolic(x) or isinstance(x, int | Fraction):
+        return is_zero(x)
+    return bool(abs(x) <= tolerance)
+
+
+def pi_beside(x: Any, pi: Any) -> Any:
+    """Return π as it goes with x: SymPy's beside an expression, else the number given."""
+    return sys.modules["sympy"].pi if is_symbolic(x) else pi
+
+
 def is_finite(x: Any) -> bool:
     """Whether x is no NaN or infinity; expressions count as finite unless they are one."""
     if is_symbolic(x):

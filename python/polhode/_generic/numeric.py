@@ -26,7 +26,7 @@ class Numeric:
     def __init__(self, xp: Any, dtype: Any = None, device: Any = None) -> None:
         self.xp = xp
         self.dtype = xp.asarray(1.0).dtype if dtype is None else dtype
-        self._device = {} if device is None else {"device": device}
+        self.placed = {} if device is None else {"device": device}
 
     @property
     def native(self) -> bool:
@@ -47,12 +47,12 @@ class Numeric:
             return self.xp.stack(list(parts), axis=0)
         if isinstance(values, np.ndarray | np.generic | int | float) or not hasattr(values, "dtype"):
             floats = np.array(as_floats(values, "coefficients"))  # a copy, which others may keep and write to
-            return self.xp.asarray(floats, dtype=self.dtype, **self._device)
+            return self.xp.asarray(floats, dtype=self.dtype, **self.placed)
         return values if values.dtype == self.dtype else self.xp.astype(values, self.dtype)
 
     def zeros(self, shape: tuple[int, ...]) -> Array:
         """Zeros of this shape."""
-        return self.xp.zeros(shape, dtype=self.dtype, **self._device)
+        return self.xp.zeros(shape, dtype=self.dtype, **self.placed)
 
     def zeros_like(self, x: Array) -> Array:
         """Zeros, as many as x has."""
@@ -89,7 +89,7 @@ class Numeric:
 
     def _full(self, x: Any) -> Array:
         if isinstance(x, int | float):
-            return self.xp.asarray(x, dtype=self.dtype, **self._device)
+            return self.xp.asarray(x, dtype=self.dtype, **self.placed)
         return x
 
     def abs(self, x: Array) -> Array:

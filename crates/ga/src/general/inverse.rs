@@ -18,7 +18,8 @@ impl Calculus {
         // Only what has no null generator can be invertible, and it sets the scale.
         let scale = scale_of(&self.without_null(&m));
         m.iter_mut().for_each(|x| *x /= scale);
-        let factor = self.balance(&mut m);
+        // Scaled up, small parts with null generators would count in the condition.
+        let factor = self.balance_down(&mut m);
         let mut x = self.inverse_bits(&m)?;
         self.scale_null(&mut x, 1.0 / factor);
         x.iter_mut().for_each(|x| *x /= scale);

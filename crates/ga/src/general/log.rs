@@ -20,22 +20,39 @@
 use super::exp::unit_of_grade_4;
 use super::pair::{Pair, Ring, SPLITS};
 use super::roots::symmetric_eigen;
-use super::{Calculus, add_scaled, dot, grade, part, reverse, scaled};
+use super::{Calculus, SAME_DIRECTION, add_scaled, dot, grade, part, reverse, scaled};
 use crate::functions::MathError;
 use crate::values::{norm, scale_of};
 use std::f64::consts::FRAC_PI_2;
 
-/// How far `R~R` may be from a number, and `exp(log R)` from R per unit of `1 + |log R|`.
-const VERSOR_TOLERANCE: f64 = 1e-12;
-
 /// The most that the size of a logarithm may loosen its check.
 const MOST_LENIENT: f64 = 1e3;
 
-/// No logarithm is given that is less certain than this, relative to R.
-const MOST_TOLERANT: f64 = 1e-8;
+/// Tolerances for components rounded to a spacing `epsilon` of numbers at 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tolerances {
+    /// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
+    pub rounding: f64,
+    /// How far `R~R` may be from a number, and `exp(log R)` from R per unit of `1 + |log R|`: the rounding
+    /// of thousands of products.
+    pub versor: f64,
+    /// No logarithm is given that is less certain than this, relative to R: half of the digits.
+    pub least_certain: f64,
+    /// What [`SAME_DIRECTION`] is for them.
+    pub direction: f64,
+}
 
-/// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+impl Tolerances {
+    pub(super) fn new(epsilon: f64) -> Tolerances {
+        let least_certain = epsilon.sqrt();
+        Tolerances {
+            rounding: 32.0 * epsilon,
+            versor: (4096.0 * epsilon).min(0.5 * least_certain),
+            least_certain,
+            direction: SAME_DIRECTION.max(256.0 * epsilon),
+        }
+    }
+}
 
 /// The series of g is summed within `|1 − c| <= NEAR`: 14 terms of ratio 1/16 at most.
 pub(super) const NEAR: f64 = 0.125;
@@ -58,6 +75,9 @@ impl Calculus {
     /// with two generators or more of either sign, a large boost may drown the rotation beside it. With
     /// more generators, where the sum of the angles of B over its planes is below π, and in most other
     /// cases. What is not found is an error.
+    ///
+    /// Of parts with null generators that are not a versor's, as of the rounding that is left where larger
+    /// ones cancel, those nearest by are taken: `exp(log M)` is M to `√ε` of its largest part.
     pub fn log(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let polar = self.polar(&self.read(m)?)?.ok_or(MathError::NoLogarithm)?;
         let mut log = polar.bivector;
@@ -77,7 +97,7 @@ impl Calculus {
     /// Size and bivector of an even versor; none of zero.
     ///
     /// Where `M~M = 1` to rounding the size is exactly 1: for a boost by more than 18, `M~M` is the
-    /// difference of numbers too large to tell it.
+    /// difference of numbers too large to tell it. Elsewhere it is such that `size · exp B` is nearest to M.
     fn polar(&self, m: &[f64]) -> Result<Option<Polar>, MathError> {
         if m.iter().all(|&x| x == 0.0) {
             return Ok(None);
@@ -88,51 +108,118 @@ impl Calculus {
         if !m.iter().all(|x| x.is_finite()) {
             return Err(MathError::Overflow);
         }
-        let square = self.product(&m, &reverse(&m));
-        let total = norm(&m).powi(2);
-        let odd = norm(&part(&m, |k| k % 2 == 1));
-        let deviation = (norm(&square[1..]) / total).max(odd / total.sqrt());
-        if deviation > VERSOR_TOLERANCE {
-            return Err(MathError::NotVersor { deviation });
-        }
-        let unit = 1.0 / (scale * scale);
-        if (square[0] - unit).abs() <= ROUNDING * total {
-            let bivector = self.log_of_unit(&scaled(&m, scale))?;
+        let m = self.read_versor(m, null_factor)?;
+        let square = self.scalar_product(&m, &reverse(&m));
+        let rounding = self.tolerances.rounding * norm(&m).powi(2);
+        if (square - 1.0 / (scale * scale)).abs() <= rounding {
+            let (bivector, _) = self.log_of_unit(&scaled(&m, scale))?;
             return Ok(Some(Polar { size: 1.0, bivector, null_factor }));
         }
-        if square[0].abs() <= ROUNDING * total {
+        if square.abs() <= rounding {
             return Err(MathError::NoLogarithm);
         }
-        if square[0] < 0.0 {
+        if square < 0.0 {
             return Err(MathError::NoBivectorLogarithm);
         }
-        let size = square[0].sqrt();
-        let bivector = self.log_of_unit(&scaled(&m, 1.0 / size))?;
-        Ok(Some(Polar { size: size * scale, bivector, null_factor }))
+        let size = square.sqrt();
+        let (bivector, ratio) = self.log_of_unit(&scaled(&m, 1.0 / size))?;
+        Ok(Some(Polar { size: ratio * size * scale, bivector, null_factor }))
     }
 
-    /// The bivector B with `exp B = R`.
-    fn log_of_unit(&self, r: &[f64]) -> Result<Vec<f64>, MathError> {
-        let principal = self.principal_log(r).filter(|log| self.is_log(log, r));
+    /// A balanced even versor times a number, or the error that it is not one.
+    ///
+    /// Its part without null generators is judged on its own scale. The parts with them may be the rounding
+    /// of larger ones that cancelled, as in `~M M`: balanced, this rounding is as large as any part. So where
+    /// they do not fit, the versor nearest by is taken, if what that changes is within
+    /// `least_certain` of the larger of both parts before they were balanced.
+    fn read_versor(&self, m: Vec<f64>, null_factor: f64) -> Result<Vec<f64>, MathError> {
+        let deviation = self.deviation(&m);
+        if self.null == 0 || deviation <= self.tolerances.rounding {
+            return self.require_versor(m, deviation);
+        }
+        let rotor = self.without_null(&m);
+        if self.scalar_product(&rotor, &reverse(&rotor)).abs()
+            <= self.tolerances.rounding * dot(&rotor, &rotor)
+        {
+            return Err(MathError::NoLogarithm);
+        }
+        let deviation = self.deviation(&rotor);
+        let versor = self.require_versor(self.nearest_in_null(&m), deviation)?;
+        let unbalanced = 1.0 / null_factor.max(1.0);
+        let (mut change, mut given) = (versor.clone(), m);
+        add_scaled(&mut change, &given, -1.0);
+        self.scale_null(&mut change, unbalanced);
+        self.scale_null(&mut given, unbalanced);
+        let change = norm(&change) / norm(&given);
+        if change <= self.tolerances.least_certain {
+            Ok(versor)
+        } else {
+            Err(MathError::NotVersor { deviation: change })
+        }
+    }
+
+    fn require_versor(&self, m: Vec<f64>, deviation: f64) -> Result<Vec<f64>, MathError> {
+        if deviation <= self.tolerances.versor { Ok(m) } else { Err(MathError::NotVersor { deviation }) }
+    }
+
+    /// The larger of what in `M~M` is not a number and the odd part, relative to `|M|²` and `|M|`.
+    fn deviation(&self, m: &[f64]) -> f64 {
+        let square = self.product(m, &reverse(m));
+        let size = norm(m);
+        (norm(&square[1..]) / size.powi(2)).max(norm(&part(m, |k| k % 2 == 1)) / size)
+    }
+
+    /// The versor with the same part `M₀` without null generators. `M = M₀(1 + X)` with X nilpotent, and of a
+    /// versor `log(1 + X) = X − X²/2 + …` is a bivector: `M₀ exp⟨log(1 + X)⟩₂`. Both series end with the
+    /// power r, the number of null generators.
+    fn nearest_in_null(&self, m: &[f64]) -> Vec<f64> {
+        let rotor = self.without_null(m);
+        let mut null = m.to_vec();
+        add_scaled(&mut null, &rotor, -1.0);
+        let square = self.scalar_product(&rotor, &reverse(&rotor));
+        let x = scaled(&self.product(&reverse(&rotor), &null), 1.0 / square);
+        let most = self.null.count_ones();
+        let (mut power, mut log) = (x.clone(), part(&x, |k| k == 2));
+        for k in 2..=most {
+            power = scaled(&self.product(&power, &x), -1.0);
+            add_scaled(&mut log, &part(&power, |k| k == 2), 1.0 / f64::from(k));
+        }
+        let mut exp = self.scalar(1.0);
+        for k in (1..=most).rev() {
+            exp = scaled(&self.product(&log, &exp), 1.0 / f64::from(k));
+            exp[0] += 1.0;
+        }
+        self.product(&rotor, &exp)
+    }
+
+    /// The bivector B with `exp B = R`, and the number by which R is larger than `exp B`.
+    fn log_of_unit(&self, r: &[f64]) -> Result<(Vec<f64>, f64), MathError> {
+        let checked = |log: Vec<f64>| self.size_beside(&log, r).map(|size| (log, size));
+        let principal = self.principal_log(r).and_then(checked);
         let found = principal.or_else(|| {
             self.commuting_planes(r).into_iter().find_map(|plane| {
                 let y = scaled(&plane, FRAC_PI_2);
                 let rest = self.product(r, &self.exp_bits(&scaled(&y, -1.0)).ok()?);
                 let mut log = self.principal_log(&rest)?;
                 add_scaled(&mut log, &y, 1.0);
-                self.is_log(&log, r).then_some(log)
+                checked(log)
             })
         });
         found.ok_or(MathError::NoBivectorLogarithm)
     }
 
-    /// Whether `exp(log) = R`. The rounding of a large R leaves its size, from `R~R = 1`, uncertain by
-    /// `ε|R|²`, which the halves of R that are not large feel.
-    fn is_log(&self, log: &[f64], r: &[f64]) -> bool {
-        let Ok(mut difference) = self.exp_bits(log) else { return false };
-        add_scaled(&mut difference, r, -1.0);
-        let tolerance = VERSOR_TOLERANCE * (1.0 + norm(log)).min(MOST_LENIENT) + ROUNDING * norm(r);
-        norm(&difference) <= tolerance.min(MOST_TOLERANT) * norm(r)
+    /// The size of R in units of `exp(log)`; none where R does not lie along it. The rounding of a large R
+    /// leaves `R~R = 1`, the size of R and of its halves, uncertain by `ε|R|²`.
+    fn size_beside(&self, log: &[f64], r: &[f64]) -> Option<f64> {
+        let length = norm(r);
+        let (r, exp) = (scaled(r, 1.0 / length), scaled(&self.exp_bits(log).ok()?, 1.0 / length));
+        let ratio = dot(&exp, &r) / dot(&exp, &exp);
+        let mut difference = scaled(&exp, -ratio);
+        add_scaled(&mut difference, &r, 1.0);
+        let Tolerances { rounding, versor, least_certain, .. } = self.tolerances;
+        let tolerance = versor * (1.0 + norm(log)).min(MOST_LENIENT) + rounding * length.powi(2);
+        let close = norm(&difference) <= tolerance.min(least_certain);
+        (close && (ratio - 1.0).abs() <= tolerance).then_some(ratio)
     }
 
     /// The end of the walk, unchecked; none where it has no start.
@@ -154,16 +241,23 @@ impl Calculus {
             }
             return Some(log);
         }
-        let ring = Ring { q };
-        if r[0] < y.abs() * q.max(0.0).sqrt()
-            && let Some(plane) = self.unit_plane(ring, &f, &unit)
-        {
-            // Where a number of C is negative, 1 + C cancels; turned back by a quarter, to −R P, it does not.
-            let mut log = self.log_in_ring(&scaled(&self.product(r, &plane), -1.0))?;
-            add_scaled(&mut log, &plane, FRAC_PI_2);
-            return Some(log);
+        let (ring, c) = (Ring { q }, Pair { x: r[0], y });
+        let negative = r[0] < y.abs() * q.max(0.0).sqrt();
+        let turned = negative.then(|| self.turned_factor(ring, c, &f, &unit)).flatten();
+        Some(self.times(&f, &unit, turned.or_else(|| walk(ring, c))?))
+    }
+
+    /// The factor κ with `B = F κ` where a number of C is negative, so that 1 + C would cancel. Of `F = PS`,
+    /// P² = −1, turned back by a quarter, `−R P = S − C P`, S takes the part of C: `B = P(π/2 − C g(S))`. None
+    /// where F does not turn only, or `F²` is rounding.
+    fn turned_factor(&self, ring: Ring, c: Pair, f: &[f64], unit: &[f64]) -> Option<Pair> {
+        let square = self.square_in_ring(f, unit);
+        if ring.radius(square) <= self.tolerances.rounding * norm(f).powi(2) {
+            return None;
         }
-        self.log_in_ring(r)
+        let s = ring.sqrt(square.scale(-1.0))?;
+        let angle = Pair { x: FRAC_PI_2, y: 0.0 }.plus(ring.mul(c, walk(ring, s)?).scale(-1.0));
+        Some(ring.mul(angle, ring.inverse(s)))
     }
 
     /// The factor κ with `B = F κ` where `C = cosh B` is a number c, and `F² = sinh² B` is `multiple · ⟨F²⟩`.
@@ -172,12 +266,13 @@ impl Calculus {
         let f = scaled(f, 1.0 / scale);
         let square = multiple * self.scalar_product(&f, &f);
         let sinh = square.abs().sqrt() * scale;
-        if square.abs() <= ROUNDING * norm(&f).powi(2) {
-            (c > 0.0).then_some(1.0)
-        } else if square < 0.0 {
-            Some(sinh.atan2(c) / sinh)
+        if c > 0.0 {
+            // κ is smooth in F² = 0, so that the sign which rounding gives it does not matter.
+            let b = if square < 0.0 { sinh.atan2(c) } else { sinh.asinh() };
+            Some(if sinh > 0.0 { b / sinh } else { 1.0 })
         } else {
-            (c > 0.0).then(|| sinh.asinh() / sinh)
+            let turns = square < -self.tolerances.rounding * norm(&f).powi(2);
+            turns.then(|| sinh.atan2(c) / sinh)
         }
     }
 
@@ -187,35 +282,15 @@ impl Calculus {
         let length = norm(f).powi(2);
         let (unit, size, rounding) = if length < r[0].abs() {
             let (unit, size) = unit_of_grade_4(&self.product(f, f));
-            (unit, size, ROUNDING * length)
+            (unit, size, self.tolerances.rounding * length)
         } else {
             let (unit, size) = unit_of_grade_4(r);
-            (unit, size, ROUNDING * norm(r))
+            (unit, size, self.tolerances.rounding * norm(r))
         };
         (size > rounding).then(|| {
             let y = dot(r, &unit);
             (unit, y)
         })
-    }
-
-    /// The logarithm of a rotor whose `1 + C` is not small, by the walk in the ring of its C.
-    fn log_in_ring(&self, r: &[f64]) -> Option<Vec<f64>> {
-        let f = part(r, |k| k == 2);
-        let (unit, y) = self.unit_and_component(r, &f).unwrap_or_else(|| (self.scalar(0.0), 0.0));
-        let ring = Ring { q: self.scalar_product(&unit, &unit) };
-        Some(self.times(&f, &unit, walk(ring, Pair { x: r[0], y })?))
-    }
-
-    /// `P = F/√(−F²)`, the bivector with `P² = −1` that is F times a pair; none where F does not turn
-    /// only, or `F²` is rounding. A Newton step, `P(3 + P²)/2`, makes it a unit to rounding.
-    fn unit_plane(&self, ring: Ring, f: &[f64], unit: &[f64]) -> Option<Vec<f64>> {
-        let square = self.square_in_ring(f, unit);
-        if ring.radius(square) <= ROUNDING * norm(f).powi(2) {
-            return None;
-        }
-        let plane = self.times(f, unit, ring.inverse(ring.sqrt(square.scale(-1.0))?));
-        let square = self.square_in_ring(&plane, unit);
-        Some(self.times(&plane, unit, square.plus(Pair { x: 3.0, y: 0.0 }).scale(0.5)))
     }
 
     /// `F²` of a bivector as a pair.
@@ -248,7 +323,7 @@ impl Calculus {
         let row = |a: &Vec<f64>| commutators.iter().map(|b| dot(a, b)).collect();
         let (values, vectors) = symmetric_eigen(commutators.iter().map(row).collect());
         let own = part(r, |k| k == 2);
-        let bound = ROUNDING * norm(r).powi(2);
+        let bound = self.tolerances.rounding * norm(r).powi(2);
         let others =
             values.iter().zip(vectors).filter(|(value, _)| **value <= bound).map(|(_, components)| {
                 let mut y = vec![0.0; r.len()];

@@ -20,6 +20,7 @@ mod subspaces;
 use crate::functions::{Function, MathError};
 use crate::product::Grades;
 use crate::table::Algebra;
+use log::Tolerances;
 
 pub use subspaces::SAME_DIRECTION;
 
@@ -33,6 +34,8 @@ pub struct Calculus {
     order: Vec<(usize, f64)>,
     /// Sign of the product of canonical blades `i` and `j`, at `i · 2ⁿ + j`.
     signs: Vec<i8>,
+    /// What counts as rounding in a versor.
+    tolerances: Tolerances,
 }
 
 impl Calculus {
@@ -49,7 +52,14 @@ impl Calculus {
             null: (0..generators).filter(|&i| signature.square(i) == 0).map(|i| 1 << i).sum(),
             order: algebra.blades().iter().map(|b| (b.bits as usize, f64::from(b.sign))).collect(),
             signs,
+            tolerances: Tolerances::new(f64::EPSILON),
         }
+    }
+
+    /// The same functions, of components that are rounded to a spacing `epsilon` of numbers at 1, as
+    /// `f32::EPSILON`: it decides what logarithm and square root take for a versor.
+    pub fn rounded_to(self, epsilon: f64) -> Calculus {
+        Calculus { tolerances: Tolerances::new(epsilon), ..self }
     }
 
     /// Number of components of a multivector.
@@ -172,6 +182,15 @@ impl Calculus {
         let factor = exponent.clamp(-limit, limit).floor().exp2();
         self.scale_null(m, factor);
         factor
+    }
+
+    /// Scales the generators of square 0 as [`balance`](Calculus::balance) does, but never up.
+    fn balance_down(&self, m: &mut [f64]) -> f64 {
+        let factor = self.balance(m);
+        if factor > 1.0 {
+            self.scale_null(m, 1.0 / factor);
+        }
+        factor.min(1.0)
     }
 
     /// Scales the generators of square 0 by `factor`.

@@ -10,9 +10,6 @@ const MOST_STEPS: u32 = 40;
 /// Sweeps of [`symmetric_eigen`]; a few suffice, for the rotations converge quadratically.
 const MOST_SWEEPS: u32 = 30;
 
-/// A bivector's grades beside 2 may hold this much rounding, relative to its size.
-const STRAY: f64 = 1e-12;
-
 impl Calculus {
     /// The bivector logarithm of a rotor by the walk of `log`, with C and F as elements of the algebra;
     /// none where the principal logarithm is not a bivector.
@@ -47,7 +44,7 @@ impl Calculus {
         let mut log = self.product(&f, &g);
         let size = norm(&log);
         for (_, x) in log.iter_mut().enumerate().filter(|(bits, _)| grade(*bits) != 2) {
-            if x.abs() > STRAY * (1.0 + size) {
+            if x.abs() > self.tolerances.versor * (1.0 + size) {
                 return None;
             }
             *x = 0.0;

@@ -8,7 +8,7 @@ use crate::functions::MathError;
 use crate::values::{norm, scale_of};
 
 /// The sine of the angle below which a direction counts as lying in a subspace, and the relative part
-/// of a multivector below which it counts as a blade.
+/// of a multivector below which it counts as a blade; 256 roundings where components are rounded more coarsely.
 pub const SAME_DIRECTION: f64 = 1e-10;
 
 /// A subspace: orthonormal vectors, and the unit blade with its orientation.
@@ -26,16 +26,18 @@ impl Calculus {
     /// The meet: the unit blade of the subspace common to both, the scalar 1 where that is zero only.
     ///
     /// Join J and meet M are oriented together: with `A = A'∧M` and `B = M∧B'`, `J = A'∧M∧B'`. Of the
-    /// two ways left, `J = A∧B`, `M = 1` where nothing is in common; the orientations of A and B,
-    /// `J = A`, `M = B` or reversed, where A contains B or B contains A; else that in which the first
-    /// of the largest components of J is positive: `J = I` and `M = A∨B` where they span the space.
+    /// two ways left, J has the sign of `A∧B` and `M = 1` where nothing is in common; the signs are those of
+    /// A and B where one contains the other: `J = A`, `M = B` where A contains B, else `J = B`, `M = A`.
+    /// Elsewhere the first of the largest components of J is positive: if together they span the space,
+    /// `J = I` and M has the sign of `A∨B`.
     pub fn meet(&self, a: &[f64], b: &[f64]) -> Result<Vec<f64>, MathError> {
         Ok(self.join_and_meet(a, b)?.1)
     }
 
     fn join_and_meet(&self, a: &[f64], b: &[f64]) -> Result<(Vec<f64>, Vec<f64>), MathError> {
         let (a, b) = (self.subspace(&self.read(a)?)?, self.subspace(&self.read(b)?)?);
-        let whole = [&a.vectors[..], &extend(&a.vectors, &b.vectors, usize::MAX, SAME_DIRECTION)].concat();
+        let whole =
+            [&a.vectors[..], &extend(&a.vectors, &b.vectors, usize::MAX, self.tolerances.direction)].concat();
         let common = a.vectors.len() + b.vectors.len() - whole.len();
         // What A lacks of the whole and what B lacks of it together leave the common part.
         let missing = |x: &Subspace| extend(&x.vectors, &whole, whole.len() - x.vectors.len(), 0.0);
@@ -66,7 +68,7 @@ impl Calculus {
     /// Whether the first component, in basis order, of those as large as the largest is negative.
     fn leads_negative(&self, m: &[f64]) -> bool {
         let m = self.to_basis(m);
-        let bound = (1.0 - SAME_DIRECTION) * m.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let bound = (1.0 - self.tolerances.direction) * m.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
         m.iter().find(|x| x.abs() >= bound).is_some_and(|&x| x < 0.0)
     }
 
@@ -94,7 +96,7 @@ impl Calculus {
         let mut rest = m;
         add_scaled(&mut rest, &blade, -1.0);
         let deviation = norm(&rest);
-        if vectors.len() != k as usize || deviation > SAME_DIRECTION {
+        if vectors.len() != k as usize || deviation > self.tolerances.direction {
             return Err(MathError::NotBlade { deviation });
         }
         Ok(Subspace { vectors, blade })

@@ -2,5 +2,6 @@
 
 mod closed_forms;
 mod functions;
+mod rounding;
 mod space;
 mod subspaces;

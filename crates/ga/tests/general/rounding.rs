@@ -1,0 +1,172 @@
+//! Logarithms and roots of versors as rounding leaves them: in null parts, in large ones, in single precision.
+
+use crate::space::*;
+use polhode_ga::functions::MathError;
+use proptest::prelude::*;
+
+/// Algebras with null generators, up to seven generators.
+const DEGENERATE: [(usize, usize, usize); 9] =
+    [(2, 0, 1), (3, 0, 1), (1, 1, 1), (1, 3, 1), (4, 0, 1), (2, 0, 2), (3, 0, 2), (5, 0, 1), (6, 0, 1)];
+
+fn exp(space: &Space, b: &[f64]) -> Vec<f64> {
+    space.calculus.exp(b).unwrap()
+}
+
+/// The parts without and with null generators, which have the last numbers.
+fn split(space: &Space, r: usize, m: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let n = space.algebra.signature().generators();
+    let has_null = |i: usize| space.algebra.blades()[i].bits >> (n - r) != 0;
+    let part = |wanted: bool| (0..m.len()).map(|i| if has_null(i) == wanted { m[i] } else { 0.0 }).collect();
+    (part(false), part(true))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// `~M M` is 1 to rounding, and so is its root; its logarithm is that rounding, at most `ε|M|²` by sums
+    /// of 2ⁿ products. So it is of translations so far that their rounding is larger than 1e-12, but below √ε.
+    #[test]
+    fn what_cancels_leaves_rounding(x in numbers(), e in -3.0..4.0f64) {
+        for (p, q, r) in DEGENERATE {
+            let space = Space::new(p, q, r);
+            let b = space.of_grade(2, &x);
+            let (turn, far) = split(&space, r, &b);
+            let motor = space.product(&exp(&space, &turn), &exp(&space, &scaled(&far, 10f64.powf(e / r as f64))));
+            let one = space.product(&space.reverse(&motor), &motor);
+            let bound = space.size() as f64 * EPS * (1.0 + norm(&motor).powi(2));
+            let log = space.calculus.log(&one);
+            prop_assert!(log.is_ok(), "{p} {q} {r} {log:?}");
+            prop_assert!(norm(&log.unwrap()) <= bound, "{p} {q} {r}");
+            let root = space.calculus.sqrt(&one).unwrap();
+            prop_assert!(distance(&root, &space.scalar(1.0)) <= bound, "{p} {q} {r}");
+        }
+    }
+
+    /// Noise in the null parts of a rotor, at and below its rounding: the logarithm of the rotor, and noise.
+    #[test]
+    fn noise_in_the_null_parts_leaves_the_rotor_alone(x in numbers(), y in numbers(), e in 13.0..300.0f64) {
+        for (p, q, r) in DEGENERATE {
+            let space = Space::new(p, q, r);
+            let turn = split(&space, r, &space.of_grade(2, &x)).0;
+            let b = scaled(&turn, 1.0 / (1.0 + norm(&turn)));
+            let blades = space.algebra.blades();
+            let even: Vec<f64> =
+                (0..space.size()).map(|i| if blades[i].grade().is_multiple_of(2) { y[i] } else { 0.0 }).collect();
+            let noise = scaled(&split(&space, r, &even).1, 10f64.powf(-e));
+            let rotor: Vec<f64> = exp(&space, &b).iter().zip(&noise).map(|(a, b)| a + b).collect();
+            let log = space.calculus.log(&rotor);
+            prop_assert!(log.is_ok(), "{p} {q} {r} {log:?}");
+            let (kept, left) = split(&space, r, &log.unwrap());
+            prop_assert!(distance(&kept, &b) <= 64.0 * EPS * norm(&b), "{p} {q} {r}");
+            // The derivative of log in the null parts is that of turns below 1 radian, of a few planes.
+            prop_assert!(norm(&left) <= 8.0 * norm(&rotor) * norm(&noise), "{p} {q} {r}");
+            let root = space.calculus.sqrt(&rotor).unwrap();
+            let half = exp(&space, &scaled(&b, 0.5));
+            prop_assert!(distance(&split(&space, r, &root).0, &half) <= 64.0 * EPS * norm(&half));
+        }
+    }
+
+    /// `s S exp(B) ~S`, large by the boost S: the size, a difference in `M~M`, is known to `ε|R|²`, and the
+    /// logarithm to that by its own size.
+    #[test]
+    fn large_versors_times_a_number(x in numbers(), y in numbers(), size in 0.1..10.0f64) {
+        for (p, q, r) in [(2, 2, 0), (3, 1, 0), (1, 2, 0), (1, 3, 0), (4, 1, 0), (3, 2, 0), (2, 1, 1)] {
+            let space = Space::new(p, q, r);
+            let b = space.of_grade(2, &x);
+            let boost = exp(&space, &scaled(&space.of_grade(2, &y), 2.0));
+            let turned = space.product(&space.product(&boost, &exp(&space, &b)), &space.reverse(&boost));
+            let length = norm(&turned);
+            prop_assume!(length < 300.0);
+            for size in [1.0, size] {
+                let m = scaled(&turned, size);
+                let log = space.calculus.log(&m);
+                prop_assert!(log.is_ok(), "{p} {q} {r} {length} {log:?}");
+                let bound = 1e-12 * (1.0 + norm(log.as_ref().unwrap())) + 32.0 * EPS * length * length;
+                let back = exp(&space, &log.unwrap());
+                prop_assert!(distance(&back, &m) <= 2.0 * bound * norm(&m), "{p} {q} {r} {length}");
+            }
+        }
+    }
+
+    /// Components rounded to float32: in single precision a versor, in double precision not.
+    #[test]
+    fn single_precision_has_its_own_rounding(x in numbers(), size in 0.1..2.0f64) {
+        let eps = f64::from(f32::EPSILON);
+        for (p, q, r) in NAMED.into_iter().chain(DEGENERATE) {
+            let space = Space::new(p, q, r);
+            let b = space.of_grade(2, &x);
+            // As in `log_and_exp_undo_each_other`.
+            let b = scaled(&b, size * (0.6 / norm(&b)));
+            let rounded: Vec<f64> = exp(&space, &b).iter().map(|x| f64::from(*x as f32)).collect();
+            let single = space.calculus.clone().rounded_to(eps);
+            let log = single.log(&rounded);
+            prop_assert!(log.is_ok(), "{p} {q} {r} {log:?}");
+            let error = distance(&log.unwrap(), &b);
+            prop_assert!(error <= 4.0 * eps * norm(&rounded).powi(2), "{p} {q} {r} {error:e}");
+            let root = single.sqrt(&rounded).unwrap();
+            prop_assert!(distance(&space.product(&root, &root), &rounded) <= 4.0 * eps * norm(&rounded).powi(3));
+        }
+    }
+}
+
+#[test]
+fn what_is_not_a_versor_stays_an_error() {
+    let projective = Space::new(3, 0, 1);
+    let with = |e: f64| projective.sum(&[(1.0, &[]), (e, &[1, 2, 3, 4])]);
+    // Below the rounding of 1 the null part is nothing; half of the digits is where it is too much.
+    assert_eq!(projective.calculus.log(&with(1e-17)).unwrap(), projective.scalar(0.0));
+    assert_eq!(projective.calculus.sqrt(&with(1e-300)).unwrap(), projective.scalar(1.0));
+    for e in [1e-7, 1e-3, 1.0, 1e8, 1e200] {
+        for m in [with(e), scaled(&with(e), 1e-50)] {
+            let refused = projective.calculus.log(&m);
+            assert!(
+                matches!(refused, Err(MathError::NotVersor { deviation }) if deviation > 5e-8),
+                "{refused:?}"
+            );
+        }
+    }
+    let single = projective.calculus.clone().rounded_to(f64::from(f32::EPSILON));
+    assert_eq!(single.log(&with(1e-5)).unwrap(), projective.scalar(0.0));
+    assert!(matches!(single.log(&with(1e-3)), Err(MathError::NotVersor { .. })));
+    // Without a rotor there is nothing that the null parts could be of.
+    let null = Space::new(2, 0, 2).sum(&[(1.0, &[1, 3]), (0.5, &[1, 4]), (0.3, &[1, 2, 3, 4])]);
+    assert_eq!(Space::new(2, 0, 2).calculus.log(&null), Err(MathError::NoLogarithm));
+    let light = Space::new(1, 1, 1).sum(&[(1.0, &[]), (1.0, &[1, 2]), (0.3, &[1, 3])]);
+    assert_eq!(Space::new(1, 1, 1).calculus.log(&light), Err(MathError::NoLogarithm));
+    let four = Space::new(4, 0, 0);
+    let rotor = four.sum(&[(1.0, &[]), (1e-3, &[1, 2, 3, 4])]);
+    let single = four.calculus.clone().rounded_to(f64::from(f32::EPSILON));
+    assert!(matches!(single.log(&rotor), Err(MathError::NotVersor { .. })));
+    assert!(projective.calculus.log(&projective.sum(&[(1e-17, &[1, 4])])).is_err());
+}
+
+/// Null parts of rounding do not count in the condition of the inverse, whose own null parts they make.
+#[test]
+fn noise_does_not_make_a_boost_singular() {
+    let space = Space::new(1, 1, 1);
+    for rapidity in [5.0, 11.0, 16.0] {
+        let (c, s) = (f64::cosh(rapidity), f64::sinh(rapidity));
+        let boost = space.sum(&[(c, &[]), (s, &[1, 2]), (1e-17, &[1, 3]), (-1e-17, &[2, 3])]);
+        let inverse = space.calculus.inverse(&boost).unwrap();
+        let expected = space.sum(&[(c, &[]), (-s, &[1, 2])]);
+        assert!(distance(&inverse, &expected) <= 1e-15 * (c + s) * (c + s) * c, "{rapidity}");
+    }
+}
+
+/// Float32 vectors span blades to their rounding only.
+#[test]
+fn blades_in_single_precision() {
+    let space = Space::new(5, 0, 0);
+    let vector = |k: usize| -> Vec<f64> {
+        space.of_grade(1, &(0..5).map(|i| ((i + 5 * k) as f64).powi(2).sin()).collect::<Vec<_>>())
+    };
+    let rounded = |m: Vec<f64>| -> Vec<f64> { m.iter().map(|x| f64::from(*x as f32)).collect() };
+    let a = rounded(space.wedge(&vector(0), &vector(1)));
+    let b = rounded(space.wedge(&vector(1), &vector(2)));
+    let single = space.calculus.clone().rounded_to(f64::from(f32::EPSILON));
+    let meet = single.meet(&a, &b).unwrap();
+    let along = scaled(&vector(1), 1.0 / norm(&vector(1)));
+    let error = distance(&meet, &along).min(distance(&meet, &scaled(&along, -1.0)));
+    assert!(error <= 16.0 * f64::from(f32::EPSILON), "{error:e}");
+    assert!(matches!(space.calculus.meet(&a, &b), Err(MathError::NotBlade { .. })));
+}

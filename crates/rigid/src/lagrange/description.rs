@@ -9,13 +9,21 @@ use std::fmt;
 /// is rounded.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// A top is nearly upright where the height of its centre of mass is less than the upright's by no more than this part:
+/// at tilts up to 11.5 degrees.
+const NEARLY: f64 = 0.02;
+
 /// How a heavy top moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LagrangeRegime {
     /// No rotation, and no torque.
     Rest,
-    /// Upright, with or without spin.
+    /// Upright, with a spin of the critical rate or more: stable.
     Sleeping,
+    /// With such a spin, and nearly upright at all times: a sleeping top after a push.
+    NearlySleeping,
+    /// Upright, with less spin or none: unstable.
+    Upright,
     /// Upside down, with or without spin.
     Hanging,
     /// The tilt is constant.
@@ -39,6 +47,8 @@ impl fmt::Display for LagrangeRegime {
         f.write_str(match self {
             LagrangeRegime::Rest => "at rest",
             LagrangeRegime::Sleeping => "sleeping, upright",
+            LagrangeRegime::NearlySleeping => "sleeping, nearly upright",
+            LagrangeRegime::Upright => "upright, unstable",
             LagrangeRegime::Hanging => "hanging",
             LagrangeRegime::Steady => "regular precession",
             LagrangeRegime::Loops => "nutating with loops",
@@ -98,10 +108,12 @@ impl LagrangeTop {
         let g = start.g.map(|g| g.value());
         let vertical = momentum.0[0] * g[0] + momentum.0[1] * g[1] + momentum.0[2] * (above - 1.0);
         let critical_spin = 2.0 * (axes.c * axes.i1).sqrt() / axes.i3;
+        let sleeps = start.omega3.abs() >= critical_spin;
         let still = LagrangeDescription {
             regime: match () {
                 () if start.omega3 == 0.0 && axes.c == 0.0 => LagrangeRegime::Rest,
-                () if below == 0.0 => LagrangeRegime::Sleeping,
+                () if below == 0.0 && sleeps => LagrangeRegime::Sleeping,
+                () if below == 0.0 => LagrangeRegime::Upright,
                 () if above == 0.0 => LagrangeRegime::Hanging,
                 () => LagrangeRegime::Steady,
             },
@@ -115,7 +127,7 @@ impl LagrangeTop {
             axial_momentum: momentum.0[2],
             vertical_momentum: vertical,
             critical_spin,
-            sleeps: start.omega3.abs() >= critical_spin,
+            sleeps,
         };
         let orbit = match &self.form {
             Form::Steady(_) => return still,
@@ -140,6 +152,7 @@ impl LagrangeTop {
             () if tilt_max - tilt_min <= ROUNDING => LagrangeRegime::Steady,
             () if delta == 0.0 && sigma == 0.0 && surplus > 0.0 => LagrangeRegime::Circulating,
             () if delta == 0.0 && sigma == 0.0 => LagrangeRegime::Swinging,
+            () if sleeps && axes.c > 0.0 && w1 <= NEARLY => LagrangeRegime::NearlySleeping,
             () if upper.abs() <= small => LagrangeRegime::Cusps,
             () if (upper < 0.0) != (lower < 0.0) => LagrangeRegime::Loops,
             () => LagrangeRegime::Waves,

@@ -117,11 +117,20 @@ export class Model {
     });
   }
 
-  /** Tries the scene again with files that were missing. */
+  /** Tries the scene again with files that it names. */
   supply(files: Files): void {
     const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
     const scene = this.draft.value ?? this.scene.value;
-    if (scene !== null) this.open(scene, { name, files: new Map([...others, ...files]) });
+    const given = [...files.keys()].join(", ");
+    if (scene === null || ![...files.keys()].some((file) => scene.includes(file))) {
+      const of = scene === null ? "a recorded motion" : name;
+      this.problem.value = `${given}: ${of} does not name ${files.size > 1 ? "these files" : "this file"}`;
+      return;
+    }
+    this.open(scene, { name, files: new Map([...others, ...files]) });
+    if (this.problem.value !== null) {
+      this.problem.value = `${given}: was added to ${name}, in which something is still wrong:\n${this.problem.value}`;
+    }
   }
 
   /** Shows the scene again as it was given. */

@@ -84,8 +84,7 @@ function Number(props: { value: number; start: number; scale: number; conserved:
   const { value, start, scale, conserved } = props;
   const change = value - start;
   const drift = scale > 0 && `drift ${small(Math.abs(change) / scale)}`;
-  const since =
-    change !== 0 && `${change > 0 ? "+" : "−"}${significant(Math.abs(change), 4)} since the start`;
+  const since = `${change > 0 ? "+" : ""}${significant(change, 3)} since t = 0`;
   return (
     <>
       <span class="digits">{significant(value, 7)}</span>

@@ -39,7 +39,7 @@ export class Model {
   readonly motion = signal<Motion | null>(null);
   /** A text of the scene that is being written, or that is wrong; null where the scene is what is written. */
   readonly draft = signal<string | null>(null);
-  /** What is wrong with the scene, in words with places; the last motion stays. */
+  /** What is wrong with the scene, or with a file that was opened, in words with places; the last motion stays. */
   readonly problem = signal<string | null>(null);
   readonly time = signal(0);
   readonly playing = signal(false);

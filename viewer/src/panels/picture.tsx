@@ -80,7 +80,7 @@ function Strobe({ model }: { model: Model }) {
   const most = typed(Math.floor(faithful / power) * power, 1);
   return (
     <p class="strobe" id="strobe">
-      Stroboscopic: more than a quarter turn from picture to picture. Seen as it turns up to {most}×.
+      Stroboscopic: more than a quarter turn from picture to picture. Faithful up to {most}×.
     </p>
   );
 }

@@ -48,10 +48,10 @@ def _state_of(numbers: dict[str, list[float]] | None, _: Any) -> State | None:
     return State(rotor, bivector(numbers["omega_body"]), place, velocity)
 
 
-class _StateShown(traitlets.Instance):
+class _StateShown(traitlets.Instance):  # type: ignore[type-arg]
     """The state as the page reported it; computed here for a time or a scene that it has not reported yet."""
 
-    def get(self, obj: Viewer, cls: Any = None) -> State | None:
+    def get(self, obj: Any, cls: Any = None) -> State | None:
         reported: State | None = super().get(obj, cls)
         return reported if obj._sending or obj._is_reported() else obj._state_now()
 
@@ -146,11 +146,11 @@ class Viewer(anywidget.AnyWidget):
             scene = self.to_scene().alone()
             known = self._followed = (self.scene, self.document, scene, scene.run())
         *_, scene, motion = known
-        last = float(motion.time[-1])
-        if motion.certificate.method == "exact" and not 0 <= self.time <= last:
+        first, last = motion.time[[0, -1]].tolist()
+        if motion.certificate.method == "exact" and not first <= self.time <= last:
             motion = replace(scene, times=np.array([self.time])).run()
             return motion.at(self.time)
-        return motion.at(min(max(self.time, 0.0), last))
+        return motion.at(min(max(self.time, first), last))
 
     @traitlets.validate("time", "speed")
     def _finite(self, proposal: Any) -> float | None:

@@ -9,7 +9,7 @@ use std::fmt;
 /// is rounded.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A top is nearly upright where the height of its centre of mass is less than the upright's by no more than this part:
+/// A top is nearly upright while its centre of mass is lower than that of the upright by at most this part of its height:
 /// at tilts up to 11.5 degrees.
 const NEARLY: f64 = 0.02;
 
@@ -20,7 +20,7 @@ pub enum LagrangeRegime {
     Rest,
     /// Upright, with a spin of the critical rate or more: stable.
     Sleeping,
-    /// With such a spin, and nearly upright at all times: a sleeping top after a push.
+    /// Nearly upright at all times, with such a spin: a sleeping top after a small push.
     NearlySleeping,
     /// Upright, with less spin or none: unstable.
     Upright,

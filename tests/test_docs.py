@@ -99,7 +99,7 @@ def test_the_page_of_figures_runs(tmp_path):
     assert done.returncode == 0, done.stderr
     told = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
     assert [line.strip() for line in done.stdout.splitlines()] == told
-    written = {"polhode.svg", "scene.pdf", "turned.svg", "top.gif", "locus.pdf"}
+    written = {"polhode.svg", "scene.pdf", "turned.svg", "plate.gif", "locus.pdf"}
     assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
 
 

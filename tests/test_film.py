@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -12,13 +13,13 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from command_line import EXAMPLES, POLHODE, polhode
+from command_line import EXAMPLES, POLHODE, SCENE, polhode
 
 pytest.importorskip("matplotlib")
 from PIL import Image
 
 from polhode._camera import View
-from polhode._film import frame
+from polhode._film import Plan, frame, stroboscopic
 from polhode._plot import OMEGA
 from polhode._stage import Stage
 
@@ -60,9 +61,9 @@ def test_an_mp4_has_its_pictures(tmp_path):
 
 
 def test_a_gif_has_its_pictures(tmp_path):
-    motion().film(tmp_path / "a.gif", seconds=0.4, fps=12.5, size=(161, 91))
+    motion().film(tmp_path / "a.gif", seconds=0.8, fps=12.5, size=(161, 91))
     with Image.open(tmp_path / "a.gif") as film:
-        assert (film.size, film.n_frames, film.info["duration"]) == ((161, 91), 5, 80)
+        assert (film.size, film.n_frames, film.info["duration"]) == ((161, 91), 10, 80)
         assert film.info["loop"] == 0
         pictures = []
         for k in range(film.n_frames):
@@ -132,6 +133,53 @@ def test_films_that_cannot_be_are_refused(options, error, message, tmp_path, mon
     with pytest.raises(error, match=message):
         motion().film(given.pop("path"), **given)
     assert not list(tmp_path.iterdir())
+
+
+def spun(rate, duration):
+    """A body that turns evenly, in rad/s, for so many s."""
+    state = ph.State(ph.Rotor.identity(), [0, 0, rate])
+    return ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3), state, [0.0, duration])
+
+
+@pytest.mark.parametrize(("rate", "duration"), [(20.0, 10.0), (2e-5, 1e7), (700.0, 13.0)])
+@pytest.mark.parametrize("fps", [10.0, 24.0, 25.0])
+def test_a_stroboscopic_film_says_how_slow_it_must_be(rate, duration, fps):
+    moved = spun(rate, duration)
+
+    def problem(seconds):
+        return stroboscopic(moved, Plan("gif", fps, round(seconds * fps), (64, 36)))
+
+    told = problem(1.0)
+    turns = rate * duration / (round(fps) - 1) / (2 * np.pi)
+    assert f"by up to {turns:.3g} turns from one picture to the next" in told
+    speed = float(re.search(r"faithful at up to (\S+) s of motion in a second of film", told)[1])
+    seconds = float(re.search(r"seconds=(\S+) or more", told)[1])
+    # A quarter turn in a picture; both are rounded to three digits, to the safe side.
+    assert 0.99 * np.pi / 2 < rate * speed / fps <= np.pi / 2
+    assert problem(seconds) is None
+    assert problem(0.98 * seconds) is not None
+
+
+def test_a_film_that_no_number_of_pictures_makes_faithful():
+    told = stroboscopic(spun(1e6, 100.0), Plan("gif", 25.0, 300, (64, 36)))
+    assert told.endswith("film a shorter motion")
+
+
+def test_a_stroboscopic_film_is_made_with_a_warning(tmp_path):
+    with pytest.warns(
+        UserWarning, match="the film is stroboscopic: the body turns by up to 1.59 turns"
+    ) as told:
+        spun(10.0, 1.0).film(tmp_path / "a.gif", seconds=2, fps=1, size=(64, 36))
+    assert told[0].filename == __file__
+    assert (tmp_path / "a.gif").exists()
+    path = tmp_path / "fast.toml"
+    path.write_text(SCENE.replace("0.01, 1, 0.01", "0.01, 10, 0.01"))
+    done = polhode("film", path, "-o", tmp_path / "b.gif", "--seconds", "2", "--fps", "1", "--size", "64x36")
+    assert (done.returncode, done.stdout) == (0, f"Written\n  {tmp_path / 'b.gif'}\n")
+    assert done.stderr.startswith(
+        "polhode: warning: the film is stroboscopic: the body turns by up to 1.6 turns"
+    )
+    assert done.stderr.count("\n") == 1
 
 
 def test_batches_and_motions_of_one_time_are_refused(tmp_path):

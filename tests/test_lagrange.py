@@ -124,8 +124,10 @@ def test_rotor_is_continuous_and_its_rate_is_the_spin(kind):
 
 
 @pytest.mark.parametrize(("r", "w", "regime"), [
-    ((1, 0, 0, 0), (0, 0, 0), "sleeping, upright"),
-    ((1, 0, 0, 2), (0, 0, 3), "sleeping, upright"),
+    ((1, 0, 0, 0), (0, 0, 0), "upright, unstable"),
+    ((1, 0, 0, 2), (0, 0, 3), "upright, unstable"),
+    ((1, 0, 0, 2), (0, 0, 4), "sleeping, upright"),
+    ((1, 0, 0, 2), (0, 0, -5), "sleeping, upright"),
     ((0, 1, 2, 0), (0, 0, 3), "hanging"),
     ((2, 1, 0, 0), (0, 0, 6), "nutating with cusps"),
     ((2, 1, 0, 0), (0, 0.125, 6), "nutating with loops"),
@@ -184,9 +186,28 @@ def test_sleeping(spin, stable):
     assert found["critical_spin"] == 4.0
     assert found["sleeps"] is stable
     assert (found["tilt_max"] < 1e-4) is stable
+    assert (found["regime"] == "sleeping, nearly upright") is stable
     asleep = top_of((1, 1, 0.5), (0, 0, 1), (1, 0, 0, 0), (0, 0, spin))
     assert asleep.at(1e6).rotor(ph.e3) == ph.e3
     assert asleep.describe()["sleeps"] is stable
+
+
+@pytest.mark.parametrize(("turn", "w", "regime"), [
+    (0.05, (0, 0, 4.5), "sleeping, nearly upright"),
+    (0.05, (0, 0.01, 4.5), "sleeping, nearly upright"),
+    # Too slow to stay near the upright, and too far from it: it nutates as any other top.
+    (0.05, (0, 0, 3.9), "nutating with cusps"),
+    (0.25, (0, 0, 40.0), "nutating with cusps"),
+])  # fmt: skip
+def test_a_top_pushed_from_the_upright_sleeps(turn, w, regime):
+    r = ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, turn)
+    found = ph.LagrangeTop(TOP, r, w, [0, 0, 1]).describe()
+    assert found["regime"] == regime
+    # The height of the centre of mass, as a part of that of the upright.
+    nearly = bool(np.cos(found["tilt_max"]) >= 0.98)
+    assert (nearly and found["sleeps"]) is (regime == "sleeping, nearly upright")
+    # Without weight nothing falls asleep.
+    assert "sleeping" not in ph.LagrangeTop(TOP, r, w, [0, 0, 0]).describe()["regime"]
 
 
 def test_it_repeats_after_a_nutation():

@@ -54,7 +54,8 @@ def test_every_solid_is_drawn_about_its_centre_of_mass(body, size, tmp_path):
         "[run]\nduration = 1\nsamples = 5\n"
     )
     motion = ph.Scene.read(path).run()
-    vertices, faces, *_ = _shapes.surface_of(motion)
+    vertices, faces, *_, told = _shapes.surface_of(motion)
+    assert told == f"the {motion._origin.solid['kind'].replace('_', ' ')}"
     np.testing.assert_allclose(np.abs(vertices).max(axis=0), size, rtol=1e-12)
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     weights = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
@@ -67,6 +68,19 @@ def test_held_bodies_are_drawn_about_the_fixed_point():
     motion = ph.Scene.read(EXAMPLES / "gyroscope.toml").run()
     heights = _shapes.surface_of(motion).vertices[:, 2]
     np.testing.assert_allclose([heights.min(), heights.max()], [0.035, 0.045], rtol=1e-12)
+
+
+def test_a_rod_is_drawn_as_a_rod(tmp_path):
+    """Held beside its line, for about that line it has no moment."""
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        '[body]\nsolid = "rod"\nlength = 2\nmass = 1\n[initial]\nspin = { vector = [0, 0, 1] }\n'
+        "[gravity]\nacceleration = 9.81\npivot = [0.5, 0, 0]\n[run]\nduration = 1\nsamples = 5\n"
+    )
+    surface = _shapes.surface_of(ph.Scene.read(path).run())
+    assert surface.told == "the rod"
+    np.testing.assert_allclose(np.ptp(surface.vertices, axis=0), [0.12, 0.12, 2], rtol=1e-12)
+    np.testing.assert_allclose(surface.vertices.mean(axis=0), [-0.5, 0, 0], atol=1e-12)
 
 
 def test_unknown_bodies_have_their_ratios_of_moments():

@@ -78,13 +78,14 @@ def test_the_state_of_the_page_is_a_state_here(line):
     viewer = ph.view(INERTIA, START)
     state = ph.FreeMotion(INERTIA, START.rotor, START.omega_body).at(0.7)
     line(viewer).says(
+        time=0.7,
         state={
+            "time": 0.7,
             "rotor": state.rotor.components.tolist(),
             "omega_body": state.omega_body.components.tolist(),
             "position": [1, 2, 3],
             "velocity": [0, 0, 1e-300],
-            "time": [0.7],
-        }
+        },
     )
     assert viewer.state.rotor == state.rotor
     assert viewer.state.omega_body == state.omega_body
@@ -93,6 +94,71 @@ def test_the_state_of_the_page_is_a_state_here(line):
     assert viewer.state.time == 0.7
     line(viewer).says(state=None)
     assert viewer.state is None
+
+
+def agree(state, expected, tolerance=0.0):
+    for name in ("rotor", "omega_body", "position", "velocity"):
+        values = getattr(state, name).components, getattr(expected, name).components
+        np.testing.assert_allclose(*values, rtol=0, atol=tolerance, err_msg=name)
+
+
+def test_the_state_is_that_of_the_time_that_was_set(line):
+    """The page answers between cells; within one the state is computed here."""
+    motion = ph.FreeMotion(INERTIA, START.rotor, START.omega_body)
+    viewer = ph.view(INERTIA, START, duration=2)
+    assert viewer.state is None
+    page = line(viewer)
+    at_start = {"time": 0.0, "rotor": [1, 0, 0, 0], "omega_body": [0.01, 1, 0.01]}
+    page.says(time=0.0, state={**at_start, "position": [0, 0, 0], "velocity": [0, 0, 0]})
+    agree(viewer.state, START)
+    # A motion in closed form is known beyond its duration, and before it.
+    for time in (0.7, 1.9, 12.5, -3.0):
+        viewer.time = time
+        agree(viewer.state, motion.at(time), 1e-15)
+    viewer.scene = viewer.scene.replace("1.0, 2.0, 3.0", "1.0, 2.0, 2.5")
+    other = ph.FreeMotion(ph.Inertia.from_principal_moments(1, 2, 2.5), START.rotor, START.omega_body)
+    agree(viewer.state, other.at(-3.0), 1e-15)
+    # What the page says of another time does not pass for the state of this one.
+    page.says(camera="along e1")
+    agree(viewer.state, other.at(-3.0), 1e-15)
+    viewer.scene = viewer.scene.replace("duration", "durration")
+    with pytest.raises(ph.SceneError, match="missing field `duration`"):
+        viewer.state  # noqa: B018
+    # A page that is loaded again asks for all; it knows its state.
+    page.sent.clear()
+    viewer.send_state()
+    assert page.told["state"] is None
+    viewer.show(INERTIA, START)
+    assert viewer.state is None
+
+
+@pytest.mark.usefixtures("line")
+def test_the_state_of_a_motion_in_steps():
+    motion = ph.simulate(INERTIA, START, [0.0, 0.5, 1.0], ph.torque.viscous_damping(0.1))
+    viewer = motion.view()
+    assert "recorded" in viewer.document
+    # Its rows: 0.2 rad apart at most, and between them interpolated.
+    for time, expected, bound in (
+        (0.5, 0.5, 1e-15),
+        (0.7, 0.7, 0.2**2 / 8),
+        (9.0, 1.0, 1e-15),
+        (-1.0, 0.0, 0),
+    ):
+        viewer.time = time
+        agree(viewer.state, motion.at(expected), bound)
+    viewer.scene = viewer.scene.replace("0.1, 0.1, 0.1", "0.2, 0.2, 0.2")
+    viewer.time = 9.0
+    stepped = viewer.run()
+    agree(viewer.state, stepped.at(1.0))
+    viewer.time = 0.25
+    agree(viewer.state, stepped.at(0.25))
+
+
+@pytest.mark.usefixtures("line")
+def test_the_state_of_a_recording():
+    viewer = ph.view(INERTIA, START, lambda t, R, W: -0.1 * W, duration=1)
+    viewer.time = 0.0
+    agree(viewer.state, START, 1e-15)
 
 
 @pytest.mark.usefixtures("line")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 FORMATS = ("mp4", "gif")
 _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
 _SMALLEST, _LARGEST, _MOST = 16, 7680, 100_000
+# A body that turns further than this from one picture to the next, in rad, seems to turn otherwise.
+_QUARTER = np.pi / 2
 # The trace goes back this share of the film.
 _TAIL = 0.35
 # Pixels in an inch, by which type and lines are measured, at a height; smaller films have larger type for it.
@@ -48,6 +51,11 @@ def write(
     require_times(trajectory)
     if len(trajectory.time) < 2:
         raise ValueError("a film needs a motion of 2 output times or more; this one has 1")
+    if (problem := stroboscopic(trajectory, plan)) is not None:
+        # To whoever called `Trajectory.film`.
+        warnings.warn(problem, stacklevel=3)
+    # Before a file is begun: matplotlib makes another error of a Ctrl-C while it is imported.
+    optional("matplotlib.figure", "plot", "a film")
     save = _save_mp4 if plan.form == "mp4" else _save_gif
     with unfinished(path) as target:
         save(target, _pictures(trajectory, plan.pictures, plan.size, view, progress), plan.fps, plan.size)
@@ -79,6 +87,30 @@ def planned(path: Path, seconds: float, fps: float, size: Any, view: Any) -> Pla
     else:
         optional("PIL", "plot", "a GIF")
     return plan
+
+
+def stroboscopic(trajectory: Trajectory, plan: Plan) -> str | None:
+    """Return what to say of a film whose pictures are too far apart to show how the body turns; else None."""
+    span = float(np.ptp(trajectory.time))
+    rate = float(np.max(trajectory.omega_body.norm()))
+    turn = rate * span / (plan.pictures - 1)
+    if not turn > _QUARTER:
+        return None
+    # Rounded to three digits, to the side on which the film is faithful.
+    speed = _rounded(_QUARTER * plan.fps / rate, np.floor)
+    needed = _rounded(np.ceil(1 + rate * span / _QUARTER) / plan.fps, np.ceil)
+    remedy = f"seconds={needed:g} or more" if needed * plan.fps <= _MOST else "film a shorter motion"
+    return (
+        f"the film is stroboscopic: the body turns by up to {turn / (2 * np.pi):.3g} turns from one picture "
+        "to the next, and beyond a quarter turn it seems to turn otherwise. It is faithful at up to "
+        f"{speed:g} s of motion in a second of film: {remedy}"
+    )
+
+
+def _rounded(x: float, way: Any) -> float:
+    """Return a positive number with three digits, rounded up or down."""
+    unit = 10.0 ** (np.floor(np.log10(x)) - 2)
+    return float(way(x / unit) * unit)
 
 
 def form_of(path: Path) -> str:

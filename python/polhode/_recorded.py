@@ -16,12 +16,18 @@ from polhode._arrays import Array
 from polhode._bodies import Body
 from polhode._closed_forms import LagrangeTop
 from polhode._free_motion import describe_free
+from polhode._interpolation import slerp
 from polhode._kinds import kind_of, weight
-from polhode._packed import packed
+from polhode._packed import packed, unpacked
+from polhode._rotor import Rotor
 from polhode._scene import Scene
 from polhode._scene_text import Problem
+from polhode._state import State
 from polhode._trajectory import Trajectory, _Points
+from polhode._values import bivector, vector
 
+# Numbers in a row.
+_ROW = 24
 # Between rows a body turns by less than this, in rad, as long as there are no more rows than a page bears.
 _TURN = 0.2
 _MOST_ROWS = 20_000
@@ -57,6 +63,23 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool)
     about = _about(trajectory, origin, points)
     about["body"]["mesh"] = mesh
     return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows.astype("<f8").tobytes())}
+
+
+def state_at(given: dict[str, str], time: float) -> State:
+    """Return the state that a page shows of a motion that `recorded` wrote, at a time in s.
+
+    Between rows as in the page: the rotor turns evenly, all else changes evenly. Before the first row and
+    after the last their states.
+    """
+    rows = np.frombuffer(unpacked(given["rows"]), "<f8").reshape(-1, _ROW)
+    times = rows[:, 0]
+    when = min(max(time, float(times[0])), float(times[-1]))
+    k = max(int(np.searchsorted(times, when, side="right")) - 1, 0)
+    after = min(k + 1, len(rows) - 1)
+    part = (when - times[k]) / (times[after] - times[k]) if after > k else 0.0
+    row = rows[k] + part * (rows[after] - rows[k])
+    rotor = slerp(Rotor.from_components(rows[k, 1:5]), Rotor.from_components(rows[after, 1:5]), part)
+    return State(rotor, bivector(row[5:8]), vector(row[18:21]), vector(row[21:24]), time=when)
 
 
 def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:

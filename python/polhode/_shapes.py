@@ -65,7 +65,7 @@ def surface_of(trajectory: Trajectory) -> Surface:
     if (mesh := scene.surface()) is not None:
         vertices, faces = mesh
         return Surface(vertices - scene.shift + shift, faces, np.zeros(len(faces), int), center, "the mesh")
-    if scene.solid is None or scene.solid["kind"] not in _SOLIDS:
+    if scene.solid is None:
         return _made_up(trajectory)
     sizes = dict(scene.solid)
     kind = sizes.pop("kind")
@@ -140,6 +140,10 @@ def _cylinder(radius: float, height: float) -> Mesh:
     return _revolved(
         *_profile([(0, -height / 2), (radius, -height / 2), (radius, height / 2), (0, height / 2)])
     )
+
+
+def _rod(length: float) -> Mesh:
+    return _cylinder(0.03 * length, length)
 
 
 def cone(radius: float, height: float) -> Mesh:
@@ -221,6 +225,7 @@ _SOLIDS: dict[str, Any] = {
     "sphere": _sphere,
     "hollow_sphere": _hollow_sphere,
     "cylinder": _cylinder,
+    "rod": _rod,
     "cone": cone,
     "disc": _disc,
     "torus": _torus,

@@ -331,6 +331,12 @@ class Trajectory:
             For a batch, another name of file, too few output times, or a film of no pictures.
         OSError
             Without ffmpeg, or where the file cannot be written; an older file stays.
+
+        Warns
+        -----
+        UserWarning
+            If the body turns by more than a quarter turn from one picture to the next, so that it seems to
+            turn otherwise; with the speed up to which the film shows the motion as it is.
         """
         self._require_one("film")
         from polhode._film import write

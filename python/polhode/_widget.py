@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from polhode._document import Document, document, scene_of
 from polhode._extras import optional
 from polhode._files import write_atomically
 from polhode._html import bundle_path, page
+from polhode._recorded import state_at
 from polhode._rotor import Rotor
 from polhode._scene import Scene
 from polhode._state import State
@@ -35,13 +39,21 @@ DRAWN = (
 _VIEW = ("time", "playing", "speed", "camera", "theme", "shown")
 
 
-def _state_of(numbers: dict[str, list[float]] | None, _: Any) -> State | None:
+def _state_of(numbers: dict[str, Any] | None, _: Any) -> State | None:
     """Return the state that the page sent."""
     if numbers is None:
         return None
     rotor = Rotor.from_components(numbers["rotor"])
     place, velocity = vector(numbers["position"]), vector(numbers["velocity"])
-    return State(rotor, bivector(numbers["omega_body"]), place, velocity, time=numbers["time"][0])
+    return State(rotor, bivector(numbers["omega_body"]), place, velocity, time=numbers["time"])
+
+
+class _StateShown(traitlets.Instance):  # type: ignore[type-arg]
+    """The state as the page reported it; computed here for a time or a scene that it has not reported yet."""
+
+    def get(self, obj: Any, cls: Any = None) -> State | None:
+        reported: State | None = super().get(obj, cls)
+        return reported if obj._sending or obj._is_reported() else obj._state_now()
 
 
 class Viewer(anywidget.AnyWidget):
@@ -49,7 +61,7 @@ class Viewer(anywidget.AnyWidget):
 
     Attributes but `state` and `problem` can be set, and all can be observed as those of other widgets. Until
     a page shows the widget, those of the view that were not set are None; then they are what the page shows.
-    While the motion plays, the page tells of time and state ten times a second, and exactly when it stops.
+    While the motion plays, the page reports time and state ten times a second, and exactly when it stops.
 
     Attributes
     ----------
@@ -70,7 +82,8 @@ class Viewer(anywidget.AnyWidget):
         What is drawn, by name: body, bodyFrame, spaceFrame, omega, momentum, axial, poinsot, polhode,
         herpolhode, trace, gravity, labels. Names that are left out stay as they are.
     state
-        The `State` at the time shown, which the page tells; None before.
+        The `State` at `time`, of the motion of `scene`. As the page reports it; after time or scene were set
+        here, and until the page has answered, computed here, with the errors of `run`. None where `time` is.
     problem
         What is wrong with the scene, with its places; None if nothing is.
     document
@@ -87,13 +100,57 @@ class Viewer(anywidget.AnyWidget):
     camera = traitlets.Enum(CAMERAS, None, allow_none=True).tag(sync=True)
     theme = traitlets.Enum(THEMES, None, allow_none=True).tag(sync=True)
     shown = traitlets.Dict(key_trait=traitlets.Enum(DRAWN), value_trait=traitlets.Bool()).tag(sync=True)
-    state = traitlets.Instance(State, allow_none=True, read_only=True).tag(
+    state = _StateShown(State, allow_none=True, read_only=True).tag(
         sync=True, from_json=_state_of, to_json=lambda state, _: None
     )
     problem = traitlets.Unicode(None, allow_none=True, read_only=True).tag(sync=True)
 
+    # For which time, scene and document the page reported a state.
+    _reported: tuple[Any, ...] | None = None
+    # The motion that states were asked of last, and the scene and the document that it is that of.
+    _followed: tuple[Any, Any, Scene, Trajectory] | None = None
+    _sending = False
+
     def __init__(self, shown: Document) -> None:
         super().__init__(document=shown, scene=shown.get("scene"))
+
+    def set_state(self, sync_data: dict[str, Any]) -> None:
+        """Take over what the page says; called by ipywidgets."""
+        if "state" in sync_data:
+            time = (
+                sync_data.get("time", self.time) if sync_data["state"] is None else sync_data["state"]["time"]
+            )
+            self._reported = (time, sync_data.get("scene", self.scene), self.document)
+        super().set_state(sync_data)
+
+    def get_state(self, key: Any = None, drop_defaults: bool = False) -> dict[str, Any]:
+        """Return what the page is told; called by ipywidgets. The page knows its state without us."""
+        self._sending = True
+        try:
+            return super().get_state(key, drop_defaults)  # type: ignore[no-any-return]
+        finally:
+            self._sending = False
+
+    def _is_reported(self) -> bool:
+        time, scene, document = self._reported or (None, None, None)
+        return document is self.document and (time, scene) == (self.time, self.scene)
+
+    def _state_now(self) -> State | None:
+        """Return the state at the time that is set; where the motion is not known so far, at its end."""
+        if self.time is None:
+            return None
+        if "recorded" in self.document and self.scene == self.document.get("scene"):
+            return state_at(self.document["recorded"], self.time)
+        known = self._followed
+        if known is None or known[0] != self.scene or known[1] is not self.document:
+            scene = self.to_scene().alone()
+            known = self._followed = (self.scene, self.document, scene, scene.run())
+        *_, scene, motion = known
+        first, last = motion.time[[0, -1]].tolist()
+        if motion.certificate.method == "exact" and not first <= self.time <= last:
+            motion = replace(scene, times=np.array([self.time])).run()
+            return motion.at(self.time)
+        return motion.at(min(max(self.time, first), last))
 
     @traitlets.validate("time", "speed")
     def _finite(self, proposal: Any) -> float | None:

@@ -114,6 +114,10 @@ def test_presets_are_opened(opened):
         path = FILES.get(Path(name).stem) or PRESETS[Path(name).stem]
         page.until("model.scene.value === text", text=path.read_text())
         assert page.viewer.get_attribute("data-state") == "ready"
+        # None of them needs steps.
+        assert page.page.locator("#method").inner_text() == "exact"
+        if name == "sleeping.toml":
+            assert page.viewer.get_attribute("data-regime") == "sleeping, nearly upright"
 
 
 def test_recorded_motions_are_shown_at_their_times(opened, follow):

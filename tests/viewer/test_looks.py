@@ -5,6 +5,7 @@ import io
 import numpy as np
 import pytest
 
+from polhode import _document
 from viewer_page import VIEWER
 from viewer_scenes import ROOT, TUMBLING
 
@@ -64,6 +65,45 @@ def test_the_same_state_looks_the_same(opened):
     assert (np.abs(other - first).max(axis=-1) > 32).mean() > 10 * max(changed, 0.001)
 
 
+ALONE = {
+    **dict.fromkeys(("bodyFrame", "spaceFrame", "omega", "momentum", "polhode", "trace", "labels"), False),
+    "body": True,
+}
+
+
+@pytest.mark.parametrize("still", ["reduce", "no-preference"])
+@pytest.mark.parametrize("chosen", [True, False], ids=["chosen", "given"])
+def test_with_the_body_it_stands_still(still, chosen, opened, follow):
+    """The camera turns with the body from the first picture on, also while nothing moves."""
+    view = {"time": 1.0, "playing": False, "shown": ALONE}
+    document = _document.of_scene(follow("t-handle").scene)
+    camera = {} if chosen else {"camera": "with the body"}
+    page = opened({**document, "view": view | camera}, reduced_motion=still)
+    if chosen:
+        from_aside = picture(page)
+        page.page.keyboard.press("6")
+        settle(page)
+        assert differ(from_aside, picture(page)) > 0.01
+    first = picture(page)
+    for time in (2.37, 5.0):
+        page.seek(time)
+        # The body turns by many turns meanwhile.
+        assert differ(first, picture(page)) < 1e-4
+
+
+def differ(one, other):
+    """Return the part of the pixels that are not alike."""
+    return (np.abs(one - other).max(axis=-1) > 32).mean()
+
+
+def settle(page):
+    """Wait until no more pictures are drawn: a camera takes its time."""
+    stage = page.page.locator("polhode-viewer .stage")
+    drawn = None
+    while drawn != (drawn := stage.get_attribute("data-drawn")):
+        page.page.wait_for_timeout(300)
+
+
 @pytest.mark.parametrize("theme", ["LIGHT", "DARK"])
 def test_themes_follow_the_machine(theme, opened):
     page = opened("t-handle", color_scheme=theme.lower())
@@ -98,6 +138,25 @@ def test_a_phone_shows_all_without_sideways_scrolling(shown, opened):
             .map((control) => control.id)"""
     )
     assert outside == []
+
+
+def test_a_picture_that_is_stroboscopic_says_so(opened):
+    """At sixty pictures in a second, a hundred turns are seen as they turn at up to a tenth of the speed."""
+    page = opened("gyroscope")
+    note = page.page.get_by_text("Stroboscopic")
+    for speed, playing, shown in (
+        (1, True, True),
+        (0.1, True, False),
+        (0.2, True, True),
+        (0.2, False, False),
+    ):
+        page.page.evaluate(
+            f"async view => (await {VIEWER}.ready).look(view)", {"speed": speed, "playing": playing}
+        )
+        page.drawn()
+        assert note.is_visible() is shown
+        if shown:
+            assert "up to 0.1×" in note.inner_text()
 
 
 def test_frames_of_a_long_trace(opened, record_property):

@@ -46,19 +46,73 @@ def test_a_wrong_file_leaves_the_motion_and_a_right_one_ends_the_message(opened,
     assert page.viewer.get_attribute("data-state") == "ready"
 
 
-def test_files_are_dropped(opened):
-    page = opened("asymmetric")
+def drop(page, **given):
+    """Drop files, by name with a dot for each double underscore, and wait for what is said of them."""
     page.page.evaluate(
-        """text => {
+        """given => {
             const files = new DataTransfer();
-            files.items.add(new File([text], "dropped.toml"));
+            for (const [name, text] of Object.entries(given))
+                files.items.add(new File([text], name.replace("__", ".")));
             const place = document.querySelector("polhode-viewer").shadowRoot.querySelector(".app");
             const options = { dataTransfer: files, bubbles: true, cancelable: true };
             place.dispatchEvent(new DragEvent("drop", options));
         }""",
-        WRONG,
+        given,
     )
+    page.drawn()
+
+
+def test_files_are_dropped(opened):
+    page = opened("asymmetric")
+    drop(page, dropped__toml=WRONG)
     assert "dropped.toml:6:1: error" in told(page)
+
+
+def test_what_is_wrong_with_a_file_is_said_with_its_name(opened):
+    """Whatever was wrong before is not said again in its place."""
+    page = opened("asymmetric")
+    drop(page, wrong__toml=WRONG)
+    assert "wrong.toml:6:1: error" in told(page)
+    right = TUMBLING + RUN
+    for given, message in (
+        ({"notes__txt": "a"}, "notes.txt: the page opens scenes (.toml), documents (.json) and meshes"),
+        ({"run__nc": "a"}, "`polhode view` shows a netCDF file"),
+        ({"part__stl": "solid"}, "part.stl: wrong.toml does not name this file"),
+        ({"a__json": "{"}, "a.json is not JSON"),
+        ({"b__json": "null"}, "b.json is not a document of this page"),
+        ({"b__json": "{}"}, "b.json is not a document of this page"),
+        ({"c__json": '{"format": 7}'}, "c.json: this page reads documents of format 1, not 7"),
+        ({"d__toml": right, "e__toml": right}, "d.toml, e.toml: the page shows one scene at a time"),
+    ):
+        drop(page, **given)
+        page.until("model.problem.value.includes(message)", message=message)
+        assert message in told(page)
+        assert "wrong.toml:6" not in told(page)
+    drop(page, right__toml=right)
+    page.page.get_by_role("alert").wait_for(state="detached")
+
+
+def test_a_message_about_a_file_is_closed(opened):
+    page = opened("asymmetric")
+    page.seek(2.0)
+    drop(page, notes__txt="a")
+    assert "notes.txt" in told(page)
+    page.page.get_by_role("button", name="Close").click()
+    page.page.get_by_role("alert").wait_for(state="detached")
+    assert page.data("time") == 2.0
+
+
+def test_a_mesh_that_does_not_mend_its_scene(opened):
+    page = opened("asymmetric")
+    scene = (TUMBLING + RUN).replace("moments = [1, 2, 3]", 'mesh = "a.stl"\ndensity = 1')
+    drop(page, meshed__toml=scene)
+    assert "a.stl" in told(page)
+    drop(page, a__stl="solid")
+    page.until("model.problem.value.startsWith('a.stl: was added')")
+    assert (
+        "a.stl: was added to meshed.toml, in which something is still wrong:\nmeshed.toml:2:8: error"
+        in told(page)
+    )
 
 
 @pytest.mark.parametrize(

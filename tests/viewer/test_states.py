@@ -30,6 +30,28 @@ def test_scenes_are_followed_as_by_python(name, shared, follow):
     shared.compare(followed)
 
 
+@pytest.mark.parametrize(
+    ("name", "momentum", "energy"),
+    [
+        ("t-handle", True, True),
+        ("lagrange", False, True),
+        ("viscous damping", False, False),
+        ("gyrostat", True, True),
+    ],
+)
+def test_only_what_is_conserved_drifts(name, momentum, energy, shared, follow):
+    followed = follow(name)
+    shared.show(_document.of_scene(followed.scene))
+    shared.seek(0.3 * followed.motion.time[-1])
+    shared.drawn()
+    values = dict(zip(("|L|", "E"), shared.page.locator(".readout.pair dd").all_inner_texts(), strict=True))
+    for quantity, conserved in (("|L|", momentum), ("E", energy)):
+        assert ("drift" in values[quantity]) is conserved
+        assert ("since t = 0" in values[quantity]) is not conserved
+    kept = {"angular_momentum": momentum, "energy": energy}
+    assert {name for name, yes in kept.items() if yes} <= set(followed.motion.certificate.conserved)
+
+
 def written_page(followed, page, folder):
     """Open the page that `polhode run --html` writes of a scene."""
     path = folder / "written.html"

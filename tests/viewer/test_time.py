@@ -21,6 +21,34 @@ def test_the_number_field_goes_to_a_time(opened):
     assert page.page.get_by_role("slider", name="Time").input_value() == "3.25"
 
 
+@pytest.mark.parametrize(("name", "last"), [("gyroscope", None), ("magnetic", 5)])
+def test_the_number_field_shows_the_time_that_is_shown(name, last, opened):
+    """A time beyond what is known of the motion, and text that is not a time, do not stay in the field."""
+    page = opened(name)
+    field = page.page.get_by_label("Time, s")
+    # Twice: the second leaves the time as it is.
+    for entry in ("1e300", "1e300", "", "2", "", "1e300"):
+        field.fill(entry)
+        field.press("Enter")
+        page.drawn()
+        # With 15 digits.
+        assert float(field.input_value()) == pytest.approx(page.data("time"), rel=1e-14)
+        assert page.data("time") < 1e16
+        assert last is None or page.data("time") == (
+            2 if entry in ("2", "") and page.data("time") == 2 else last
+        )
+
+
+def test_other_fields_show_their_number_again(opened):
+    page = opened("gyroscope")
+    field = page.page.locator("#rate-number")
+    before = field.input_value()
+    field.fill("")
+    field.press("Enter")
+    page.drawn()
+    assert field.input_value() == before
+
+
 def test_the_slider_covers_the_motion(opened):
     page = opened("t-handle")
     slider = page.page.get_by_role("slider", name="Time", exact=True)
@@ -80,6 +108,19 @@ def test_it_plays_at_the_speed_it_says(opened, new_page, tmp_path):
     page.page.clock.run_for(1000)
     # Up to the frame in which it began, and that in which it ended.
     assert page.data("time") - before == pytest.approx(speed, abs=2 * speed / 60)
+
+
+def test_a_page_that_is_ready_has_its_picture(new_page, opened, tmp_path):
+    """On a machine that is busy frames come late, and with them what is made after the first one."""
+    opened("t-handle")
+    page = new_page()
+    page.page.add_init_script(
+        """const [later, soon] = [setTimeout, requestAnimationFrame];
+        window.setTimeout = (act, wait) => later(act, wait > 20 ? wait + 500 : wait);
+        window.requestAnimationFrame = (act) => later(() => soon(act), 500);"""
+    )
+    page.open(next(tmp_path.glob("*.html")))
+    assert "canvas#" in page.page.evaluate(CONTROLS)
 
 
 @pytest.mark.parametrize("name", ["t-handle", "magnetic"])

@@ -138,6 +138,20 @@ def test_python_has_what_is_done_in_the_page(shown):
     assert viewer.time == 1.5
 
 
+def test_the_state_is_the_same_before_the_page_answers_and_after(shown):
+    notebook = shown(INERTIA, START, duration=60)
+    viewer = notebook.viewer
+    viewer.time = 0.7
+    here = viewer.state
+    notebook.agree()
+    reported = viewer.state
+    assert reported is not here
+    assert viewer.state is reported
+    for name in ("rotor", "omega_body"):
+        values = getattr(here, name).components, getattr(reported, name).components
+        np.testing.assert_allclose(*values, rtol=0, atol=1e-15)
+
+
 def test_a_motion_that_plays_is_told_now_and_then_and_where_it_stops(shown):
     notebook = shown(INERTIA, START, duration=60)
     notebook.viewer.playing = True

@@ -11,6 +11,14 @@ CHROMIUM = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 SHOWN = ("rotor", "omega_body", "omega_space", "momentum_space", "energy")
 
 VIEWER = "document.querySelector('polhode-viewer')"
+# Whether all is in place: the picture, or what stands there instead, comes later than the panels.
+IN_PLACE = f"""(() => {{
+    const root = {VIEWER}?.shadowRoot;
+    if (!root || !["ready", "problem"].includes({VIEWER}.dataset.state)) return false;
+    const picture = root.querySelector(".stage");
+    if (!picture) return root.querySelector(".app, .notice[role=alert]") !== null;
+    return picture.querySelector("canvas") !== null || root.querySelector(".missing") !== null;
+}})()"""
 # The state of the page; null until the core is there.
 READY = f"Promise.race([{VIEWER}.ready, null])"
 
@@ -51,8 +59,8 @@ class ViewerPage:
         self.settled()
 
     def settled(self):
-        """Wait until the core is there and the document was read."""
-        self.until(f"['ready', 'problem'].includes({VIEWER}?.dataset.state)")
+        """Wait until the core is there, the document was read and the picture is in its place."""
+        self.until(IN_PLACE)
 
     def until(self, condition, **given):
         """Wait for a condition in JavaScript, of `model` and of names that are given, for a minute at most.
@@ -65,7 +73,7 @@ class ViewerPage:
                 for (const start = performance.now(); performance.now() < start + 60_000; ) {{
                     const model = {VIEWER}?.ready && (await {READY});
                     if ({condition}) return true;
-                    await new Promise(requestAnimationFrame);
+                    await new Promise((done) => setTimeout(done, 10));
                 }}
                 return false;
             }}""",

@@ -1,3 +1,5 @@
+import { Problem } from "./core/core.ts";
+
 /** What a page is given to show. Python writes it (`python/polhode/_document.py`), the page reads it. */
 export interface PageDocument {
   /** The version of this form. */
@@ -16,6 +18,23 @@ export interface PageDocument {
   lines?: string;
   /** The state of the page where it is not the usual one. */
   view?: Partial<ViewState>;
+}
+
+/** The document that a text says; `where` it stands is named in what is wrong with it. */
+export function parsed(text: string, where: string): PageDocument {
+  let found: unknown;
+  try {
+    found = JSON.parse(text);
+  } catch (error) {
+    throw new Problem(`${where} is not JSON: ${error instanceof Error ? error.message : String(error)}`);
+  }
+  const format = (found as Partial<PageDocument> | null)?.format;
+  if (format === 1) return found as PageDocument;
+  throw new Problem(
+    format === undefined
+      ? `${where} is not a document of this page: it has no format`
+      : `${where}: this page reads documents of format 1, not ${String(format)}`,
+  );
 }
 
 export interface Recorded {

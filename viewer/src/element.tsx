@@ -2,7 +2,7 @@ import { effect, type ReadonlySignal } from "@preact/signals";
 import { render } from "preact";
 import { Problem, State } from "./core/core.ts";
 import { loadCore } from "./core/wasm.ts";
-import type { PageDocument, ViewState } from "./document.ts";
+import { type PageDocument, parsed, type ViewState } from "./document.ts";
 import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
 import type { Palette } from "./palette.ts";
@@ -215,14 +215,6 @@ export class PolhodeViewer extends HTMLElement {
 
 function themeOf(value: string | null): ViewState["theme"] {
   return value === "light" || value === "dark" ? value : "auto";
-}
-
-function parsed(text: string, where: string): PageDocument {
-  try {
-    return JSON.parse(text) as PageDocument;
-  } catch (error) {
-    throw new Problem(`${where} is not JSON: ${words(error)}`);
-  }
 }
 
 /** Defines the element, once. */

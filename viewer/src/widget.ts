@@ -185,14 +185,15 @@ function told(model: Model): Record<string, unknown> {
   };
 }
 
-function state(row: Float64Array | null): Record<string, number[]> | null {
+/** The state shown, with its time: Python knows by it whether it is that of the time that it set. */
+function state(row: Float64Array | null): Record<string, number | number[]> | null {
   if (!row) return null;
   const part = (first: number, count: number) => Array.from(row.subarray(first, first + count));
   return {
+    time: row[State.time]!,
     rotor: part(State.rotor, 4),
     omega_body: part(State.omegaBody, 3),
     position: part(State.position, 3),
     velocity: part(State.velocity, 3),
-    time: part(State.time, 1),
   };
 }

@@ -180,7 +180,7 @@ fn horizon_and_regime() {
     let inertia = Inertia::from_principal_moments([1.0, 1.0, 0.5]).unwrap();
     let up = Vector([0.0, 0.0, 1.0]);
     let top = LagrangeTop::new(&inertia, Rotor::IDENTITY, Bivector([0.0, 0.0, 3.0]), up).unwrap();
-    assert_eq!(top.describe().regime, LagrangeRegime::Sleeping);
+    assert_eq!(top.describe().regime, LagrangeRegime::Upright);
     assert!(!top.describe().sleeps && top.horizon() > 1e16);
     let top = LagrangeTop::new(&inertia, Rotor::IDENTITY, Bivector([0.5, 0.0, 3.0]), up).unwrap();
     assert!(top.horizon() > 1e16 && top.horizon() < 1e18);

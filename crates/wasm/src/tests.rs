@@ -80,6 +80,8 @@ fn what_is_known_of_a_motion_is_told() {
         "{heavy}"
     );
     assert!(heavy.contains(r#""regime":"nutating with cusps""#), "{heavy}");
+    let sleeping = about(&opened(include_str!("../../../viewer/src/presets/sleeping.toml"))).to_string();
+    assert!(sleeping.contains(r#""regime":"sleeping, nearly upright""#), "{sleeping}");
     assert!(about(&opened(DAMPED)).to_string().contains(r#""free":null,"top":null"#));
 }
 

@@ -39,7 +39,7 @@ export class Model {
   readonly motion = signal<Motion | null>(null);
   /** A text of the scene that is being written, or that is wrong; null where the scene is what is written. */
   readonly draft = signal<string | null>(null);
-  /** What is wrong with the scene, in words with places; the last motion stays. */
+  /** What is wrong with the scene, or with a file that was opened, in words with places; the last motion stays. */
   readonly problem = signal<string | null>(null);
   readonly time = signal(0);
   readonly playing = signal(false);
@@ -117,11 +117,20 @@ export class Model {
     });
   }
 
-  /** Tries the scene again with files that were missing. */
+  /** Tries the scene again with files that it names. */
   supply(files: Files): void {
     const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
     const scene = this.draft.value ?? this.scene.value;
-    if (scene !== null) this.open(scene, { name, files: new Map([...others, ...files]) });
+    const given = [...files.keys()].join(", ");
+    if (scene === null || ![...files.keys()].some((file) => scene.includes(file))) {
+      const of = scene === null ? "a recorded motion" : name;
+      this.problem.value = `${given}: ${of} does not name ${files.size > 1 ? "these files" : "this file"}`;
+      return;
+    }
+    this.open(scene, { name, files: new Map([...others, ...files]) });
+    if (this.problem.value !== null) {
+      this.problem.value = `${given}: was added to ${name}, in which something is still wrong:\n${this.problem.value}`;
+    }
   }
 
   /** Shows the scene again as it was given. */

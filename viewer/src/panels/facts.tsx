@@ -101,7 +101,8 @@ function Top({ top }: { top: NonNullable<About["top"]> }) {
         <Fact name="Precession">{duration(turn, 7)} for a turn about e₃, on average</Fact>
       )}
       <Fact name="Upright">
-        {top.sleeps ? "sleeps" : "does not sleep"}; from {significant(top.critical_spin, 5)} rad/s on it would
+        {top.sleeps ? "stable" : "not stable"} with this spin; it sleeps from{" "}
+        {significant(top.critical_spin, 5)} rad/s on
       </Fact>
     </>
   );

@@ -1,10 +1,11 @@
 import { useRef } from "preact/hooks";
 import type { About } from "../core/core.ts";
-import type { Model } from "../model/model.ts";
+import { type Model, span } from "../model/model.ts";
 import { typed } from "./format.ts";
 import { Icon } from "./icons.tsx";
 import { faster, step } from "./keys.ts";
 import { trust } from "./facts.tsx";
+import { NumberField } from "./number.tsx";
 import { duration, timeUnit } from "./units.ts";
 
 /** Play, step, speed and time. */
@@ -83,24 +84,20 @@ function TimeField({ model, about }: { model: Model; about: About }) {
   const shown = typed(Number((model.time.value / unit.size).toFixed(decimals)), 15);
   // Room for all times of a duration, so that nothing moves while time passes.
   const width = Math.max(4, (about.duration / unit.size).toFixed(decimals).length, shown.length);
+  const [first, last] = span(about);
+  const known = last < Number.MAX_VALUE ? `Known from ${duration(first)} to ${duration(last)}` : undefined;
   return (
-    <div class="field number">
+    <div class="field number" title={known}>
       <label for="time-number">
         <i>t</i> =
       </label>
-      <input
+      <NumberField
         id="time-number"
-        class="digits"
-        type="number"
-        step="any"
-        value={shown}
-        style={{ width: `${Math.min(width, 12) + 1}ch` }}
-        aria-label={`Time, ${unit.label}`}
+        label={`Time, ${unit.label}`}
+        shown={shown}
+        width={`${Math.min(width, 12) + 1}ch`}
         onFocus={() => (model.playing.value = false)}
-        onChange={(event) => {
-          const number = event.currentTarget.valueAsNumber;
-          if (Number.isFinite(number)) model.seek(number * unit.size);
-        }}
+        onNumber={(number) => model.seek(number * unit.size)}
       />
       <span class="unit">{unit.label}</span>
     </div>

@@ -12,12 +12,12 @@ export function Readout({ model }: { model: Model }) {
   const start = useComputed(() => model.motion.value && firstRow(model.motion.value));
   const row = model.row.value;
   const first = start.value;
-  if (!row || !first) return null;
+  const about = model.about.value;
+  if (!row || !first || !about) return null;
+  const conserved = new Set(about.conserved.map(({ name }) => name));
   const three = (at: number) => row.subarray(at, at + 3);
   const omega = scaleFor(length(first, State.omegaBody));
   const momentum = scaleFor(length(first, State.momentumSpace));
-  const energy = row[State.energy]!;
-  const size = length(row, State.momentumSpace);
   return (
     <>
       <dl class="readout">
@@ -59,26 +59,47 @@ export function Readout({ model }: { model: Model }) {
           note=""
           unit="kg m²/s"
         >
-          <Number value={size} start={length(first, State.momentumSpace)} />
+          <Number
+            value={length(row, State.momentumSpace)}
+            start={length(first, State.momentumSpace)}
+            scale={length(first, State.momentumSpace)}
+            conserved={conserved.has("angular_momentum")}
+          />
         </Quantity>
         <Quantity symbol={<Symbol name="E" />} note="" unit="J">
-          <Number value={energy} start={first[State.energy]!} />
+          <Number
+            value={row[State.energy]!}
+            start={first[State.energy]!}
+            scale={energyScale(first)}
+            conserved={conserved.has("energy")}
+          />
         </Quantity>
       </dl>
     </>
   );
 }
 
-/** A number, and by how much of itself it has changed since the start. */
-function Number({ value, start }: { value: number; start: number }) {
-  const change = Math.abs(value / start - 1);
-  const told = change > 1e-3 ? `${significant(value / start, 4)} of the start` : `drift ${small(change)}`;
+/** A number, and its change since the start: a drift, relative to `scale`, only where the motion conserves it. */
+function Number(props: { value: number; start: number; scale: number; conserved: boolean }) {
+  const { value, start, scale, conserved } = props;
+  const change = value - start;
+  const drift = scale > 0 && `drift ${small(Math.abs(change) / scale)}`;
+  const since = `${change > 0 ? "+" : ""}${significant(change, 3)} since t = 0`;
   return (
     <>
       <span class="digits">{significant(value, 7)}</span>
-      {start !== 0 && <span class="note"> {told}</span>}
+      <span class="note"> {conserved ? drift : since}</span>
     </>
   );
+}
+
+/** What an energy is compared with, which may be near 0 itself: its kinetic part, if that is larger. */
+function energyScale(row: Float64Array): number {
+  const kinetic = [0, 1, 2].reduce(
+    (sum, k) => sum + row[State.omegaBody + k]! * row[State.momentumBody + k]!,
+    0,
+  );
+  return Math.max(Math.abs(row[State.energy]!), kinetic / 2);
 }
 
 function length(row: Float64Array, at: number): number {

@@ -1,4 +1,5 @@
 import { typed } from "./format.ts";
+import { NumberField } from "./number.tsx";
 import type { Unit } from "./units.ts";
 
 /** Positions of a slider: fine enough that a pixel is a position. */
@@ -43,17 +44,11 @@ export function Slider(props: {
         aria-valuetext={`${shown} ${unit.label}`}
         onInput={(event) => onChange(at(event.currentTarget.valueAsNumber, range, unit))}
       />
-      <input
+      <NumberField
         id={`${id}-number`}
-        class="digits"
-        type="number"
-        step="any"
-        value={shown}
-        aria-label={`${label}${unit.label && `, ${unit.label}`}`}
-        onChange={(event) => {
-          const number = event.currentTarget.valueAsNumber;
-          if (Number.isFinite(number)) onChange(number * unit.size);
-        }}
+        label={`${label}${unit.label && `, ${unit.label}`}`}
+        shown={shown}
+        onNumber={(number) => onChange(number * unit.size)}
       />
       <span class="unit">{unit.label}</span>
     </div>

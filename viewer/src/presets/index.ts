@@ -4,11 +4,11 @@ import { type Model, SHOWN } from "../model/model.ts";
 import plate from "../../../examples/feynman-plate.toml?raw";
 import gyroscope from "../../../examples/gyroscope.toml?raw";
 import loops from "../../../examples/nutating-top.toml?raw";
-import symmetric from "../../../examples/symmetric-top.toml?raw";
 import handle from "../../../examples/t-handle.toml?raw";
 import handleMesh from "../../../examples/t-handle.stl?base64";
 import toutatis from "../../../examples/toutatis.toml?raw";
 import cusps from "./cusps.toml?raw";
+import symmetric from "./free-top.toml?raw";
 import poinsot from "./poinsot.toml?raw";
 import racket from "./racket.toml?raw";
 import sleeping from "./sleeping.toml?raw";
@@ -73,7 +73,7 @@ export const PRESETS: Preset[] = [
       "the point draws the polhode on the body and the herpolhode on the plane.",
   },
   {
-    name: "symmetric-top.toml",
+    name: "free-top.toml",
     title: "Symmetric top",
     scene: symmetric,
     view: { speed: 0.1, shown: { polhode: true, herpolhode: true, omega: true, momentum: true } },

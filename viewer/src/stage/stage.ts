@@ -243,8 +243,9 @@ export class Stage {
     const row = model.row.peek();
     this.space.visible = row !== null;
     if (row) {
+      // The camera first: space turns back, and labels face it, as it stands now.
+      this.stand(vector(row, State.momentumSpace));
       const instant = this.instant(row);
-      this.stand(instant.momentum);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
       const { problem } = this.crowd;

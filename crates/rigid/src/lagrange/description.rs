@@ -10,13 +10,21 @@ use std::fmt;
 /// is rounded.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// A top is nearly upright while its centre of mass is lower than that of the upright by at most this part of its height:
+/// at tilts up to 11.5 degrees.
+const NEARLY: f64 = 0.02;
+
 /// How a heavy top moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LagrangeRegime {
     /// No rotation, and no torque.
     Rest,
-    /// Upright, with or without spin.
+    /// Upright, with a spin of the critical rate or more: stable.
     Sleeping,
+    /// Nearly upright at all times, with such a spin: a sleeping top after a small push.
+    NearlySleeping,
+    /// Upright, with less spin or none: unstable.
+    Upright,
     /// Upside down, with or without spin.
     Hanging,
     /// The tilt is constant.
@@ -40,6 +48,8 @@ impl fmt::Display for LagrangeRegime {
         f.write_str(match self {
             LagrangeRegime::Rest => "at rest",
             LagrangeRegime::Sleeping => "sleeping, upright",
+            LagrangeRegime::NearlySleeping => "sleeping, nearly upright",
+            LagrangeRegime::Upright => "upright, unstable",
             LagrangeRegime::Hanging => "hanging",
             LagrangeRegime::Steady => "regular precession",
             LagrangeRegime::Loops => "nutating with loops",
@@ -99,10 +109,12 @@ impl LagrangeTop {
         let g = start.g.map(|g| g.value());
         let vertical = momentum.0[0] * g[0] + momentum.0[1] * g[1] + momentum.0[2] * (above - 1.0);
         let critical_spin = 2.0 * (axes.c * axes.i1).sqrt() / axes.i3;
+        let sleeps = start.omega3.abs() >= critical_spin;
         let still = LagrangeDescription {
             regime: match () {
                 () if start.omega3 == 0.0 && axes.c == 0.0 => LagrangeRegime::Rest,
-                () if start.below.is_zero() => LagrangeRegime::Sleeping,
+                () if start.below.is_zero() && sleeps => LagrangeRegime::Sleeping,
+                () if start.below.is_zero() => LagrangeRegime::Upright,
                 () if start.above.is_zero() => LagrangeRegime::Hanging,
                 () => LagrangeRegime::Steady,
             },
@@ -116,7 +128,7 @@ impl LagrangeTop {
             axial_momentum: momentum.0[2],
             vertical_momentum: vertical,
             critical_spin,
-            sleeps: start.omega3.abs() >= critical_spin,
+            sleeps,
         };
         let orbit = match &self.form {
             Form::Steady(_) => return still,
@@ -141,6 +153,9 @@ impl LagrangeTop {
             () if tilt_max - tilt_min <= ROUNDING => LagrangeRegime::Steady,
             () if pendulum && orbit.surplus.is_positive() => LagrangeRegime::Circulating,
             () if pendulum => LagrangeRegime::Swinging,
+            () if sleeps && axes.c > 0.0 && orbit.below[0].value() <= NEARLY => {
+                LagrangeRegime::NearlySleeping
+            }
             () if upper.abs() <= small => LagrangeRegime::Cusps,
             () if upper.is_negative() != lower.is_negative() => LagrangeRegime::Loops,
             () => LagrangeRegime::Waves,

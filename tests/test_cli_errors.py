@@ -4,13 +4,13 @@ import json
 import os
 import re
 import signal
-import subprocess
 import sys
 import time
 
 import pytest
 
-from command_line import POLHODE, SCENE, polhode
+import processes
+from command_line import SCENE, polhode
 
 # Steps enough for hours.
 ENDLESS = SCENE.replace('"1 s"', '"1e6 s"').replace("samples = 11", 'step = "1 ms"\nmethod = "kahan_li8"')
@@ -240,15 +240,14 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
 def test_an_interrupted_run_leaves_no_trace(tmp_path):
     (tmp_path / "long.toml").write_text(ENDLESS)
     (tmp_path / "out.nc").write_bytes(b"older")
-    with subprocess.Popen(
-        [POLHODE, "run", "long.toml", "-o", "out.nc"], cwd=tmp_path, stdout=-1, stderr=-1, text=True
-    ) as process:
+    program = "from polhode import _cli; print('go', flush=True); raise SystemExit(_cli.main())"
+    command = [sys.executable, "-c", program, "run", "long.toml", "-o", "out.nc"]
+    with processes.start(command, cwd=tmp_path) as process:
+        assert process.stdout.readline() == "go\n"
         time.sleep(1.0)
         assert process.poll() is None
         process.send_signal(signal.SIGINT)
-        start = time.perf_counter()
-        output, errors = process.communicate(timeout=20)
-    assert time.perf_counter() - start < 2.0
+        output, errors = process.communicate()
     assert process.returncode == 130
     assert "interrupted" in errors
     assert "Traceback" not in errors

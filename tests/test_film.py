@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 import signal
-import subprocess
 import time
 from itertools import pairwise
 
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from command_line import EXAMPLES, POLHODE, polhode
 
 pytest.importorskip("matplotlib")
@@ -33,11 +33,7 @@ def motion():
 
 def probed(path):
     shown = "stream=width,height,nb_frames,r_frame_rate,codec_name,pix_fmt"
-    told = subprocess.run(
-        ["ffprobe", "-v", "error", "-of", "json", "-show_entries", shown, path],
-        capture_output=True,
-        check=True,
-    )
+    told = processes.run(["ffprobe", "-v", "error", "-of", "json", "-show_entries", shown, path], check=True)
     return json.loads(told.stdout)["streams"][0]
 
 
@@ -209,21 +205,15 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
     """Stopped in the middle, the command removes what it began and ends with 130."""
     target = tmp_path / name
     target.write_bytes(b"old")
-    process = subprocess.Popen(
-        [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    for _ in range(600):
-        if len(list(tmp_path.iterdir())) == 3:
-            break
-        time.sleep(0.05)
-    time.sleep(0.3)
-    # As a terminal does: to the whole group.
-    os.killpg(process.pid, signal.SIGINT)
-    _, told = process.communicate(timeout=60)
+    command = [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36"]
+    with processes.start(command, start_new_session=True) as process:
+        while len(list(tmp_path.iterdir())) < 3:
+            assert process.poll() is None
+            time.sleep(0.05)
+        time.sleep(0.3)
+        # As a terminal does: to the whole group.
+        os.killpg(process.pid, signal.SIGINT)
+        _, told = process.communicate()
     assert process.returncode == 130, told
     assert "interrupted; no file was changed" in told
     assert "Traceback" not in told

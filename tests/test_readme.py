@@ -1,9 +1,10 @@
 """What the README says is so."""
 
 import re
-import subprocess
 import sys
 from pathlib import Path
+
+import processes
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -17,9 +18,7 @@ def blocks(language: str) -> list[str]:
 def test_python_blocks_run():
     code = "\n".join(blocks("python"))
     assert "ph.simulate" in code
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
-    )
+    done = processes.run([sys.executable, "-W", "error", "-c", code])
     assert done.returncode == 0, done.stderr
 
 
@@ -36,9 +35,7 @@ def test_the_torques_are_those_of_a_scene(tmp_path):
     body = re.sub(r"mesh = .*\nlength_unit = .*\ndensity = .*", "moments = [1, 2, 3]", scene)
     body = body.replace("samples = 6001", "samples = 11").replace("5 rev/s", "5 deg/s")
     (tmp_path / "a.toml").write_text(define + body + torques)
-    done = subprocess.run(
-        [POLHODE, "run", "a.toml"], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    done = processes.run([POLHODE, "run", "a.toml"], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "torque_body       m ∧ (~R B R)" in done.stdout
 
@@ -47,21 +44,13 @@ def test_the_mistake_is_shown_as_printed(tmp_path):
     text = (ROOT / "examples/t-handle.toml").read_text().replace("duration", "durration")
     (tmp_path / "examples").mkdir()
     (tmp_path / "examples/t-handle.toml").write_text(text)
-    done = subprocess.run(
-        [POLHODE, "check", "examples/t-handle.toml"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = processes.run([POLHODE, "check", "examples/t-handle.toml"], cwd=tmp_path)
     assert done.returncode == 3
     assert any(block.strip() in done.stderr for block in blocks("text"))
 
 
 def test_the_summary_is_that_of_the_example():
-    done = subprocess.run(
-        [POLHODE, "run", ROOT / "examples/t-handle.toml"], capture_output=True, text=True, check=True
-    )
+    done = processes.run([POLHODE, "run", ROOT / "examples/t-handle.toml"], check=True)
     (shown,) = (block for block in blocks("text") if "principal moments" in block)
     # Rounding drifts differ between machines.
     told = [line for line in shown.splitlines() if "drift" not in line and "|R|" not in line]

@@ -2,9 +2,13 @@
 
 import ast
 import re
+import signal
+import sys
 from pathlib import Path
 
 import pytest
+
+import processes
 
 ROOT = Path(__file__).parents[1]
 
@@ -86,3 +90,16 @@ def test_programs_started_by_tests_have_a_time_limit():
             if banned.intersection(name.split(".")[0] for name in names):
                 users.add(path.name)
     assert users == {"processes.py"}
+
+
+def test_ctrl_c_reaches_programs_also_from_a_background_job():
+    child = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+    parent = f"import sys, processes; print(processes.run([sys.executable, '-c', {child!r}]).stdout, end='')"
+    ignoring = ["bash", "-c", 'trap "" INT; exec "$@"', "bash", sys.executable, "-c", parent]
+    assert processes.run(ignoring, cwd=ROOT / "tests").stdout == "True\n"
+
+
+def test_a_program_that_hangs_is_ended():
+    with processes.start([sys.executable, "-c", "input()"], limit=0.5, stdin=processes.PIPE) as process:
+        assert process.stdout.read() == ""  # which waits until it has ended
+        assert process.wait() == -signal.SIGKILL

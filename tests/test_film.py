@@ -185,7 +185,7 @@ def test_the_command_films(scene, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["small.toml", "-o", "a.avi"], 2, "a film is FILE.mp4 or FILE.gif, not 'a.avi'"),
+        (["small.toml", "-o", "a.avi"], 2, "a film is saved as FILE.mp4 or FILE.gif, not 'a.avi'"),
         (["small.toml", "-o", "a.gif", "--size", "640"], 2, "expected WIDTHxHEIGHT in pixels, as 1280x720"),
         (["small.toml", "-o", "a.gif", "--fps", "-1"], 1, "fps is -1.0"),
         (["small.toml"], 2, "required: -o"),

@@ -113,7 +113,7 @@ def _parser() -> argparse.ArgumentParser:
     check.set_defaults(command=_check)
     _add_view(commands)
     _add_formulas(commands)
-    _add_figures(commands)
+    _add_others(commands)
     return parser
 
 
@@ -162,10 +162,12 @@ def _add_formulas(commands: Any) -> None:
     repl.set_defaults(command=_repl)
 
 
-def _add_figures(commands: Any) -> None:
-    from polhode import _figure_command
+def _add_others(commands: Any) -> None:
+    from polhode import _demo_command, _example_command, _figure_command
 
     _figure_command.add(commands, _progress)
+    _demo_command.add(commands)
+    _example_command.add(commands)
 
 
 def _definition(text: str) -> str:

@@ -23,8 +23,8 @@ def add(commands: Any) -> None:
     demo = commands.add_parser(
         "demo",
         help="run the T-handle, sketch it here, and write its page and pictures",
-        description="Run a T-handle in free flight: print its summary and a sketch, and write t-handle.html, a "
-        "page that shows it in any browser. With matplotlib it also writes pictures.",
+        description="Run a T-handle in free flight: print its summary and a sketch, and write "
+        "t-handle.html, a page that shows it in any browser. With matplotlib it also writes pictures.",
     )
     demo.add_argument(
         "-o",

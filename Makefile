@@ -78,7 +78,8 @@ lint: setup
 	$(BIN)/python -m mypy.stubtest polhode._native --allowlist .stubtest-allowlist
 	$(WITH_VIEWER) check-viewer
 
-# The peers join the same environment: with constraints.txt all agree on one NumPy. A peer that is missing is an empty column, so benchmarks/run.py also runs after make setup alone.
+# The peers join the same environment: with constraints.txt all agree on one NumPy. A peer that is missing is an empty
+# column, so benchmarks/run.py also runs after make setup alone.
 .venv/.peers: .venv/.built .venv/.tools
 	$(BIN)/python -m pip install -q "polhode[bench]"
 	@touch $@
@@ -97,10 +98,12 @@ bench: .venv/.peers
 
 wheel: viewer .venv/.wheel
 	rm -rf dist
-	@for machine in x86_64 aarch64; do \
+	@left_out=; for machine in x86_64 aarch64; do \
 		target=$$machine-unknown-linux-gnu; \
 		if [ -d "$$(rustc --print target-libdir --target $$target 2>/dev/null)" ] || rustup target add $$target; then \
-			PATH="$(CURDIR)/$(BIN):$$PATH" maturin build --release --locked --quiet --zig --target $$target -o dist || exit 1; \
+			echo "$$target"; \
+			PATH="$(CURDIR)/$(BIN):$$PATH" maturin build --release --locked --quiet --zig --target $$target -o dist \
+				|| exit 1; \
 		else \
 			left_out="$$left_out $$target"; \
 		fi; \

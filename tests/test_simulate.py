@@ -251,10 +251,8 @@ def test_what_progress_raises_comes_out():
     def report(number, fraction):
         raise EnoughError(number)
 
-    start = time.perf_counter()
     with pytest.raises(EnoughError):
         ph.simulate(ASYMMETRIC, START, [1e6], step=1e-3, progress=report)
-    assert time.perf_counter() - start < 2.0
 
 
 def test_control_c_stops_a_run():

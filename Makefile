@@ -29,8 +29,9 @@ setup: .venv/.built .venv/.tools
 	$(BIN)/python -m pip install -q --group build
 	@touch $@
 
+# Without a group named, maturin installs `dev`.
 .venv/.built: .venv/.python $(SOURCES)
-	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --locked --quiet --extras plot
+	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --locked --quiet --group build --extras plot
 	@touch $@
 
 # What tests, linters and guides need. They join the same environment, which holds polhode already.

@@ -109,7 +109,7 @@ wheel: viewer .venv/.wheel
 			left_out="$$left_out $$target"; \
 		fi; \
 	done; \
-	$(BIN)/maturin sdist --quiet -o dist && ls dist; \
+	$(BIN)/maturin sdist -o dist && ls dist; \
 	test -z "$$left_out" || { echo "Left out, for want of Rust's library for it:$$left_out" >&2; exit 1; }
 
 # The guides as pages, with the viewer in them, and the documentation of the core.

@@ -1,4 +1,4 @@
-# make demo, make test, make bench, make docs, make lint: each sets up what it needs.
+# make demo, make test, make bench, make docs, make lint, make wheel: each sets up what it needs.
 # Prerequisites: Python >= 3.11, Rust stable, make; for the viewer Node >= 20 and npm.
 
 PYTHON ?= python3
@@ -11,26 +11,32 @@ export PIP_QUIET := 1
 
 VIEWER := python/polhode/_viewer/viewer.js
 
-.PHONY: setup demo test lint bench docs viewer check-viewer clean
+.PHONY: setup demo test lint bench docs wheel viewer check-viewer clean
 
 # Where what the viewer needs is missing, this says so, and all else goes on.
 WITH_VIEWER = @missing=$$(viewer/missing.sh) && test -n "$$missing" && \
 	echo "$$missing: the viewer was left out; all else works without it." || $(MAKE) --no-print-directory
 
-setup: .venv/.built
+setup: .venv/.built .venv/.tools
 	$(WITH_VIEWER) viewer
 
-.venv/.tools: constraints.txt pyproject.toml
+.venv/.python: constraints.txt pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Polhode needs Python >= 3.11; say which with make PYTHON=python3.12" >&2; exit 1; }
 	@command -v cargo >/dev/null || { echo "Polhode needs Rust: see https://rustup.rs" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install -q --upgrade pip
-	$(BIN)/python -m pip install -q --group dev
+	$(BIN)/python -m pip install -q --group build
 	@touch $@
 
-.venv/.built: .venv/.tools $(SOURCES)
-	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --quiet --extras scipy,io,plot,progress
+# Without a group named, maturin installs `dev`.
+.venv/.built: .venv/.python $(SOURCES)
+	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --locked --quiet --group build --extras plot
+	@touch $@
+
+# What tests, linters and guides need. They join the same environment, which holds polhode already.
+.venv/.tools: .venv/.python | .venv/.built
+	$(BIN)/python -m pip install -q --group dev "polhode[scipy,io,plot,progress]"
 	@touch $@
 
 # The viewer: the core as WebAssembly, and one bundle that Python puts into pages and notebooks.
@@ -55,13 +61,10 @@ $(VIEWER): $(WASM) viewer/node_modules/.installed $(VIEWER_SOURCES)
 check-viewer: viewer/node_modules/.installed
 	cd viewer && npm run --silent check
 
-demo: setup
+demo: .venv/.built
+	$(WITH_VIEWER) viewer
 	@mkdir -p build/demo
-	$(BIN)/polhode run examples/t-handle.toml -o build/demo/t-handle.nc \
-		$$(test ! -e $(VIEWER) || echo --html build/demo/t-handle.html)
-	@echo
-	@echo "The pictures are build/demo/t-handle-motion.png and build/demo/t-handle-polhode.png."
-	@test ! -e $(VIEWER) || echo "The motion to look at from all sides, in a browser: build/demo/t-handle.html."
+	$(BIN)/polhode demo -o build/demo
 
 test: setup
 	cargo test --quiet --locked --workspace --exclude polhode-py
@@ -76,9 +79,9 @@ lint: setup
 	$(BIN)/python -m mypy.stubtest polhode._native --allowlist .stubtest-allowlist
 	$(WITH_VIEWER) check-viewer
 
-# The peers join the same environment, which holds polhode already: with constraints.txt all agree on one NumPy.
-# A peer that is missing is an empty column, so benchmarks/run.py also runs after make setup alone.
-.venv/.peers: .venv/.built
+# The peers join the same environment: with constraints.txt all agree on one NumPy. A peer that is missing is an empty
+# column, so benchmarks/run.py also runs after make setup alone.
+.venv/.peers: .venv/.built .venv/.tools
 	$(BIN)/python -m pip install -q "polhode[bench]"
 	@touch $@
 
@@ -87,6 +90,27 @@ bench: .venv/.peers
 	$(BIN)/python benchmarks/accelerator.py
 	cargo run --quiet --locked --release -p polhode-ga --example batch | tee build/bench-core.txt
 	cargo run --quiet --locked --release -p polhode-rigid --example ensemble | tee build/bench-ensembles.txt
+
+# Wheels for Linux with the viewer and the examples in them, and the source distribution. By zig they run with glibc
+# 2.17 and later, whatever this machine has.
+.venv/.wheel: .venv/.python
+	$(BIN)/python -m pip install -q --group wheel
+	@touch $@
+
+wheel: viewer .venv/.wheel
+	rm -rf dist
+	@left_out=; for machine in x86_64 aarch64; do \
+		target=$$machine-unknown-linux-gnu; \
+		if [ -d "$$(rustc --print target-libdir --target $$target 2>/dev/null)" ] || rustup target add $$target; then \
+			echo "$$target"; \
+			PATH="$(CURDIR)/$(BIN):$$PATH" maturin build --release --locked --quiet --zig --target $$target -o dist \
+				|| exit 1; \
+		else \
+			left_out="$$left_out $$target"; \
+		fi; \
+	done; \
+	$(BIN)/maturin sdist -o dist && ls dist; \
+	test -z "$$left_out" || { echo "Left out, for want of Rust's library for it:$$left_out" >&2; exit 1; }
 
 # The guides as pages, with the viewer in them, and the documentation of the core.
 .venv/.docs: .venv/.tools
@@ -100,4 +124,4 @@ docs: setup .venv/.docs
 	@echo "The documentation of the core is target/doc/polhode_ga/index.html and target/doc/polhode_rigid/index.html."
 
 clean:
-	rm -rf .venv build target viewer/node_modules python/polhode/_viewer
+	rm -rf .venv build dist target viewer/node_modules python/polhode/_viewer

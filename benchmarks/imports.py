@@ -39,7 +39,7 @@ def rows(_: np.random.Generator, pace: Pace) -> Iterator[Row]:
 
 def _seconds(module: str) -> float:
     program = [sys.executable, "-c", PROGRAM.format(module)]
-    done = subprocess.run(program, capture_output=True, text=True, check=False)
+    done = subprocess.run(program, capture_output=True, text=True, timeout=300, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr.strip().splitlines()[-1])
     return float(done.stdout)

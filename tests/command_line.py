@@ -2,9 +2,10 @@
 
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
+
+import processes
 
 POLHODE = Path(sys.executable).with_name("polhode")
 ROOT = Path(__file__).parents[1]
@@ -24,20 +25,10 @@ samples = 11
 
 def polhode(*arguments, cwd=None, through=(), **options):
     """The finished process, started through another program; whatever happened, no traceback."""
-    options.setdefault("stdout", subprocess.PIPE)
-    options.setdefault("encoding", "utf-8")
     # As for most people: what is printed waits in memory until the end.
     environment = {**os.environ, **options.pop("env", {})}
     environment.pop("PYTHONUNBUFFERED", None)
-    done = subprocess.run(
-        [*through, POLHODE, *arguments],
-        cwd=cwd,
-        env=environment,
-        stderr=subprocess.PIPE,
-        timeout=60,
-        check=False,
-        **options,
-    )
+    done = processes.run([*through, POLHODE, *arguments], cwd=cwd, env=environment, **options)
     assert "Traceback" not in done.stderr, done.stderr
     assert "Exception ignored" not in done.stderr, done.stderr
     return done

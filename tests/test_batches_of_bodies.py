@@ -3,7 +3,6 @@
 import pickle
 import re
 import signal
-import subprocess
 import sys
 import time
 
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from motions import ASYMMETRIC, EPS, R0, START, moments
 
 T = np.linspace(-1.0, 3.0, 9)
@@ -421,11 +421,11 @@ def test_control_c_stops_a_run(method):
         "ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3), ph.State(ph.Rotor.identity(),"
         f"np.ones((40, 3))), [1e6], method={method!r}, step=1e-3)"
     )
-    with subprocess.Popen([sys.executable, "-c", program], stdout=-1, stderr=-1, text=True) as process:
+    with processes.start([sys.executable, "-c", program]) as process:
         assert process.stdout.readline() == "go\n"
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate()
     assert "KeyboardInterrupt" in errors
     assert process.returncode != 0
 

@@ -2,12 +2,12 @@
 
 import json
 import os
-import subprocess
 
 import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from command_line import EXAMPLES, POLHODE, SCENE, polhode, summary_of
 
 # --- the examples
@@ -214,7 +214,7 @@ def test_a_reader_that_leaves_early(scene):
 
 def test_head_gets_its_line():
     command = f'"{POLHODE}" run "{EXAMPLES / "symmetric-top.toml"}" | head -1'
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60, check=False)
+    done = processes.run(command, shell=True)
     assert done.stdout == "Free symmetric top\n"
     assert done.stderr == ""
 

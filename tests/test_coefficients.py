@@ -1,7 +1,6 @@
 """Which arithmetic serves which arrays; exact stays exact; products over any coefficients; JAX pytrees."""
 
 import math
-import subprocess
 import sys
 from fractions import Fraction
 
@@ -11,6 +10,7 @@ import pytest
 
 import naive
 import polhode as ph
+import processes
 from polhode._generic import exact as elements
 from polhode._generic import layout, pytrees
 from polhode._generic.exact import Exact
@@ -105,7 +105,7 @@ def test_sympy_and_jax_are_not_imported():
         "d = coefficients.of(F(1, 2)); functions.exp(d, d.asarray([0, 0, F(1, 2)]), 4);"
         "assert not {'sympy', 'jax', 'mpmath', 'array_api_compat'} & set(sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    processes.run([sys.executable, "-c", code], check=True)
 
 
 # --- exact elements

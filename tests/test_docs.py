@@ -3,7 +3,6 @@
 import os
 import re
 import shutil
-import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import polhode as ph
+import processes
 from command_line import polhode
 from polhode import _cli
 from viewers import needs_bundle
@@ -43,9 +43,7 @@ def test_the_pages_run_and_print_what_they_say(name, tmp_path):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     blocks = blocks_of(ROOT / f"docs/{name}.md")
     code = "\n".join(text for language, text in blocks if language == "python")
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     told = []
     for language, text in blocks:
@@ -62,9 +60,7 @@ def test_the_shell_answers_as_the_page_says():
     assert len(commands) == 4
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     for command, answer in commands:
-        done = subprocess.run(
-            ["bash", "-c", command], env=environment, capture_output=True, text=True, check=False
-        )
+        done = processes.run(["bash", "-c", command], env=environment)
         assert (done.returncode, done.stderr) == (0, "")
         # Residuals of rounding differ between machines.
         got, expected = (re.sub(r"residual \S+", "residual …", x.strip()) for x in (done.stdout, answer))
@@ -93,9 +89,7 @@ def test_the_page_of_figures_runs(tmp_path):
         assert (done.returncode, done.stderr) == (0, "")
         assert done.stdout.strip() == answer.strip()
     (code,) = (text for language, text in blocks if language == "python")
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     told = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
     assert [line.strip() for line in done.stdout.splitlines()] == told

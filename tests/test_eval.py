@@ -2,12 +2,12 @@
 
 import json
 import os
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 
+import processes
 from command_line import POLHODE, polhode
 
 
@@ -210,12 +210,12 @@ def test_standard_input_has_one_formula_a_line(arguments, line_end):
 
 
 def test_lines_are_answered_as_they_come():
-    with subprocess.Popen([POLHODE, "eval"], stdin=-1, stdout=-1, encoding="utf-8") as process:
+    with processes.start([POLHODE, "eval"], stdin=processes.PIPE, stderr=None) as process:
         process.stdin.write("e1 e2\n")
         process.stdin.flush()
         assert process.stdout.readline() == "e1∧e2\n"
         process.stdin.close()
-        assert process.wait(timeout=20) == 0
+        assert process.wait() == 0
 
 
 def test_all_lines_are_tried_and_mistakes_have_their_place():
@@ -332,9 +332,7 @@ def test_files_that_cannot_be_read(tmp_path):
 
 @pytest.mark.parametrize(("command", "code"), [("eval", 3), ("repl", 1)])
 def test_a_closed_standard_input(command, code):
-    done = subprocess.run(
-        ["bash", "-c", f"'{POLHODE}' {command} <&-"], capture_output=True, text=True, check=False
-    )
+    done = processes.run(["bash", "-c", f"'{POLHODE}' {command} <&-"])
     assert done.returncode == code
     assert done.stderr.endswith("error: standard input is closed\n")
 
@@ -364,7 +362,7 @@ def test_endless_lines_are_refused():
 
 def test_a_reader_that_leaves_early():
     command = f"yes e1 | head -100000 | '{POLHODE}' eval | head -1"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60, check=False)
+    done = processes.run(command, shell=True)
     assert (done.stdout, done.stderr) == ("e1\n", "")
 
 
@@ -386,5 +384,5 @@ def test_it_is_quick_to_start():
         "import sys; from polhode import _cli; _cli.main(['eval', 'e1']); "
         "print([m for m in sys.modules if m.startswith(('scipy', 'polhode._simulate', 'rich'))])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = processes.run([sys.executable, "-c", code], check=True)
     assert done.stdout.splitlines() == ["e1", "[]"]

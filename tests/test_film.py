@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import signal
-import subprocess
 import time
 from itertools import pairwise
 
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from command_line import EXAMPLES, POLHODE, SCENE, polhode
 
 pytest.importorskip("matplotlib")
@@ -34,11 +34,7 @@ def motion():
 
 def probed(path):
     shown = "stream=width,height,nb_frames,r_frame_rate,codec_name,pix_fmt"
-    told = subprocess.run(
-        ["ffprobe", "-v", "error", "-of", "json", "-show_entries", shown, path],
-        capture_output=True,
-        check=True,
-    )
+    told = processes.run(["ffprobe", "-v", "error", "-of", "json", "-show_entries", shown, path], check=True)
     return json.loads(told.stdout)["streams"][0]
 
 
@@ -237,7 +233,7 @@ def test_the_command_films(scene, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["small.toml", "-o", "a.avi"], 2, "a film is FILE.mp4 or FILE.gif, not 'a.avi'"),
+        (["small.toml", "-o", "a.avi"], 2, "a film is saved as FILE.mp4 or FILE.gif, not 'a.avi'"),
         (["small.toml", "-o", "a.gif", "--size", "640"], 2, "expected WIDTHxHEIGHT in pixels, as 1280x720"),
         (["small.toml", "-o", "a.gif", "--fps", "-1"], 1, "fps is -1.0"),
         (["small.toml"], 2, "required: -o"),
@@ -257,21 +253,15 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
     """Stopped in the middle, the command removes what it began and ends with 130."""
     target = tmp_path / name
     target.write_bytes(b"old")
-    process = subprocess.Popen(
-        [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    for _ in range(600):
-        if len(list(tmp_path.iterdir())) == 3:
-            break
-        time.sleep(0.05)
-    time.sleep(0.3)
-    # As a terminal does: to the whole group.
-    os.killpg(process.pid, signal.SIGINT)
-    _, told = process.communicate(timeout=60)
+    command = [POLHODE, "film", scene, "-o", target, "--seconds", "4000", "--size", "64x36"]
+    with processes.start(command, start_new_session=True) as process:
+        while len(list(tmp_path.iterdir())) < 3:
+            assert process.poll() is None
+            time.sleep(0.05)
+        time.sleep(0.3)
+        # As a terminal does: to the whole group.
+        os.killpg(process.pid, signal.SIGINT)
+        _, told = process.communicate()
     assert process.returncode == 130, told
     assert "interrupted; no file was changed" in told
     assert "Traceback" not in told

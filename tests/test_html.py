@@ -163,4 +163,4 @@ def test_a_page_is_an_html_file(name, scene, capsys):
     with pytest.raises(SystemExit) as stop:
         _cli.main(["run", str(scene), "--html", name])
     assert stop.value.code == 2
-    assert f"name it FILE.html, not '{name}'" in capsys.readouterr().err
+    assert f"a page is saved as FILE.html or FILE.htm, not '{name}'" in capsys.readouterr().err

@@ -1,12 +1,12 @@
 """Motion by steps under JAX: the steps of the compiled core, for laws, methods and batches."""
 
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 
 jax = pytest.importorskip("jax")
 jnp = jax.numpy
@@ -326,5 +326,5 @@ def test_formulas_are_checked_when_they_are_made():
 
 def test_the_extra_is_named():
     code = "import sys; sys.modules['jax'] = None; import polhode as ph; ph.jax"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    done = processes.run([sys.executable, "-c", code])
     assert "polhode.jax needs jax: pip install 'polhode[jax]'" in done.stderr

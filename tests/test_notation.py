@@ -1,7 +1,6 @@
 """How values are written on paper: in LaTeX for notebooks, and in a text that formulas read."""
 
 import pydoc
-import subprocess
 import sys
 from fractions import Fraction
 
@@ -11,6 +10,7 @@ import pytest
 import sympy
 
 import polhode as ph
+import processes
 from polhode import I, e1, e2, e3
 
 x, y = sympy.symbols("x y", positive=True)
@@ -131,7 +131,7 @@ def test_printing_imports_no_library():
         "import sys, polhode as ph; (2 * ph.e1)._repr_latex_(), repr(ph.e1); "
         "assert not {'sympy', 'IPython', 'matplotlib'} & set(sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", program], check=True)
+    processes.run([sys.executable, "-c", program], check=True)
 
 
 @pytest.mark.parametrize("kind", [ph.Multivector, ph.Rotor])

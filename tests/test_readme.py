@@ -1,9 +1,13 @@
 """What the README says is so."""
 
 import re
-import subprocess
+import shlex
 import sys
+import tomllib
 from pathlib import Path
+
+import processes
+from polhode import _cli
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -17,9 +21,7 @@ def blocks(language: str) -> list[str]:
 def test_python_blocks_run():
     code = "\n".join(blocks("python"))
     assert "ph.simulate" in code
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
-    )
+    done = processes.run([sys.executable, "-W", "error", "-c", code])
     assert done.returncode == 0, done.stderr
 
 
@@ -36,34 +38,38 @@ def test_the_torques_are_those_of_a_scene(tmp_path):
     body = re.sub(r"mesh = .*\nlength_unit = .*\ndensity = .*", "moments = [1, 2, 3]", scene)
     body = body.replace("samples = 6001", "samples = 11").replace("5 rev/s", "5 deg/s")
     (tmp_path / "a.toml").write_text(define + body + torques)
-    done = subprocess.run(
-        [POLHODE, "run", "a.toml"], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    done = processes.run([POLHODE, "run", "a.toml"], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "torque_body       m ∧ (~R B R)" in done.stdout
 
 
 def test_the_mistake_is_shown_as_printed(tmp_path):
     text = (ROOT / "examples/t-handle.toml").read_text().replace("duration", "durration")
-    (tmp_path / "examples").mkdir()
-    (tmp_path / "examples/t-handle.toml").write_text(text)
-    done = subprocess.run(
-        [POLHODE, "check", "examples/t-handle.toml"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    (tmp_path / "t-handle.toml").write_text(text)
+    done = processes.run([POLHODE, "check", "t-handle.toml"], cwd=tmp_path)
     assert done.returncode == 3
     assert any(block.strip() in done.stderr for block in blocks("text"))
 
 
-def test_the_summary_is_that_of_the_example():
-    done = subprocess.run(
-        [POLHODE, "run", ROOT / "examples/t-handle.toml"], capture_output=True, text=True, check=True
-    )
+def test_the_summary_is_that_of_the_demo(tmp_path):
+    done = processes.run([POLHODE, "demo", "-o", tmp_path], check=True)
     (shown,) = (block for block in blocks("text") if "principal moments" in block)
     # Rounding drifts differ between machines.
     told = [line for line in shown.splitlines() if "drift" not in line and "|R|" not in line]
     printed = done.stdout.splitlines()
     assert [line for line in told if line not in printed] == []
+
+
+def test_the_commands_are_commands():
+    commands = re.findall(r"^(?:\$ )?polhode (.*?)(?:  +#.*)?$", README, flags=re.MULTILINE)
+    asked = [shlex.split(command) for command in commands if not command.startswith("examples")]
+    assert len(asked) > 5
+    for arguments in asked:
+        assert callable(_cli._parser().parse_args(arguments).command)
+
+
+def test_the_extras_are_those_of_the_package():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    text = README.partition("Extras:")[2].partition("\n\n")[0]
+    named = {name.removeprefix("polhode[").removesuffix("]") for name in re.findall(r"`([\w\[\]-]+)`", text)}
+    assert named == {*extras} - {"bench"}

@@ -3,8 +3,6 @@
 import contextlib
 import os
 import pty
-import select
-import subprocess
 import sys
 import time
 
@@ -12,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import processes
 from command_line import POLHODE, polhode
 from polhode._repl import Prompt, _history_path, _keep
 from polhode._session import FUNCTIONS, LineError
@@ -231,7 +230,7 @@ def test_piped_bytes_that_are_no_text(tmp_path):
 
 def test_a_reader_that_leaves_early():
     command = f"yes e1 | head -20000 | '{POLHODE}' repl | head -1"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60, check=False)
+    done = processes.run(command, shell=True)
     assert (done.stdout, done.stderr) == ("e1\n", "")
 
 
@@ -249,27 +248,15 @@ os.execv(sys.argv[1], sys.argv[1:])
 class Terminal:
     """The prompt in a terminal of its own."""
 
-    def __init__(self, state):
-        self.master, slave = pty.openpty()
-        environment = {**os.environ, "XDG_STATE_HOME": str(state), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", _LAUNCH, POLHODE, "repl"],
-            stdin=slave,
-            stdout=slave,
-            stderr=slave,
-            env=environment,
-            start_new_session=True,
-        )
-        os.close(slave)
+    def __init__(self, process, master):
+        self.process, self.master = process, master
         self.until("> ")
 
     def until(self, end):
         """What is shown, up to some text."""
-        shown, deadline = b"", time.monotonic() + 30
+        shown = b""
         while not shown.endswith(end.encode()):
-            assert time.monotonic() < deadline, shown
-            if select.select([self.master], [], [], 0.1)[0]:
-                shown += os.read(self.master, 4096)
+            shown += os.read(self.master, 4096)  # an OSError when the prompt has ended
         return shown.decode().replace("\r\n", "\n")
 
     def type(self, keys, end="\n> "):
@@ -282,19 +269,27 @@ class Terminal:
         with contextlib.suppress(OSError):  # the terminal is gone
             while data := os.read(self.master, 4096):
                 shown += data
-        code = self.process.wait(timeout=30)
-        os.close(self.master)
-        return code, shown.decode().replace("\r\n", "\n")
+        return self.process.wait(), shown.decode().replace("\r\n", "\n")
+
+
+@contextlib.contextmanager
+def terminal_of(state):
+    """The prompt, which keeps its history in this directory."""
+    pytest.importorskip("readline")
+    master, slave = pty.openpty()
+    environment = {**os.environ, "XDG_STATE_HOME": str(state), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
+    ends = {"stdin": slave, "stdout": slave, "stderr": slave}
+    command = [sys.executable, "-c", _LAUNCH, POLHODE, "repl"]
+    with processes.start(command, **ends, env=environment, start_new_session=True) as process:
+        os.close(slave)
+        yield Terminal(process, master)
+    os.close(master)
 
 
 @pytest.fixture
 def terminal(tmp_path):
-    pytest.importorskip("readline")
-    terminal = Terminal(tmp_path)
-    yield terminal
-    if terminal.process.poll() is None:
-        terminal.process.kill()
-        terminal.process.wait()
+    with terminal_of(tmp_path) as terminal:
+        yield terminal
 
 
 def test_a_conversation(terminal, tmp_path):
@@ -315,23 +310,21 @@ def test_a_conversation(terminal, tmp_path):
 
 
 def test_the_history_comes_back(tmp_path):
-    pytest.importorskip("readline")
     (tmp_path / "polhode").mkdir()
     (tmp_path / "polhode" / "history").write_text("7 e3\n")
-    terminal = Terminal(tmp_path)
-    # Ctrl-P goes back in the history.
-    assert terminal.type("\x10\n").endswith("7 e3\n> ")
-    assert terminal.leave()[0] == 0
+    with terminal_of(tmp_path) as terminal:
+        # Ctrl-P goes back in the history.
+        assert terminal.type("\x10\n").endswith("7 e3\n> ")
+        assert terminal.leave()[0] == 0
     # A line that repeats the one before it is kept once.
     assert (tmp_path / "polhode" / "history").read_text() == "7 e3\n"
 
 
 def test_a_history_that_cannot_be_kept_is_told_of(tmp_path):
-    pytest.importorskip("readline")
     (tmp_path / "polhode").write_text("a file where a directory should be")
-    terminal = Terminal(tmp_path)
-    terminal.type("e1\n")
-    code, shown = terminal.leave(":quit\n")
+    with terminal_of(tmp_path) as terminal:
+        terminal.type("e1\n")
+        code, shown = terminal.leave(":quit\n")
     assert code == 0
     assert "polhode: the history is not kept: " in shown
     assert "Traceback" not in shown

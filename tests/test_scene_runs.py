@@ -4,13 +4,13 @@ import json
 import os
 import re
 import signal
-import subprocess
 import time
 
 import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from command_line import POLHODE, SCENE, polhode, summary_of
 from polhode import _ensemble_run, _memory
 from polhode._gathered import Gathered
@@ -251,13 +251,13 @@ def test_a_terminal_shows_how_many_and_how_fast(write):
     master, slave = pty.openpty()
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
     path = write(TORQUED)
-    with subprocess.Popen(
-        [POLHODE, "run", path], stdout=subprocess.DEVNULL, stderr=slave, env=environment
-    ) as process:
+    command = [POLHODE, "run", path]
+    with processes.start(command, stdout=processes.DEVNULL, stderr=slave, env=environment) as process:
         os.close(slave)
         shown = b""
         while part := read_terminal(master):
             shown += part
+        process.wait()
     os.close(master)
     assert process.returncode == 0
     assert b"700 of 700 bodies" in shown
@@ -337,14 +337,12 @@ def test_bodies_that_fail_are_told_and_the_others_go_on(write, tmp_path):
 def test_ctrl_c_keeps_the_bodies_that_are_complete(write, tmp_path):
     text = TORQUED.replace("700", "200_000").replace("samples = 11", "samples = 101")
     path, output = write(text.replace("step = 0.01", "step = 0.0005")), tmp_path / "out.nc"
-    with subprocess.Popen([POLHODE, "run", path, "-o", output], stdout=-1, stderr=-1, text=True) as process:
-        deadline = time.monotonic() + 60
+    with processes.start([POLHODE, "run", path, "-o", output]) as process:
         while not any(part.stat().st_size > 1 << 20 for part in tmp_path.glob(".out.nc.*.part")):
             assert process.poll() is None
-            assert time.monotonic() < deadline
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
-        printed, errors = process.communicate(timeout=60)
+        printed, errors = process.communicate()
     assert process.returncode == 130
     assert printed == ""
     assert sorted(tmp_path.iterdir()) == sorted([path, output])
@@ -370,24 +368,23 @@ def test_a_run_that_was_stopped_early_leaves_no_trace(write, tmp_path):
         TORQUED.replace("700", "100_000").replace('"1 s"', '"1000 s"').replace("step = 0.01", "step = 0.0001")
     )
     path = write(text.replace("samples = 11", "samples = 101"))
-    with subprocess.Popen([POLHODE, "run", path, "-o", tmp_path / "out.nc"], stdout=-1, stderr=-1) as process:
-        time.sleep(1.5)
-        assert process.poll() is None
+    with processes.start([POLHODE, "run", path, "-o", tmp_path / "out.nc"]) as process:
+        while not any(tmp_path.glob(".out.nc.*.part")):
+            assert process.poll() is None
+            time.sleep(0.02)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=20)
+        _, errors = process.communicate()
     assert process.returncode == 130
-    assert b"interrupted; no file was changed" in errors
+    assert "interrupted; no file was changed" in errors
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_what_memory_cannot_hold_is_refused(write):
     path = write(FREE.replace("700", "100_000_000").replace("samples = 11", "samples = 100_000"))
-    begin = time.monotonic()
     done = polhode("run", path)
     assert done.returncode == 1
     assert "the 100000000 bodies of this scene at 100000 times take 120 TB; " in done.stderr
     assert "take fewer bodies or fewer times" in done.stderr
-    assert time.monotonic() - begin < 20
 
 
 def test_what_the_disk_cannot_hold_is_refused(write, tmp_path, monkeypatch):

@@ -1,7 +1,6 @@
 """What `simulate` takes and gives: times, steps and tolerances, what it refuses, progress and stopping."""
 
 import signal
-import subprocess
 import sys
 import time
 
@@ -9,6 +8,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from motions import ASYMMETRIC, EPS, METHODS, R0, SLOPES, START, STEPS, apart, random_walk
 
 # --- times
@@ -253,10 +253,8 @@ def test_what_progress_raises_comes_out():
     def report(number, fraction):
         raise EnoughError(number)
 
-    start = time.perf_counter()
     with pytest.raises(EnoughError):
         ph.simulate(ASYMMETRIC, START, [1e6], step=1e-3, progress=report)
-    assert time.perf_counter() - start < 2.0
 
 
 def test_control_c_stops_a_run():
@@ -265,12 +263,10 @@ def test_control_c_stops_a_run():
         "ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3),"
         "ph.State(ph.Rotor.identity(), [0, 1, 1]), [1e6], step=1e-3)"
     )
-    with subprocess.Popen([sys.executable, "-c", program], stdout=-1, stderr=-1, text=True) as process:
+    with processes.start([sys.executable, "-c", program]) as process:
         assert process.stdout.readline() == "go\n"
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
-        start = time.perf_counter()
-        _, errors = process.communicate(timeout=20)
-    assert time.perf_counter() - start < 2.0
+        _, errors = process.communicate()
     assert "KeyboardInterrupt" in errors
     assert process.returncode != 0

@@ -1,6 +1,5 @@
 """The Hypothesis strategies: they make what they say, everywhere they should, and shrink to simple values."""
 
-import subprocess
 import sys
 
 import numpy as np
@@ -10,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.errors import NoSuchExample
 
 import polhode as ph
+import processes
 from polhode import e1, e2, e3
 from polhode import strategies as ga
 
@@ -132,7 +132,7 @@ def test_the_package_does_not_import_hypothesis():
     code = (
         "import sys, polhode; assert 'hypothesis' not in sys.modules and not hasattr(polhode, 'strategies')"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    processes.run([sys.executable, "-c", code], check=True)
 
 
 def test_the_extra_is_named(monkeypatch):

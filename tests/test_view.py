@@ -5,13 +5,13 @@ import json
 import shutil
 import signal
 import socket
-import subprocess
 import threading
 
 import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from command_line import EXAMPLES, POLHODE, SCENE, polhode
 from polhode import _cli, _view
 from viewers import SCRIPT, needs_bundle
@@ -253,14 +253,12 @@ def test_the_browser_is_opened_where_the_page_is(scene, bundle, monkeypatch, cap
 
 @needs_bundle
 def test_ctrl_c_ends_it(scene):
-    with subprocess.Popen(
-        [POLHODE, "view", scene, "--no-browser"], stdout=-1, stderr=-1, text=True
-    ) as process:
+    with processes.start([POLHODE, "view", scene, "--no-browser"]) as process:
         url = process.stdout.readline().split()[-1]
         port = int(url.removeprefix("http://127.0.0.1:").removesuffix("/"))
         with socket.create_connection(("127.0.0.1", port), timeout=10):
             process.send_signal(signal.SIGINT)
-            _, errors = process.communicate(timeout=20)
+            _, errors = process.communicate()
     assert process.returncode == 130
     assert errors == "the viewer was closed\n"
 

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from polhode._arguments import file_name
 from polhode._native import SceneError, __version__
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
+    _heed_ctrl_c()
     options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
         code = int(options.command(options))
@@ -44,6 +46,15 @@ def main(arguments: list[str] | None = None) -> int:
         code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
     _let_go_of_output()
     return code
+
+
+def _heed_ctrl_c() -> None:
+    """Let Ctrl-C end the command also where it was started to ignore it, as a background job of a script.
+
+    A long run is ended by ``kill -INT``, which keeps the bodies that are complete, wherever it was started.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _let_go_of_output() -> None:
@@ -77,14 +88,14 @@ def _parser() -> argparse.ArgumentParser:
         "-o",
         "--output",
         metavar="FILE.nc",
-        type=_netcdf_name,
+        type=file_name("a motion"),
         help="write the motion, or all those of an ensemble, to this netCDF file, and figures beside it "
         "(FILE-motion.png …)",
     )
     run.add_argument(
         "--html",
         metavar="FILE.html",
-        type=_page_name,
+        type=file_name("a page"),
         help="write a page that shows the motion in any browser, without anything from outside",
     )
     run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
@@ -102,7 +113,7 @@ def _parser() -> argparse.ArgumentParser:
     check.set_defaults(command=_check)
     _add_view(commands)
     _add_formulas(commands)
-    _add_figures(commands)
+    _add_others(commands)
     return parser
 
 
@@ -151,10 +162,12 @@ def _add_formulas(commands: Any) -> None:
     repl.set_defaults(command=_repl)
 
 
-def _add_figures(commands: Any) -> None:
-    from polhode import _figure_command
+def _add_others(commands: Any) -> None:
+    from polhode import _demo_command, _example_command, _figure_command
 
     _figure_command.add(commands, _progress)
+    _demo_command.add(commands)
+    _example_command.add(commands)
 
 
 def _definition(text: str) -> str:
@@ -306,21 +319,6 @@ def _many(scene: Scene) -> str:
     return f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
 
 
-def _netcdf_name(name: str) -> str:
-    """Return the name of the output file; anything but a netCDF file is wrong usage."""
-    path = Path(name)
-    if path.suffix.lower() != ".nc":
-        raise argparse.ArgumentTypeError(f"the output is a netCDF file, name it FILE.nc, not {name!r}")
-    return name
-
-
-def _page_name(name: str) -> str:
-    """Return the name of the page; anything but an HTML file is wrong usage."""
-    if Path(name).suffix.lower() not in (".html", ".htm"):
-        raise argparse.ArgumentTypeError(f"the page is an HTML file, name it FILE.html, not {name!r}")
-    return name
-
-
 def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
     """Return the paths of the data and two figures; what cannot be written is refused before the work."""
     if output is None:
@@ -375,7 +373,6 @@ def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Tra
 @contextmanager
 def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
     """Show a bar on standard error, if that is a terminal and the run takes long enough to see it."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     from polhode._extras import progress_bar
 
     if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:

@@ -37,7 +37,6 @@ def run(
         If it was stopped by Ctrl-C when some bodies were complete, and there are targets.
     """
     require_room(scene, targets)
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     gathered = Gathered(scene, _nominal(scene))
     with contextlib.ExitStack() as stack:
         part = stack.enter_context(unfinished(targets[0])) if targets else None

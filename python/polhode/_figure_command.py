@@ -10,6 +10,8 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from polhode._arguments import file_name
+
 if TYPE_CHECKING:
     from polhode._scene import Scene
 
@@ -36,7 +38,7 @@ def add(commands: Any, shown: Shown) -> None:
     )
     figure.add_argument("scene", metavar="SCENE.toml", nargs="?", help="the scene file; none for 1, 2 and 3")
     figure.add_argument(
-        "-o", "--output", metavar="FILE", type=_name("figure", ("svg", "pdf", "png")), required=True,
+        "-o", "--output", metavar="FILE", type=file_name("a figure"), required=True,
         help="FILE.svg, FILE.pdf or FILE.png",
     )  # fmt: skip
     figure.add_argument(
@@ -50,7 +52,7 @@ def add(commands: Any, shown: Shown) -> None:
     film = commands.add_parser("film", help="film a scene: MP4 (by ffmpeg) or GIF")
     film.add_argument("scene", metavar="SCENE.toml", help="the scene file")
     film.add_argument(
-        "-o", "--output", metavar="FILE", type=_name("film", ("mp4", "gif")), required=True,
+        "-o", "--output", metavar="FILE", type=file_name("a film"), required=True,
         help="FILE.mp4 or FILE.gif",
     )  # fmt: skip
     film.add_argument(
@@ -144,18 +146,6 @@ def _scene_of_one(name: str) -> Scene:
             "or draw the ensemble with `polhode run`"
         )
     return scene
-
-
-def _name(what: str, forms: tuple[str, ...]) -> Callable[[str], str]:
-    """Return what checks the name of the output; one of another form is wrong usage."""
-    names = ", ".join(f"FILE.{form}" for form in forms[:-1]) + f" or FILE.{forms[-1]}"
-
-    def checked(name: str) -> str:
-        if Path(name).suffix.lower().removeprefix(".") not in forms:
-            raise argparse.ArgumentTypeError(f"a {what} is {names}, not {name!r}")
-        return name
-
-    return checked
 
 
 def _size(text: str) -> tuple[int, int]:

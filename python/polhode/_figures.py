@@ -12,7 +12,7 @@ import numpy as np
 from polhode._arrays import Array
 from polhode._camera import view_of
 from polhode._extras import optional
-from polhode._files import write_atomically
+from polhode._files import form_of, write_atomically
 from polhode._kinds import kind_of, long_axis, orbit_of, weight, wheel
 from polhode._plot import main_axis, motion_figure, require_times
 from polhode._spheres import axis_figure, orbit_figure, polhode_figure
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from polhode._scene import Scene
     from polhode._trajectory import Trajectory
 
-FORMATS = ("svg", "pdf", "png")
 # Kinds of motion whose angular velocity stays on an ellipsoid in the body.
 ON_ELLIPSOID = ("free", "damped", "gyrostat")
 # Kinds in which depth is drawn, seen from a direction.
@@ -79,17 +78,9 @@ def encoded(figure: Figure, form: str) -> bytes:
     return buffer.getvalue()
 
 
-def form_of(path: Path) -> str:
-    """Return the form of file that a name says; a ValueError for another one."""
-    form = path.suffix.lower().removeprefix(".")
-    if form not in FORMATS:
-        raise ValueError(f"a figure is a file FILE.svg, FILE.pdf or FILE.png, not {str(path)!r}")
-    return form
-
-
 def write(figure: Figure, path: Path) -> None:
     """Write a figure, whole or not at all."""
-    write_atomically({path: encoded(figure, form_of(path))})
+    write_atomically({path: encoded(figure, form_of(path, "a figure"))})
 
 
 def _motion(trajectory: Trajectory, view: Any, time: float | None) -> Figure:

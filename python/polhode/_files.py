@@ -39,6 +39,26 @@ def unfinished(target: Path) -> Iterator[Path]:
             os.unlink(path)
 
 
+# Suffixes of what is written to files.
+_FORMS = {
+    "a motion": ("nc",),
+    "a page": ("html", "htm"),
+    "a figure": ("svg", "pdf", "png"),
+    "a film": ("mp4", "gif"),
+}
+
+
+def form_of(path: str | os.PathLike[str], what: str) -> str:
+    """Return the suffix of a name, in lower case; a ValueError if it is not one of what is written."""
+    forms = _FORMS[what]
+    form = Path(path).suffix.lower().removeprefix(".")
+    if form not in forms:
+        *others, last = (f"FILE.{x}" for x in forms)
+        names = f"{', '.join(others)} or {last}" if others else last
+        raise ValueError(f"{what} is saved as {names}, not {os.fspath(path)!r}")
+    return form
+
+
 def check_target(target: Path) -> None:
     """Raise an OSError that names the path if a file could not be put there."""
     with _naming(target):

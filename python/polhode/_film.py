@@ -15,7 +15,7 @@ import numpy as np
 from polhode._arrays import Array, as_count, as_float
 from polhode._camera import view_of
 from polhode._extras import optional
-from polhode._files import check_target, unfinished, write_atomically
+from polhode._files import check_target, form_of, unfinished, write_atomically
 from polhode._plot import in_our_look, require_times, time_unit, title_of
 from polhode._stage import Stage
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from polhode._trajectory import Trajectory
 
-FORMATS = ("mp4", "gif")
 _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
 _SMALLEST, _LARGEST, _MOST = 16, 7680, 100_000
 # A body that turns further than this from one picture to the next, in rad, seems to turn otherwise.
@@ -73,7 +72,7 @@ class Plan(NamedTuple):
 
 def planned(path: Path, seconds: float, fps: float, size: Any, view: Any) -> Plan:
     """Return what a film is to be; all that needs no motion is refused here, as by `Trajectory.film`."""
-    form = form_of(path)
+    form = form_of(path, "a film")
     plan = Plan(
         form,
         as_float(fps, "fps"),
@@ -111,14 +110,6 @@ def _rounded(x: float, way: Any) -> float:
     """Return a positive number with three digits, rounded up or down."""
     unit = 10.0 ** (np.floor(np.log10(x)) - 2)
     return float(way(x / unit) * unit)
-
-
-def form_of(path: Path) -> str:
-    """Return the form of film that a name says; a ValueError for another one."""
-    form = path.suffix.lower().removeprefix(".")
-    if form not in FORMATS:
-        raise ValueError(f"a film is a file FILE.mp4 or FILE.gif, not {str(path)!r}")
-    return form
 
 
 def ffmpeg() -> str:

@@ -272,10 +272,17 @@ class Trajectory:
         return read(path)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a netCDF file, whole or not at all: an older file stays until the new one is complete."""
-        from polhode._files import write_atomically
+        """Write a netCDF file, whole or not at all: an older file stays until the new one is complete.
+
+        Raises
+        ------
+        ValueError
+            If the suffix of the path is not ``.nc``.
+        """
+        from polhode._files import form_of, write_atomically
         from polhode._io import netcdf
 
+        form_of(path, "a motion")
         write_atomically({Path(path): netcdf(self)})
 
     def plot(self, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:

@@ -12,7 +12,7 @@ import numpy as np
 
 from polhode._document import Document, document, scene_of
 from polhode._extras import optional
-from polhode._files import write_atomically
+from polhode._files import form_of, write_atomically
 from polhode._html import bundle_path, page
 from polhode._recorded import state_at
 from polhode._rotor import Rotor
@@ -185,7 +185,8 @@ class Viewer(anywidget.AnyWidget):
         return page(self._now())
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write that page to a file, whole or not at all."""
+        """Write that page to a file, FILE.html, whole or not at all. A ValueError for another suffix."""
+        form_of(path, "a page")
         write_atomically({Path(path): self.html().encode()})
 
     def _now(self) -> Document:

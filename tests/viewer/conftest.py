@@ -1,12 +1,12 @@
 """What is needed to try the viewer. Where it is missing, tests are left out and say what; in CI they fail."""
 
 import shutil
-import subprocess
 
 import pytest
 
+import processes
 from missing import left_out
-from node_core import NodeCore
+from node_core import node_core
 from polhode import _document, _html
 from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
@@ -25,11 +25,7 @@ def pytest_terminal_summary(terminalreporter):
 def node():
     """The path of Node, with the packages of the viewer."""
     found = shutil.which("node")
-    version = (
-        subprocess.run([found, "--version"], capture_output=True, text=True, check=True).stdout
-        if found
-        else "v0"
-    )
+    version = processes.run([found, "--version"], check=True).stdout if found else "v0"
     if int(version.strip().lstrip("v").split(".")[0]) < 20:
         left_out("Node >= 20 was not found")
     if not (ROOT / "viewer/node_modules").exists():
@@ -40,9 +36,8 @@ def node():
 @pytest.fixture(scope="package")
 def core(node):
     """The core under Node."""
-    core = NodeCore(node)
-    yield core
-    core.close()
+    with node_core(node) as core:
+        yield core
 
 
 @pytest.fixture(scope="package")

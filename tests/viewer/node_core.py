@@ -1,11 +1,13 @@
 """The core as the page has it, compiled to WebAssembly, asked through Node without a page."""
 
 import base64
+import contextlib
 import json
-import subprocess
 from pathlib import Path
 
 import numpy as np
+
+import processes
 
 ROOT = Path(__file__).parents[2]
 
@@ -28,23 +30,26 @@ class Problem(Exception):  # noqa: N818, as in core.ts
     """What the core told of a scene or of a question."""
 
 
+@contextlib.contextmanager
+def node_core(node):
+    """The core under Node, for as long as all tests may take."""
+    command = [node, ROOT / "viewer/tests/core.mjs"]
+    with processes.start(command, limit=3600, stdin=processes.PIPE) as process:
+        yield NodeCore(process)
+
+
 class NodeCore:
     """One process of Node, which answers questions in turn."""
 
-    def __init__(self, node):
-        self._process = subprocess.Popen(
-            [node, ROOT / "viewer/tests/core.mjs"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            encoding="utf-8",
-        )
+    def __init__(self, process):
+        self._process = process
         self._ended = None
 
     def ask(self, question, **rest):
         if self._ended is None:
             print(json.dumps({"question": question, **rest}), file=self._process.stdin, flush=True)
-            line = self._process.stdout.readline()
+            with processes.limited(self._process):
+                line = self._process.stdout.readline()
             if not line:
                 self._ended = self._process.communicate()[1]
         if self._ended is not None:
@@ -58,10 +63,6 @@ class NodeCore:
         """Return what is known of a motion, and its states at the times by name."""
         answer = self.ask("motion", scene=scene, times=list(times), **options)
         return answer["about"], states(answer["rows"])
-
-    def close(self):
-        if self._ended is None:
-            self._process.communicate()
 
 
 def states(rows):

@@ -3,12 +3,12 @@
 import json
 import os
 import re
-import subprocess
 import sys
 import threading
 
 import pytest
 
+import processes
 from missing import left_out
 
 CELLS = (
@@ -52,38 +52,23 @@ def notebook(tmp_path):
     (tmp_path / "a.ipynb").write_text(
         json.dumps({"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5})
     )
-    server = subprocess.Popen(
-        [
-            *(
-                sys.executable,
-                "-m",
-                "jupyterlab",
-                "--no-browser",
-                "--allow-root",
-                "--ip=127.0.0.1",
-                "--port=0",
-            ),
-            *("--IdentityProvider.token=secret", "--LabApp.news_url=", f"--ServerApp.root_dir={tmp_path}"),
-            "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
-            "--LabApp.expose_app_in_browser=True",
-        ],
-        stderr=subprocess.PIPE,
-        encoding="utf-8",
-        env={
-            **os.environ,
-            "JUPYTER_CONFIG_DIR": str(tmp_path / "config"),
-            "JUPYTER_DATA_DIR": str(tmp_path / "data"),
-        },
-    )
-    address = next(found[0] for line in server.stderr if (found := re.search(ADDRESS, line)))
-    # What it tells from now on nobody reads, but it must be taken.
-    reader = threading.Thread(target=server.stderr.read)
-    reader.start()
-    yield f"{address}/lab?reset&token=secret"
-    server.terminate()
-    server.wait()
-    reader.join()
-    server.stderr.close()
+    command = [
+        *(sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", "--port=0"),
+        *("--IdentityProvider.token=secret", "--LabApp.news_url=", f"--ServerApp.root_dir={tmp_path}"),
+        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+        "--LabApp.expose_app_in_browser=True",
+    ]
+    folders = {"JUPYTER_CONFIG_DIR": str(tmp_path / "config"), "JUPYTER_DATA_DIR": str(tmp_path / "data")}
+    with processes.start(command, stdout=None, env={**os.environ, **folders}) as server:
+        address = next(found[0] for line in server.stderr if (found := re.search(ADDRESS, line)))
+        # What it tells from now on nobody reads, but it must be taken.
+        reader = threading.Thread(target=server.stderr.read)
+        reader.start()
+        yield f"{address}/lab?reset&token=secret"
+        # It ends its kernels, too.
+        server.terminate()
+        server.wait()
+        reader.join()
 
 
 def test_python_and_the_page_follow_each_other(notebook, pages):

@@ -1,24 +1,19 @@
 """`polhode view` in a browser: what it serves is a page of its own, which asks nobody else."""
 
 import re
-import subprocess
 
 import pytest
 
+import processes
 from command_line import EXAMPLES, POLHODE
 
 
 @pytest.fixture
 def served():
     """Where the T-handle is served."""
-    process = subprocess.Popen(
-        [POLHODE, "view", EXAMPLES / "t-handle.toml", "--no-browser"],
-        stdout=subprocess.PIPE,
-        encoding="utf-8",
-    )
-    yield re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
-    process.terminate()
-    process.communicate()
+    command = [POLHODE, "view", EXAMPLES / "t-handle.toml", "--no-browser"]
+    with processes.start(command, stderr=None) as process:
+        yield re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
 
 
 def test_the_page_that_is_served(served, pages, follow):

@@ -1,0 +1,46 @@
+"""Programs that tests start: each has a time limit, and Ctrl-C reaches each."""
+
+import contextlib
+import signal
+import subprocess
+import threading
+from subprocess import DEVNULL, PIPE
+
+__all__ = ["DEVNULL", "PIPE", "limited", "run", "start"]
+
+# Seconds after which a program hangs: the slowest takes 20 on an idle machine.
+LIMIT = 180.0
+
+# A background job of a shell ignores Ctrl-C, and so does all that it starts. With a handler here, programs
+# that are started have the default action.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def run(command, **options):
+    """Return the finished process, with what it printed as text unless the options say otherwise."""
+    captured = {"stdout": PIPE, "stderr": PIPE, "encoding": "utf-8", "timeout": LIMIT, "check": False}
+    return subprocess.run(command, **captured | options)
+
+
+@contextlib.contextmanager
+def start(command, limit=LIMIT, **options):
+    """Start a program and end it with the block, or after a time: then whatever waits for it goes on."""
+    captured = {"stdout": PIPE, "stderr": PIPE, "encoding": "utf-8"}
+    with subprocess.Popen(command, **captured | options) as process, limited(process, limit):
+        try:
+            yield process
+        finally:
+            process.kill()  # nothing happens to one that has ended
+
+
+@contextlib.contextmanager
+def limited(process, seconds=LIMIT):
+    """Kill a process if what is inside takes too long."""
+    timer = threading.Timer(seconds, process.kill)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

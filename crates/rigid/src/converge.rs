@@ -141,7 +141,8 @@ struct Pair {
 /// the next step foretold, and few passes are needed.
 ///
 /// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
-/// ratio of their numbers; where that is nearly 1 the passes show nothing, and the sum of the tolerances has to be small.
+/// ratio of their numbers; where that is nearly 1 the passes show nothing, and the sum of the estimates of all steps has
+/// to be small.
 pub(crate) struct Convergence {
     aim: Aim,
     scales: Scales,
@@ -294,8 +295,7 @@ impl Convergence {
         if let Pace::Tolerance(tolerance) = self.pace {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
             if shorter < COMPARABLE {
-                let sum =
-                    fine.steps as f64 * tolerance * self.magnification.map_or(1.0, |known| known.of_sums());
+                let sum = fine.errors * self.magnification.map_or(1.0, |known| known.of_sums());
                 // Steps cannot keep to less; there the difference has to do.
                 let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);

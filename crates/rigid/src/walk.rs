@@ -91,6 +91,8 @@ pub(crate) struct Pass {
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// The largest angular velocity (rad/s), the least that counts included, distance (m) and velocity (m/s) on the way.
     pub largest: [f64; 3],
+    /// The sum of the estimated errors of all steps, of methods that have estimates.
+    pub errors: f64,
     /// The longest step.
     pub longest: f64,
     pub steps: u64,
@@ -259,6 +261,7 @@ impl Walker<'_> {
             let (next, error) = self.step(&walk.at, to, walk.fastest, pass)?;
             if walk.stride.judge(to - from, error / tolerance) {
                 pass.longest = pass.longest.max((to - from).abs());
+                pass.errors += error;
                 self.arrive(walk, next, pass, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
                 self.limit.check(pass.steps, to - from, turn, || done(to))?;

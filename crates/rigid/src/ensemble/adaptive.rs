@@ -227,7 +227,8 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
         let mut stands = [false; W];
         for l in 0..W {
             let Some(seat) = &mut self.seats[l] else { continue };
-            let (h, error) = (h.0[l], error.0[l] / seat.tolerance);
+            let (h, estimate) = (h.0[l], error.0[l]);
+            let error = estimate / seat.tolerance;
             seat.pass.evaluations += DOP853.rows.len() as u64;
             if error.is_nan()
                 && let Err(error) = seat.diagnose(&self.at.get(l), h, &torques[l])
@@ -236,6 +237,7 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
                 continue;
             }
             if seat.stride.judge(h, error) {
+                seat.pass.errors += estimate;
                 match seat.arrive(h, next, l, crew) {
                     Ok(()) => stands[l] = true,
                     Err(error) => self.fail(l, error, crew),

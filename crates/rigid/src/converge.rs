@@ -103,13 +103,16 @@ pub(crate) struct Order {
     pub pace: Pace,
     /// Passes count from 1.
     pub number: u32,
+    /// The largest angular velocity that the pass before met, in rad/s: errors are relative to it from the start on. A
+    /// body that rests until it is pushed would else have to keep to a tolerance relative to nearly nothing.
+    pub known_rate: f64,
     pub noise: Option<Noise>,
 }
 
 impl Order {
     /// A run of one pass.
     pub fn only(pace: Pace) -> Order {
-        Order { pace, number: 1, noise: None }
+        Order { pace, number: 1, known_rate: 0.0, noise: None }
     }
 }
 
@@ -127,6 +130,7 @@ struct Pair {
     coarse: Pass,
     /// Of the coarse one.
     pace: Pace,
+    known_rate: f64,
     fine: Pass,
     difference: f64,
     /// Of the noise under way, its number, and the largest difference that noise of this size made so far.
@@ -149,8 +153,9 @@ pub(crate) struct Convergence {
     /// Of the next pass that is not shaken, and its number among those.
     pace: Pace,
     number: u32,
-    /// The pass before, with its pace.
-    coarse: Option<(Pass, Pace)>,
+    known_rate: f64,
+    /// The pass before, with its pace and the rate that was known to it.
+    coarse: Option<(Pass, Pace, f64)>,
     pair: Option<Pair>,
     magnification: Option<Magnification>,
     /// The number of the pass from which on unresolved passes are shaken.
@@ -179,6 +184,7 @@ impl Convergence {
             scales,
             pace: first,
             number: 1,
+            known_rate: 0.0,
             coarse: None,
             pair: None,
             magnification: None,
@@ -200,9 +206,9 @@ impl Convergence {
         match &self.pair {
             Some(pair) => {
                 let noise = Noise::new(pair.size, self.scales.in_space, u64::from(pair.shaken));
-                Order { pace: pair.pace, number, noise: Some(noise) }
+                Order { pace: pair.pace, number, known_rate: pair.known_rate, noise: Some(noise) }
             }
-            None => Order { pace: self.pace, number, noise: None },
+            None => Order { pace: self.pace, number, known_rate: self.known_rate, noise: None },
         }
     }
 
@@ -218,13 +224,14 @@ impl Convergence {
             pair.response = pair.response.max(response);
             return self.shaken(pair);
         }
-        let Some((coarse, pace)) = self.coarse.take() else { return self.refine(pass) };
+        let Some((coarse, pace, known_rate)) = self.coarse.take() else { return self.refine(pass) };
         let difference = difference(&self.scales, &coarse, &pass, follow);
         let resolved = difference <= RESOLVED.max(self.aim.goal);
         let shorter_than_turns = pass.largest[0] * pass.longest < 1.0;
         if self.magnification.is_none() && (resolved || self.number >= self.look_at && shorter_than_turns) {
             let (size, shaken, response) = (FIRST_SIZE, 0, 0.0);
-            self.pair = Some(Pair { coarse, pace, fine: pass, difference, size, shaken, response });
+            self.pair =
+                Some(Pair { coarse, pace, known_rate, fine: pass, difference, size, shaken, response });
             return Ok(None);
         }
         self.compare(difference, &coarse, pass)
@@ -329,7 +336,11 @@ impl Convergence {
             let (rtol, reached) = (self.aim.goal, self.previous);
             return Err(SimulateError::NotConverged { rtol, reached, step: coarse.longest });
         }
-        self.coarse = Some((coarse, self.pace));
+        // Steps that keep to no tolerance may have met a wrong one.
+        let adapts = matches!(self.pace, Pace::Tolerance(_));
+        let known_rate = if adapts { coarse.largest[0] } else { 0.0 };
+        self.coarse = Some((coarse, self.pace, self.known_rate));
+        self.known_rate = known_rate;
         self.pace = finer;
         self.number += 1;
         Ok(None)

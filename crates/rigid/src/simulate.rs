@@ -387,7 +387,7 @@ impl Problem {
         start: Carried,
         engine: &Engine,
         times: &[f64],
-        (Order { pace, number, noise }, course): (Order, &Course),
+        (Order { pace, number, known_rate, noise }, course): (Order, &Course),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Pass, SimulateError> {
@@ -399,7 +399,7 @@ impl Problem {
             watch,
             pace,
             first,
-            least_rate: course.least_rate,
+            least_rate: course.least_rate.max(known_rate),
             noise,
             longest: course.longest,
             limit: course.limit,

@@ -36,6 +36,8 @@ pub(super) struct Seat<'a> {
     begin: Carried,
     /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
     least_rate: f64,
+    /// The largest one that the pass before met.
+    known_rate: f64,
     pub stride: Stride,
     /// The largest estimate of the error of a step that may stand.
     pub tolerance: f64,
@@ -64,6 +66,7 @@ impl<'a> Seat<'a> {
             noise: None,
             begin: start,
             least_rate,
+            known_rate: 0.0,
             stride: Stride::new(first, longest),
             tolerance: aim.goal,
             stop: start.phase.time,
@@ -73,7 +76,8 @@ impl<'a> Seat<'a> {
 
     /// Begins the next pass: where it starts.
     pub fn begin_pass(&mut self) -> Carried {
-        let Order { pace, noise, .. } = self.passes.next();
+        let Order { pace, known_rate, noise, .. } = self.passes.next();
+        self.known_rate = known_rate;
         if let Pace::Tolerance(tolerance) = pace {
             self.tolerance = tolerance;
         }
@@ -83,7 +87,7 @@ impl<'a> Seat<'a> {
 
     /// The size of the angular velocity, and no less than what counts, in rad/s.
     pub fn rate(&self, at: &Carried) -> f64 {
-        self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate)
+        self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate).max(self.known_rate)
     }
 
     /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and

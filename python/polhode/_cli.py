@@ -9,6 +9,7 @@ import os
 import re
 import signal
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -34,7 +35,8 @@ def main(arguments: list[str] | None = None) -> int:
     _heed_ctrl_c()
     options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
-        code = int(options.command(options))
+        with _printed_warnings():
+            code = int(options.command(options))
         print(end="", flush=True)
     except KeyboardInterrupt as stop:
         code = _complain(str(stop) or "interrupted; no file was changed", INTERRUPTED)
@@ -55,6 +57,20 @@ def _heed_ctrl_c() -> None:
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _printed_warnings() -> Iterator[None]:
+    """Print warnings about results as errors are printed."""
+
+    def show(message: object, *_: object) -> None:
+        print(f"polhode: warning: {message}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        for category in (UserWarning, RuntimeWarning):
+            warnings.simplefilter("always", category)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
 
 
 def _let_go_of_output() -> None:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import sys
-import warnings
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -109,7 +107,7 @@ def _film(options: argparse.Namespace, shown: Shown) -> int:
     scene = _scene_of_one(options.scene)
     with shown(scene.path.name) as report:
         trajectory = scene.run(report)
-    with _warned(), shown(path.name) as report:
+    with shown(path.name) as report:
         trajectory.film(
             path,
             seconds=options.seconds,
@@ -120,19 +118,6 @@ def _film(options: argparse.Namespace, shown: Shown) -> int:
         )
     print(f"Written\n  {path}")
     return 0
-
-
-@contextmanager
-def _warned() -> Iterator[None]:
-    """Print warnings as the command prints errors."""
-
-    def show(message: object, *_: object) -> None:
-        print(f"polhode: warning: {message}", file=sys.stderr)
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", UserWarning)
-        warnings.showwarning = show  # type: ignore[assignment]
-        yield
 
 
 def _scene_of_one(name: str) -> Scene:

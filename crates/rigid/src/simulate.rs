@@ -1,13 +1,15 @@
 //! Motion at given times: exact where there is a closed form, else by steps to a tolerance, with a certificate of
 //! what was conserved.
 
+mod motion;
+mod options;
+
 use crate::certificate::{Certificate, Watch, off_unit};
 use crate::closed_form::{ClosedForm, Fall, check_kept};
-use crate::conserved::{Conserved, energy};
+use crate::conserved::energy;
 use crate::converge::{Aim, Convergence, Order, Scales};
 use crate::course::{Course, samples, span};
-use crate::ensemble::Own;
-use crate::event::{Event, Happened};
+use crate::event::Event;
 use crate::force::{Center, Force, Translation};
 use crate::inertia::Inertia;
 use crate::method::{Engine, Method, fastest_rate};
@@ -20,6 +22,9 @@ use crate::torque::{Torque, wheel};
 pub use crate::walk::Progress;
 use crate::walk::{Pace, Pass, Walker, is_finite};
 use polhode_ga::{Bivector, Rotor, Vector};
+
+pub use motion::{Motion, States};
+pub use options::{MAX_STEPS, Options};
 
 /// What to solve: a body and its state at the start, time 0 unless another is given. Kept in principal axes.
 #[derive(Clone, Debug)]
@@ -37,97 +42,9 @@ pub struct Problem {
     translation: Option<Translation>,
 }
 
-/// How to solve it.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// `None` is the closed form where there is one and no step is given, and else the best method for the laws.
-    pub method: Option<Method>,
-    /// A fixed step in s; `None` lets the tolerance choose it.
-    pub step: Option<f64>,
-    /// The relative error to reach where it chooses the step; `None` aims at 1e-10 and takes what rounding
-    /// leaves of it.
-    pub rtol: Option<f64>,
-    /// Whether nothing but the closed form will do.
-    pub exact: bool,
-    /// The longest step in s.
-    pub max_step: Option<f64>,
-    /// How many steps a pass may take; `None` is [`MAX_STEPS`], or a hundred times that where a step is given.
-    pub max_steps: Option<f64>,
-    /// Times at which steps end, in any order: where the laws are not smooth, or push shortly.
-    pub breaks: Vec<f64>,
-    /// What to look for on the way, with body components in body axes.
-    pub events: Vec<Event>,
-}
-
-/// The default limit of the steps in a pass: minutes of work.
-pub const MAX_STEPS: f64 = 1e8;
-
-impl Options {
-    /// How many steps a pass may take.
-    pub(crate) fn most_steps(&self) -> f64 {
-        self.max_steps.unwrap_or(if self.step.is_some() { 100.0 * MAX_STEPS } else { MAX_STEPS })
-    }
-
-    /// What is wrong with them, or with the times, for any body.
-    pub(crate) fn check(&self, times: &[f64]) -> Result<(), SimulateError> {
-        for (index, &time) in times.iter().enumerate() {
-            if !time.is_finite() || index > 0 && time < times[index - 1] {
-                return Err(SimulateError::BadTime { index, time });
-            }
-        }
-        let given = [
-            ("step", self.step),
-            ("rtol", self.rtol),
-            ("max_step", self.max_step),
-            ("max_steps", self.max_steps),
-        ];
-        for (what, value) in given.into_iter().filter_map(|(what, value)| Some((what, value?))) {
-            if !(value > 0.0 && value.is_finite()) || what == "max_steps" && value < 1.0 {
-                return Err(SimulateError::BadValue { what, value });
-            }
-        }
-        if let Some(&value) = self.breaks.iter().find(|time| !time.is_finite()) {
-            return Err(SimulateError::BadValue { what: "a time in breaks", value });
-        }
-        Ok(())
-    }
-}
-
 pub(crate) const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
                               their axis, damping alone, spheres under larmor, and constant forces; leave the method \
                               out for others";
-
-/// A motion at its output times, which may be asked for any other between them.
-#[derive(Clone, Debug)]
-pub struct Motion {
-    problem: Problem,
-    engine: Engine,
-    pace: Pace,
-    course: Course,
-    /// In principal axes, at the output times, fewer if an event ended the motion.
-    states: Vec<Carried>,
-    /// The events, in the order in which they were met.
-    pub events: Vec<Happened>,
-    /// What was conserved.
-    pub certificate: Certificate,
-}
-
-/// Points of a motion, in body axes.
-#[derive(Clone, Debug, Default)]
-pub struct States {
-    /// In s.
-    pub times: Vec<f64>,
-    /// From body axes to space.
-    pub rotors: Vec<Rotor>,
-    /// Angular velocities in body axes, rad/s.
-    pub omegas: Vec<Bivector>,
-    /// Angular momenta in space, those of wheels included, kg m²/s.
-    pub momenta_space: Vec<Bivector>,
-    /// Kinetic energy and the potential energy of the laws that have one, J.
-    pub energies: Vec<f64>,
-    /// The centre of mass: m and m/s.
-    pub centers: Vec<Center>,
-}
 
 /// Times must not lie beyond the horizons, backwards and forwards, of an exact motion that starts at time 0.
 pub fn check_horizons(times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
@@ -472,100 +389,5 @@ impl Problem {
             all.centers.push(*center);
         }
         all
-    }
-}
-
-impl Motion {
-    /// Writes the points at the output times.
-    pub(crate) fn write(&self, own: &mut Own) {
-        let Problem { frame, body, torques, .. } = &self.problem;
-        for (index, state) in self.states.iter().enumerate() {
-            own.write(index, (*frame, body, torques), &state.phase, &state.center);
-        }
-    }
-
-    /// The motion at its output times.
-    pub fn states(&self) -> States {
-        self.problem.states(&self.states)
-    }
-
-    /// Each conserved quantity, and its change since the start at the output times, relative as in the certificate.
-    pub fn drifts(&self) -> Vec<(Conserved, Vec<f64>)> {
-        let Problem { body, torques, .. } = &self.problem;
-        let watch = Watch::new(*body, torques, self.problem.start().phase);
-        watch.changes(self.states.iter().map(|state| &state.phase))
-    }
-
-    /// The points at which events happened.
-    pub fn event_states(&self) -> States {
-        let states: Vec<Carried> = self.events.iter().map(|happened| happened.at).collect();
-        self.problem.states(&states)
-    }
-
-    /// The motion at any times between the first and the last, the start and the events included: by the same method
-    /// and the same steps from the nearest output time before.
-    pub fn at(
-        &self,
-        times: &[f64],
-        progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<States, SimulateError> {
-        // A motion that an event ends is known up to there.
-        let known = self.states.iter().chain(self.events.iter().map(|happened| &happened.at));
-        let (first, last) = known.fold((self.problem.time, self.problem.time), |(a, b): (f64, f64), s| {
-            (a.min(s.phase.time), b.max(s.phase.time))
-        });
-        if let Some(index) = times.iter().position(|t| !(first..=last).contains(t)) {
-            return Err(SimulateError::OutsideMotion { index, time: times[index], first, last });
-        }
-        if let Some(states) = self.exactly(times) {
-            return states;
-        }
-        let mut order: Vec<usize> = (0..times.len()).collect();
-        order.sort_by(|&i, &j| times[i].total_cmp(&times[j]));
-        let mut found = vec![self.problem.start(); times.len()];
-        for group in order.chunk_by(|&i, &j| self.nearest(times[i]) == self.nearest(times[j])) {
-            let from = self.nearest(times[group[0]]).map_or(self.problem.start(), |k| self.states[k]);
-            let wanted: Vec<f64> = group.iter().map(|&i| times[i]).collect();
-            let pass = self.problem.pass_from(
-                from,
-                &self.engine,
-                &wanted,
-                (Order::only(self.pace), &self.course),
-                &[],
-                progress,
-            )?;
-            group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
-        }
-        Ok(self.problem.states(&found))
-    }
-
-    /// How far from the start, in s, an exact motion is known backwards and forwards; none for one that was stepped.
-    pub fn horizons(&self) -> Option<[f64; 2]> {
-        match &self.engine {
-            Engine::ClosedForm(closed) => Some(closed.horizons()),
-            _ => None,
-        }
-    }
-
-    /// An exact motion at any times within its horizons; none for one that was stepped.
-    pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
-        let Engine::ClosedForm(closed) = &self.engine else { return None };
-        let known = check_horizons_from(self.problem.time, times, closed.horizons());
-        Some(known.map(|()| {
-            let states: Vec<Carried> = times.iter().map(|&t| closed.at(t)).collect();
-            self.problem.states(&states)
-        }))
-    }
-
-    /// The output time nearest to a time on the way from the start; none if that is the start itself.
-    fn nearest(&self, time: f64) -> Option<usize> {
-        let (start, at) = (self.problem.time, |k: usize| self.states[k].phase.time);
-        let k = if time >= start {
-            self.states.partition_point(|s| s.phase.time <= time).checked_sub(1).filter(|&k| at(k) >= start)
-        } else {
-            Some(self.states.partition_point(|s| s.phase.time < time))
-                .filter(|&k| k < self.states.len() && at(k) <= start)
-        };
-        k.filter(|&k| at(k) != start)
     }
 }

@@ -107,7 +107,7 @@ def test_the_trace_is_the_path_up_to_now():
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({"path": "a.avi"}, ValueError, r"a film is a file FILE\.mp4 or FILE\.gif, not 'a\.avi'"),
+        ({"path": "a.avi"}, ValueError, r"a film is saved as FILE\.mp4 or FILE\.gif, not 'a\.avi'"),
         ({"seconds": 0}, ValueError, "seconds is 0.0; it must be positive"),
         ({"fps": float("nan")}, ValueError, "fps is nan"),
         ({"seconds": 0.01}, ValueError, "times fps is 0; a film has 2 to 100000 pictures"),

@@ -38,8 +38,11 @@ def around(t):
     return t + H * np.arange(-4, 5)
 
 
-def moving(times, torque=None, body=BODY, state=START, **options):
+def moving(times, torque=None, body=None, state=START, **options):
     """A motion whose steps are too short to show: order 8 and steps of H/2."""
+    if body is None:
+        # The weight acts beside the centre of mass of these points: what moves is an inertia about the pivot.
+        body = BODY.inertia if torque else BODY
     return ph.simulate(body, state, times, torque, step=H / 2, **options)
 
 

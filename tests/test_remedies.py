@@ -18,7 +18,7 @@ def test_a_body_picked_from_a_batch_is_drawn(name, tmp_path):
     if name == "plot":
         assert GRID[0, 0].plot().axes
     else:
-        GRID[0, 0].film(tmp_path / "a.gif", seconds=0.2, fps=10, size=(80, 60))
+        GRID[0, 0].film(tmp_path / "a.gif", seconds=0.4, fps=10, size=(80, 60))
         assert (tmp_path / "a.gif").stat().st_size
 
 

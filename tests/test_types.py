@@ -1,13 +1,13 @@
 """Type hints: mypy accepts the code of README and guides, and knows the types that users rely on."""
 
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 import polhode as ph
+import processes
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -39,13 +39,10 @@ def mypy(folder, files):
     # Errors of the package itself are those of `make lint`.
     options += ["--follow-imports=silent", "--hide-error-context", "--no-error-summary"]
     package = Path(ph.__file__).parent.parent
-    done = subprocess.run(
+    done = processes.run(
         [sys.executable, "-m", "mypy", *options, f"--cache-dir={ROOT / '.mypy_cache/guides'}", *files],
         cwd=folder,
         env={"MYPYPATH": str(package), "PATH": ""},
-        capture_output=True,
-        text=True,
-        check=False,
         timeout=600,
     )
     assert done.returncode in (0, 1), done.stderr
@@ -108,5 +105,5 @@ def test_a_star_import_has_everything_but_helpers(tmp_path):
     assert {"State", "simulate", "Rotor", "e1", "I", "torque"} <= set(ph.__all__)
     assert all(hasattr(ph, name) for name in ph.__all__)
     public = {name for name in dir(ph) if not name.startswith("_")}
-    # JAX is optional, and IPython asks for its own by name.
-    assert set(ph.__all__) == public - {"jax", "load_ipython_extension"}
+    # JAX and Hypothesis are optional, and IPython asks for its own by name.
+    assert set(ph.__all__) == public - {"jax", "strategies", "load_ipython_extension"}

@@ -174,6 +174,8 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
         }
         if proof.error_estimate is not None:
             attributes["error_estimate"] = proof.error_estimate
+        if proof.warnings:
+            attributes["warnings"] = json.dumps(list(proof.warnings))
     return {**attributes, **trajectory.attributes}
 
 
@@ -184,7 +186,7 @@ _READ = {"time", "attitude", "omega_body", "momentum_space", "energy", "position
 # Attributes that are ours, or the library's.
 _OWN = {
     *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
-    *("error_estimate", "_NCProperties"),
+    *("error_estimate", "warnings", "_NCProperties"),
 }
 
 
@@ -268,6 +270,7 @@ def _certificate(attributes: dict[str, Any]) -> Any:
         json.loads(attributes["conserved"]),
         drift,
         norm_drift,
+        tuple(json.loads(attributes.get("warnings", "[]"))),
     )
 
 

@@ -13,7 +13,7 @@ use polhode_rigid::force::Center;
 use polhode_rigid::method::Method;
 use polhode_rigid::simulate::{self as rigid, Options, Problem, Progress, States};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::time::{Duration, Instant};
 
 /// How often a run looks for Ctrl-C and reports where it stands.
@@ -116,7 +116,7 @@ impl Motion {
         certificate.set_item("conserved", conserved)?;
         certificate.set_item("drift", drift)?;
         certificate.set_item("norm_drift", proof.norm_drift)?;
-        certificate.set_item("warnings", &proof.warnings)?;
+        certificate.set_item("warnings", PyTuple::new(py, &proof.warnings)?)?;
         Ok(certificate)
     }
 }

@@ -6,7 +6,7 @@ import subprocess
 import threading
 from subprocess import DEVNULL, PIPE
 
-__all__ = ["DEVNULL", "PIPE", "limited", "run", "start"]
+__all__ = ["DEVNULL", "PIPE", "interrupted", "limited", "run", "start"]
 
 # Seconds after which a program hangs: the slowest takes 20 on an idle machine.
 LIMIT = 180.0
@@ -44,3 +44,15 @@ def limited(process, seconds=LIMIT):
         yield
     finally:
         timer.cancel()
+
+
+def interrupted(process, press):
+    """Return what a process printed that ends by Ctrl-C, which `press` sends.
+
+    Python drops an interrupt that comes while it runs a destructor; a person presses again.
+    """
+    for _ in range(4):
+        press()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return process.communicate(timeout=30)
+    raise AssertionError("Ctrl-C did not end the program")

@@ -260,8 +260,7 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
             time.sleep(0.05)
         time.sleep(0.3)
         # As a terminal does: to the whole group.
-        os.killpg(process.pid, signal.SIGINT)
-        _, told = process.communicate()
+        _, told = processes.interrupted(process, lambda: os.killpg(process.pid, signal.SIGINT))
     assert process.returncode == 130, told
     assert "interrupted; no file was changed" in told
     assert "Traceback" not in told

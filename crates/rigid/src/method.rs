@@ -161,7 +161,7 @@ pub(crate) enum Engine {
     Midpoint(Midpoint),
     MoserVeselov(MoserVeselov),
     /// The closed form, looked at in steps.
-    ClosedForm(ClosedForm),
+    ClosedForm(Box<ClosedForm>),
 }
 
 impl Engine {

@@ -199,7 +199,7 @@ impl Problem {
         let (engine, name) = match closed {
             Some(closed) => {
                 check_horizons_from(self.time, times, closed.horizons())?;
-                (Engine::ClosedForm(closed), "exact")
+                (Engine::ClosedForm(Box::new(closed)), "exact")
             }
             None => (
                 Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?,

@@ -135,7 +135,7 @@ pub(crate) fn is_aliased(
     [from, to]: [f64; 2],
     step: f64,
 ) -> bool {
-    if law.is_autonomous() || matches!(law, Torque::Tabulated(_)) || !(to - from > 0.0) {
+    if law.is_autonomous() || matches!(law, Torque::Tabulated(_)) || to <= from {
         return false;
     }
     let steps = ((to - from) / step).ceil().max(1.0);

@@ -132,7 +132,7 @@ proptest! {
         let body = Body::from_points(&masses, &positions).unwrap();
         let mut expected = Vector::default();
         for (&m, &x) in masses.iter().zip(&positions) {
-            expected = expected + (x - p) * (m * g);
+            expected += (x - p) * (m * g);
         }
         let c = body.weight_moment(g, p);
         let size = body.mass * g * 6.0 * 3.0_f64.sqrt();

@@ -124,7 +124,7 @@ class Viewer(anywidget.AnyWidget):
         super().set_state(sync_data)
 
     def get_state(self, key: Any = None, drop_defaults: bool = False) -> dict[str, Any]:
-        """Return what the page is told; called by ipywidgets. The page knows its state without us."""
+        """Return what is sent to the page; called by ipywidgets. The page knows its state without us."""
         self._sending = True
         try:
             return super().get_state(key, drop_defaults)  # type: ignore[no-any-return]

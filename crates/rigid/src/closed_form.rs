@@ -132,7 +132,7 @@ impl Since {
         DoubleDouble::two_sum(time, -self.start)
     }
 
-    /// The point that follows another, which is told the same time, by such a rest.
+    /// The point a remainder of time after another one, reported at the same time.
     pub fn later(&self, phase: Phase, rest: f64) -> Phase {
         if rest == 0.0 {
             return phase;

@@ -133,7 +133,7 @@ fn larmor_reference() {
     }
 }
 
-/// Rates of any size, whose squares are no numbers: the same motion in another unit of time.
+/// Rates of any size, whose squares overflow or vanish: the same motion in another unit of time.
 #[test]
 fn larmor_scales() {
     let inertia = Inertia::from_principal_moments([2.0; 3]).unwrap();

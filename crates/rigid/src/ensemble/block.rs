@@ -314,7 +314,7 @@ impl<'a> Crew<'a> {
         Member { body, frame, gyrostat, torques, omega, start, course: Course::default(), own }
     }
 
-    /// What bounds the steps of a body. Laws in lanes are no functions, so that sampling them does not fail.
+    /// What bounds the steps of a body. Laws in lanes are not functions of the caller: sampling them does not fail.
     fn course(&self, member: &Member) -> Course {
         let Member { gyrostat, torques, start, .. } = member;
         let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();

@@ -136,7 +136,7 @@ impl Start {
         let spin = w3 * axes.i3.into() / axes.i1.into();
         let square_rate = Wide::from(2.0) * axes.c.into() / axes.i1.into();
         let gravity = square_rate / scale.into() / scale.into();
-        // So small a torque is none up to any horizon.
+        // So small a torque does not act up to any horizon.
         let gravity = if gravity.value() < NONE { Wide::ZERO } else { gravity };
         Ok(Start {
             scale,

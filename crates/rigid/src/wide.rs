@@ -39,7 +39,9 @@ impl Wide {
         if own == 1024 {
             return Wide { x, exponent: 0 };
         }
-        Wide { x: scaled(x, exp2(-own)), exponent: exponent + own }
+        // In two steps, for 2^−1023, by which the largest floats are scaled, is not a normal number.
+        let half = -own / 2;
+        Wide { x: scaled(scaled(x, exp2(half)), exp2(-own - half)), exponent: exponent + own }
     }
 
     /// x and the exponent.
@@ -197,6 +199,9 @@ mod tests {
 
     #[test]
     fn beyond_floats() {
+        for extreme in [f64::MAX, -2f64.powi(1023), f64::MIN_POSITIVE, -5e-324] {
+            assert_eq!(Wide::from(extreme).value(), extreme);
+        }
         let tiny = Wide::from(5e-324);
         assert_eq!((tiny * tiny).value(), 0.0);
         assert_eq!((tiny * tiny).sqrt().value(), 5e-324);

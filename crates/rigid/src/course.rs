@@ -79,7 +79,7 @@ impl Course {
             breaks,
             is_smooth: samples.iter().flatten().all(|sampled| sampled.stops.is_empty()),
             longest: options.max_step.unwrap_or(f64::INFINITY),
-            limit: Limit { steps: options.most_steps(), reports_stiffness: false },
+            limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
             least_rate: (torque / largest).sqrt(),
         }
     }

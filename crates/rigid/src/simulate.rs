@@ -152,12 +152,10 @@ impl Problem {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         self.check(times, &options)?;
-        let automatic = options.method.is_none() && options.step.is_none();
         let start = self.start().phase;
         let samples = samples(&self.torques, &self.body, &start, times, &options)?;
         let mut course = Course::new(&self.torques, &samples, &self.body, &start, &options);
-        course.limit.reports_stiffness =
-            automatic && options.max_step.is_none() && self.translation.is_none();
+        course.limit.reports_stiffness &= self.translation.is_none();
         let limit = course.limit;
         match self.run(times, &options, course.clone(), progress) {
             Err(SimulateError::Stiff { steps }) => {

@@ -41,11 +41,8 @@ pub(crate) fn sampled(
     start: &Phase,
     [from, to]: [f64; 2],
 ) -> Result<Sampled, SimulateError> {
-    if from == to || law.is_autonomous() || matches!(law, Torque::Tabulated(_)) {
-        return Ok(Sampled::default());
-    }
     let circular = matches!(law, Torque::GravityGradient(orbit) if orbit.is_circular());
-    if circular {
+    if from == to || circular || !is_to_be_sampled(law) {
         return Ok(Sampled::default());
     }
     let general = Gyrostat::rigid([1.0, 1.25, 1.75]);
@@ -114,6 +111,11 @@ fn is_foretold(values: &[Bivector], allowed: f64) -> bool {
 const LOOKED_AT: usize = 256;
 const INSIDE: usize = 12;
 
+/// Whether a law depends on time in a way that only samples show; tables have their own stops.
+fn is_to_be_sampled(law: &Torque) -> bool {
+    !law.is_autonomous() && !matches!(law, Torque::Tabulated(_))
+}
+
 /// The warning of a law that is aliased.
 pub(crate) fn aliasing(law: &Torque, step: f64) -> String {
     let what = match law {
@@ -135,7 +137,7 @@ pub(crate) fn is_aliased(
     [from, to]: [f64; 2],
     step: f64,
 ) -> bool {
-    if law.is_autonomous() || matches!(law, Torque::Tabulated(_)) || to <= from {
+    if to <= from || !is_to_be_sampled(law) {
         return false;
     }
     let steps = ((to - from) / step).ceil().max(1.0);

@@ -327,9 +327,7 @@ impl<'a> Crew<'a> {
                 &own
             }
         };
-        let mut course = Course::new(torques, samples, gyrostat, start, self.options);
-        course.limit.reports_stiffness = self.options.method.is_none() && self.options.max_step.is_none();
-        course
+        Course::new(torques, samples, gyrostat, start, self.options)
     }
 
     /// Follows a body alone.

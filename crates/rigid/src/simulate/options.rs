@@ -35,6 +35,11 @@ impl Options {
         self.max_steps.unwrap_or(if self.step.is_some() { 100.0 * MAX_STEPS } else { MAX_STEPS })
     }
 
+    /// Whether another method may take over where the laws are stiff: none is asked for, nor how long steps are.
+    pub(crate) fn may_change_method(&self) -> bool {
+        self.method.is_none() && self.step.is_none() && self.max_step.is_none()
+    }
+
     /// What is wrong with them, or with the times, for any body.
     pub(crate) fn check(&self, times: &[f64]) -> Result<(), SimulateError> {
         for (index, &time) in times.iter().enumerate() {

@@ -124,4 +124,4 @@ docs: setup .venv/.docs
 	@echo "The documentation of the core is target/doc/polhode_ga/index.html and target/doc/polhode_rigid/index.html."
 
 clean:
-	rm -rf .venv build dist target viewer/node_modules python/polhode/_viewer
+	rm -rf .venv build dist target viewer/node_modules python/polhode/_viewer/viewer.js

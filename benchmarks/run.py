@@ -26,7 +26,7 @@ import scaling
 import single
 import work_precision
 from contest import FULL, QUICK, Pace, Row
-from polhode._files import write_atomically
+from polhode._support.files import write_atomically
 
 SECTIONS = {
     "One value": single.rows,

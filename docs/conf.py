@@ -7,8 +7,9 @@ from pathlib import Path
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
-from polhode import Scene, _document
-from polhode._html import bundle_path
+from polhode import Scene
+from polhode._viewer import document
+from polhode._viewer.html import bundle_path
 
 project = "Polhode"
 copyright = "the authors of Polhode"
@@ -33,7 +34,7 @@ class Viewer(SphinxDirective):
         self.env.note_dependency(str(path))
         if not viewer_is_there():
             return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were made without the viewer.")]
-        data = json.dumps(_document.of_scene(Scene.read(path))).replace("<", "\\u003c")
+        data = json.dumps(document.of_scene(Scene.read(path))).replace("<", "\\u003c")
         script = os.path.relpath("_static/polhode-viewer.js", Path(self.env.docname).parent)
         html = (
             f'<script src="{script}"></script>'

@@ -27,11 +27,11 @@ def scene(tmp_path):
 @pytest.fixture
 def bundle(tmp_path_factory, monkeypatch):
     """The path of a small script, which stands for the viewer's."""
-    from polhode import _html
+    from polhode._viewer import html
 
     path = tmp_path_factory.mktemp("viewer") / "viewer.js"
     path.write_text(SCRIPT)
-    monkeypatch.setattr(_html, "_BUNDLE", path)
+    monkeypatch.setattr(html, "_BUNDLE", path)
     return path
 
 

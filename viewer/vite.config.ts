@@ -42,7 +42,7 @@ export default defineConfig({
   server: { fs: { allow: [root] } },
   build: {
     outDir: `${root}python/polhode/_viewer`,
-    emptyOutDir: true,
+    emptyOutDir: false, // the folder holds the Python modules of the viewer,
     target: "es2022",
     lib: { entry: "src/index.ts", formats: ["es"], fileName: () => "viewer.js" },
     // A library is left readable unless this is said.

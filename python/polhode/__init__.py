@@ -3,65 +3,65 @@
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from polhode._algebra import Algebra as Algebra
-from polhode._algebra import algebra as algebra
-from polhode._multivector import Multivector as Multivector
+from polhode._algebra.algebra import Algebra as Algebra
+from polhode._algebra.algebra import algebra as algebra
+from polhode._algebra.constructors import I as I
+from polhode._algebra.constructors import bivector as bivector
+from polhode._algebra.constructors import cross as cross
+from polhode._algebra.constructors import e1 as e1
+from polhode._algebra.constructors import e2 as e2
+from polhode._algebra.constructors import e3 as e3
+from polhode._algebra.constructors import from_pauli as from_pauli
+from polhode._algebra.constructors import multivector as multivector
+from polhode._algebra.constructors import scalar as scalar
+from polhode._algebra.constructors import to_pauli as to_pauli
+from polhode._algebra.constructors import trivector as trivector
+from polhode._algebra.constructors import vector as vector
+from polhode._algebra.grades import concatenate as concatenate
+from polhode._algebra.grades import stack as stack
+from polhode._algebra.multivector import Multivector as Multivector
+from polhode._algebra.rotor import Rotor as Rotor
 from polhode._native import SceneError as SceneError
 from polhode._native import __version__ as __version__
-from polhode._parts import concatenate as concatenate
-from polhode._parts import stack as stack
-from polhode._rotor import Rotor as Rotor
-from polhode._values import I as I
-from polhode._values import bivector as bivector
-from polhode._values import cross as cross
-from polhode._values import e1 as e1
-from polhode._values import e2 as e2
-from polhode._values import e3 as e3
-from polhode._values import from_pauli as from_pauli
-from polhode._values import multivector as multivector
-from polhode._values import scalar as scalar
-from polhode._values import to_pauli as to_pauli
-from polhode._values import trivector as trivector
-from polhode._values import vector as vector
 
 if TYPE_CHECKING:
     from polhode import event as event
     from polhode import force as force
     from polhode import jax as jax
     from polhode import torque as torque
-    from polhode._agreement import Agreement as Agreement
-    from polhode._bodies import Body as Body
-    from polhode._bodies import Inertia as Inertia
-    from polhode._certificate import Certificate as Certificate
-    from polhode._certificate import Crossings as Crossings
-    from polhode._certificate import Failure as Failure
-    from polhode._closed_forms import DampedTop as DampedTop
-    from polhode._closed_forms import LagrangeTop as LagrangeTop
-    from polhode._closed_forms import LarmorSphere as LarmorSphere
-    from polhode._formula import Formula as Formula
-    from polhode._formula import evaluate as evaluate
-    from polhode._formula import formula as formula
-    from polhode._formula_error import FormulaError as FormulaError
-    from polhode._free_motion import FlowDerivatives as FlowDerivatives
-    from polhode._free_motion import FreeMotion as FreeMotion
-    from polhode._free_motion import SymmetricTop as SymmetricTop
-    from polhode._free_motion import describe_free as describe_free
-    from polhode._geometry import axial as axial
-    from polhode._geometry import from_axial as from_axial
-    from polhode._geometry import split as split
-    from polhode._interchange import from_dict as from_dict
-    from polhode._interchange import to_dict as to_dict
-    from polhode._interpolation import RotorSpline as RotorSpline
-    from polhode._interpolation import mean as mean
-    from polhode._interpolation import slerp as slerp
-    from polhode._linear import LinearMap as LinearMap
-    from polhode._moments import Moments as Moments
-    from polhode._notebook import view as view
-    from polhode._scene import Scene as Scene
-    from polhode._simulate import simulate as simulate
-    from polhode._simulate import simulate_blocks as simulate_blocks
-    from polhode._state import State as State
-    from polhode._trajectory import Trajectory as Trajectory
+    from polhode._algebra.geometry import axial as axial
+    from polhode._algebra.geometry import from_axial as from_axial
+    from polhode._algebra.geometry import split as split
+    from polhode._algebra.interpolation import RotorSpline as RotorSpline
+    from polhode._algebra.interpolation import mean as mean
+    from polhode._algebra.interpolation import slerp as slerp
+    from polhode._algebra.linear_map import LinearMap as LinearMap
+    from polhode._algebra.serialize import from_dict as from_dict
+    from polhode._algebra.serialize import to_dict as to_dict
+    from polhode._formula.agreement import Agreement as Agreement
+    from polhode._formula.errors import FormulaError as FormulaError
+    from polhode._formula.formula import Formula as Formula
+    from polhode._formula.formula import evaluate as evaluate
+    from polhode._formula.formula import formula as formula
+    from polhode._mechanics.bodies import Body as Body
+    from polhode._mechanics.bodies import Inertia as Inertia
+    from polhode._mechanics.closed_forms import DampedTop as DampedTop
+    from polhode._mechanics.closed_forms import LagrangeTop as LagrangeTop
+    from polhode._mechanics.closed_forms import LarmorSphere as LarmorSphere
+    from polhode._mechanics.free_motion import FlowDerivatives as FlowDerivatives
+    from polhode._mechanics.free_motion import FreeMotion as FreeMotion
+    from polhode._mechanics.free_motion import SymmetricTop as SymmetricTop
+    from polhode._mechanics.free_motion import describe_free as describe_free
+    from polhode._mechanics.result import Certificate as Certificate
+    from polhode._mechanics.result import Crossings as Crossings
+    from polhode._mechanics.result import Failure as Failure
+    from polhode._mechanics.simulate import simulate as simulate
+    from polhode._mechanics.simulate import simulate_blocks as simulate_blocks
+    from polhode._mechanics.state import State as State
+    from polhode._mechanics.statistics import Moments as Moments
+    from polhode._mechanics.trajectory import Trajectory as Trajectory
+    from polhode._scene.scene import Scene as Scene
+    from polhode._viewer.notebook import view as view
 
 # Without `jax`, which needs JAX.
 __all__ = [
@@ -177,6 +177,6 @@ def __dir__() -> list[str]:
 
 def load_ipython_extension(shell: Any) -> None:
     """Add ``%ga`` and ``%%ga``, formulas in notebooks: ``%load_ext polhode`` calls this."""
-    from polhode._magic import load
+    from polhode._formula.shell.ipython import load
 
     load(shell)

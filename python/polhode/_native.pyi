@@ -5,10 +5,10 @@ from typing import Any, Self, TypeVar, final, overload
 
 from typing_extensions import disjoint_base
 
-from polhode._algebra import Algebra as WholeAlgebra
-from polhode._arrays import Array
-from polhode._multivector import Multivector as Whole
-from polhode._rotor import Rotor as WholeRotor
+from polhode._algebra.algebra import Algebra as WholeAlgebra
+from polhode._algebra.multivector import Multivector as Whole
+from polhode._algebra.rotor import Rotor as WholeRotor
+from polhode._support.arrays import Array
 
 __all__ = [
     "Algebra",
@@ -77,7 +77,7 @@ _Value = TypeVar("_Value", bound=Whole)
 
 class SceneError(ValueError): ...
 
-# The native halves of the types in Python; `polhode._joined` adds the other halves.
+# The native halves of the types in Python; `polhode._algebra.native` adds the other halves.
 
 @disjoint_base
 class Multivector:

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._made import bivector_of, function_of, made_of_formula, number, shown, three
-from polhode._multivector import Multivector
-from polhode._rotor import Rotor
-from polhode._values import as_point
+from polhode._algebra.constructors import as_point
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.laws import bivector_of, function_of, made_of_formula, number, shown, three
 
 
 @dataclass(frozen=True, repr=False)

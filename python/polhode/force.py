@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from polhode import _native
-from polhode._made import function_of, made_of_formula, number, shown, three
-from polhode._multivector import Multivector
-from polhode._rotor import Rotor
-from polhode._values import as_point
+from polhode._algebra.constructors import as_point
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.laws import function_of, made_of_formula, number, shown, three
 
 
 @dataclass(frozen=True, repr=False)

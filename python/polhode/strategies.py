@@ -20,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from polhode._algebra import Algebra, algebra
-from polhode._arrays import Array, Shape, batch_shape
-from polhode._extras import optional
-from polhode._multivector import Multivector
-from polhode._rotor import Rotor
-from polhode._values import bivector
+from polhode._algebra.algebra import Algebra, algebra
+from polhode._algebra.constructors import bivector
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import Array, Shape, batch_shape
+from polhode._support.extras import optional
 
 st = optional("hypothesis.strategies", "hypothesis", "polhode.strategies")
 

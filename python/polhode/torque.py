@@ -18,8 +18,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode import _native
-from polhode._arrays import Shape, as_float, as_floats
-from polhode._batch import (
+from polhode._algebra.constructors import as_bivectors, bivector
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.bodies import Body, Inertia, bodies_of
+from polhode._mechanics.laws import finite, function_of, made_of_formula, shown
+from polhode._mechanics.parameters import (
     bivectors,
     check_not_negative,
     common,
@@ -30,15 +34,11 @@ from polhode._batch import (
     together,
     vectors,
 )
-from polhode._bodies import Body, Inertia, bodies_of
-from polhode._held import HOLDING, about_pivot
-from polhode._made import finite, function_of, made_of_formula, shown
-from polhode._multivector import Multivector
-from polhode._rotor import Rotor
-from polhode._values import as_bivectors, bivector
+from polhode._mechanics.pivot import HOLDING, about_pivot
+from polhode._support.arrays import Shape, as_float, as_floats
 
 if TYPE_CHECKING:
-    from polhode._state import State
+    from polhode._mechanics.state import State
 
 __all__ = [
     "Torque",

@@ -7,7 +7,8 @@ import pytest
 import processes
 from missing import left_out
 from node_core import node_core
-from polhode import _document, _html
+from polhode._viewer import document as _document
+from polhode._viewer import html
 from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
 
@@ -107,7 +108,7 @@ def opened(new_page, follow, tmp_path):
         document = given if isinstance(given, dict) else _document.of_scene(follow(given).scene)
         page = new_page(**options)
         path = tmp_path / f"{id(page)}.html"
-        path.write_text(_html.page(document))
+        path.write_text(html.page(document))
         page.open(path)
         return page
 

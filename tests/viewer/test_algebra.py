@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from polhode._agreement import Agreement
-from polhode._session import Session
+from polhode._formula.agreement import Agreement
+from polhode._formula.shell.session import Session
 
 
 def components(value):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import polhode as ph
-from polhode import _document
+from polhode._viewer import document
 from viewer_scenes import FILES, PRESETS, followed_text
 
 BOX = """\
@@ -122,5 +122,5 @@ def test_presets_are_opened(opened):
 
 def test_recorded_motions_are_shown_at_their_times(opened, follow):
     followed = follow("magnetic")
-    page = opened(_document.of_trajectory(followed.motion))
+    page = opened(document.of_trajectory(followed.motion))
     page.compare(followed)

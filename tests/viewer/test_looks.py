@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 
-from polhode import _document
+from polhode._viewer import document as _document
 from viewer_page import VIEWER
 from viewer_scenes import ROOT, TUMBLING
 

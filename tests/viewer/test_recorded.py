@@ -6,7 +6,7 @@ import re
 import pytest
 
 import polhode as ph
-from polhode import _document
+from polhode._viewer import document
 
 BODY = '[body]\nsolid = "cone"\nradius = "3 cm"\nheight = "8 cm"\nmass = "0.2 kg"\n'
 SPIN = '[initial]\nspin = { vector = [0.5, 0.1, "2 rev/s"] }\n'
@@ -28,7 +28,7 @@ def test_the_same_is_told(name, core, tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(SCENES[name], encoding="utf-8")
     trajectory = ph.Scene.read(path).run()
-    told = json.loads(_document.document(trajectory)["recorded"]["about"])
+    told = json.loads(document.document(trajectory)["recorded"]["about"])
     expected, _ = core.motion(SCENES[name], [0.0], name="a.toml")
     assert set(told) == set(expected)
     for key in expected.keys() - OWN:

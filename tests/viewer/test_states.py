@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from command_line import polhode
-from polhode import _document, _html
+from polhode._viewer import document
+from polhode._viewer import html as _html
 from viewer_scenes import FILES, PRESETS, SCENES
 
 EVERY = [*FILES, *PRESETS, *SCENES]
@@ -15,7 +16,7 @@ def shared(pages, tmp_path_factory, follow):
     """One page, which is shown one scene after the other."""
     page = pages()
     path = tmp_path_factory.mktemp("page") / "page.html"
-    path.write_text(_html.page(_document.of_scene(follow("asymmetric").scene)))
+    path.write_text(_html.page(document.of_scene(follow("asymmetric").scene)))
     page.open(path)
     yield page
     assert page.requests == []
@@ -25,7 +26,7 @@ def shared(pages, tmp_path_factory, follow):
 @pytest.mark.parametrize("name", EVERY)
 def test_scenes_are_followed_as_by_python(name, shared, follow):
     followed = follow(name)
-    shared.show(_document.of_scene(followed.scene))
+    shared.show(document.of_scene(followed.scene))
     assert shared.viewer.get_attribute("data-method") == followed.motion.certificate.method
     shared.compare(followed)
 
@@ -41,7 +42,7 @@ def test_scenes_are_followed_as_by_python(name, shared, follow):
 )
 def test_only_what_is_conserved_drifts(name, momentum, energy, shared, follow):
     followed = follow(name)
-    shared.show(_document.of_scene(followed.scene))
+    shared.show(document.of_scene(followed.scene))
     shared.seek(0.3 * followed.motion.time[-1])
     shared.drawn()
     values = dict(zip(("|L|", "E"), shared.page.locator(".readout.pair dd").all_inner_texts(), strict=True))

@@ -7,7 +7,7 @@ import pytest
 
 import polhode as ph
 from comms import Comm
-from polhode import _html
+from polhode._viewer import html as _html
 from viewer_page import VIEWER
 
 pytest.importorskip("anywidget")

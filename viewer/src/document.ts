@@ -1,6 +1,6 @@
 import { Problem } from "./core/core.ts";
 
-/** What a page is given to show. Python writes it (`python/polhode/_document.py`), the page reads it. */
+/** What a page is given to show. Python writes it (`python/polhode/_viewer/document.py`), the page reads it. */
 export interface PageDocument {
   /** The version of this form. */
   format: 1;

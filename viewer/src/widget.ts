@@ -1,5 +1,5 @@
 /**
- * The viewer in a notebook, as anywidget wants it. The traits of `python/polhode/_widget.py` and the signals of the
+ * The viewer in a notebook, as anywidget wants it. The traits of `python/polhode/_viewer/widget.py` and the signals of the
  * page follow each other.
  */
 import { effect } from "@preact/signals";

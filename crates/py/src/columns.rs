@@ -13,7 +13,7 @@ use pyo3::types::{PyTuple, PyType};
 use std::convert::Infallible;
 use std::fmt::Display;
 
-/// Values of `polhode._batch.Batch`: a row for each body.
+/// Values of `polhode._mechanics.parameters.Batch`: a row for each body.
 pub(crate) struct Batch<'py> {
     whole: Bound<'py, PyAny>,
     rows: Rows<'py>,
@@ -23,7 +23,7 @@ impl<'py> Batch<'py> {
     /// A batch, if it is one.
     pub fn of(value: &Bound<'py, PyAny>) -> PyResult<Option<Batch<'py>>> {
         static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-        if !value.is_instance(CLASS.import(value.py(), "polhode._batch", "Batch")?)? {
+        if !value.is_instance(CLASS.import(value.py(), "polhode._mechanics.parameters", "Batch")?)? {
             return Ok(None);
         }
         Ok(Some(Batch { whole: value.clone(), rows: value.getattr("rows")?.extract()? }))

@@ -288,7 +288,7 @@ fn called<'py>(
         }
     }
     static GENERAL: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let general = GENERAL.import(py, "polhode._formula", "called")?;
+    let general = GENERAL.import(py, "polhode._formula.formula", "called")?;
     general.call1((formula, arguments, named))
 }
 

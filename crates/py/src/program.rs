@@ -207,7 +207,7 @@ pub(crate) fn characters(text: &str, span: Span) -> Place {
 /// The exception that tells what is wrong with a formula, and where.
 pub(crate) fn error(py: Python<'_>, text: &str, error: &formula::Error) -> PyErr {
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    match CLASS.import(py, "polhode._formula_error", "FormulaError") {
+    match CLASS.import(py, "polhode._formula.errors", "FormulaError") {
         Ok(class) => {
             let arguments = (error.message.clone(), text.to_owned(), characters(text, error.span));
             PyErr::from_type(class.clone(), arguments)

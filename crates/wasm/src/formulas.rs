@@ -1,4 +1,4 @@
-//! Lines of formulas, for the page of algebra: `polhode._session` in the browser.
+//! Lines of formulas, for the page of algebra: `polhode._formula.shell.session` in the browser.
 //!
 //! `a = 2 e1 + e2` gives a name a value, in which numbers may have units; `V(x) = ½ x·x` defines a function; `lhs = rhs`
 //! of anything else, or `lhs == rhs`, asks whether an equation holds; all other lines are formulas. `#` begins a comment.

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from polhode._extras import optional
 from polhode._generic.exact import Exact, is_coefficient, is_multiprecision
 from polhode._generic.numeric import Numeric
+from polhode._support.extras import optional
 
 Coefficients = Numeric | Exact
 

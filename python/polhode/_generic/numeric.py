@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._arrays import as_floats
+from polhode._support.arrays import as_floats
 
 Array = Any
 

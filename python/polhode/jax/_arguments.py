@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from polhode._bodies import Inertia
-from polhode._multivector import Multivector
+from polhode._algebra.multivector import Multivector
+from polhode._mechanics.bodies import Inertia
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
 from polhode.jax._library import jnp
 

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra import algebra
-from polhode._formula import formula
-from polhode._formula_error import FormulaError
-from polhode._linear import LinearMap
-from polhode._made import narrowed
-from polhode._multivector import Multivector
-from polhode._rotor import Rotor
-from polhode._values import bivector, scalar
-from polhode._walk import Walk, steps_of
+from polhode._algebra.algebra import algebra
+from polhode._algebra.constructors import bivector, scalar
+from polhode._algebra.linear_map import LinearMap
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._formula.errors import FormulaError
+from polhode._formula.formula import formula
+from polhode._formula.interpreter import Walk, steps_of
+from polhode._mechanics.laws import narrowed
 from polhode.jax._components import Four, Three, compose, joined, reverse, split, turned
 from polhode.jax._laws import Law, pytree, static
 from polhode.jax._library import jnp

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._extras import optional
+from polhode._support.extras import optional
 from polhode.jax._arguments import Start
 from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula

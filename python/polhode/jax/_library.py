@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from polhode._coefficients import tell_jax
-from polhode._extras import optional
+from polhode._algebra.coefficients import tell_jax
+from polhode._support.extras import optional
 
 jax: Any = optional("jax", "jax", "polhode.jax")
 jnp: Any = optional("jax.numpy", "jax", "polhode.jax")

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from polhode._arrays import as_float, check_line, output_times
+from polhode._support.arrays import as_float, check_line, output_times
 from polhode.jax._laws import Torque
 from polhode.jax._library import jax
 from polhode.jax._table import Table

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from polhode import torque as native
-from polhode._arrays import as_floats
-from polhode._multivector import Multivector
+from polhode._algebra.multivector import Multivector
+from polhode._support.arrays import as_floats
 from polhode.jax import _laws
 from polhode.jax._components import Four, Three, normalized, split
 from polhode.jax._formula_law import Formula, value_of

@@ -1,4 +1,4 @@
-//! Whether the sides of an equation agree, on single values: what `polhode._agreement` is for batches and for other
+//! Whether the sides of an equation agree, on single values: what `polhode._formula.agreement` is for batches and for other
 //! coefficients.
 
 use super::program::{Id, Op, Program, Step};

@@ -1,0 +1,1 @@
+"""Multivectors, rotors and their algebra."""

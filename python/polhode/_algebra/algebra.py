@@ -1,0 +1,218 @@
+"""The geometric algebra of any signature: its basis and the constructors of its values."""
+
+from __future__ import annotations
+
+import functools
+import math
+import operator
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.coefficients import as_coefficients, duplicate
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.native import joins
+
+
+@joins(_native.Algebra)
+class Algebra(_native.Algebra):
+    """The geometric algebra Cl(p, q, r): p generators square to +1, q to −1, r to 0, in this order.
+
+    Made by `algebra`. The basis is ordered by grade, then by rising generators (``e1e2, e1e3, …``); with
+    three generators the bivectors are ``e2e3, e3e1, e1e2``. `I` is the product of all generators.
+    """
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        p, q, r = self.signature
+        return f"Cl({p},{q},{r})" if r else f"Cl({p},{q})" if q else f"Cl({p})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return algebra, self.signature
+
+    @property
+    def dimension(self) -> int:
+        """Number of generators."""
+        return sum(self.signature)
+
+    @property
+    def size(self) -> int:
+        """Number of basis elements, ``2**dimension``."""
+        return 1 << self.dimension
+
+    @property
+    def basis_vectors(self) -> tuple[Multivector, ...]:
+        """The generators, e1 first."""
+        return tuple(self.vector(row) for row in np.eye(self.dimension))
+
+    @property
+    def blades(self) -> dict[str, Multivector]:
+        """The basis elements by name, such as ``"e1∧e2"``; the scalar is ``"1"``."""
+        names = self._names(self._all)
+        return {
+            name or "1": self.multivector(row)._part(1 << int(k))
+            for name, row, k in zip(names, np.eye(self.size), self._grade_of, strict=True)
+        }
+
+    @property
+    def I(self) -> Multivector:  # noqa: E743  # the handout's name
+        """The pseudoscalar, the product of all generators."""
+        return self.pseudoscalar(1.0)
+
+    # --- constructors
+
+    def scalar(self, x: Any, *, dtype: Any = None) -> Multivector:
+        """Scalars from numbers; an array of shape S is a batch of shape S."""
+        return self._single(x, "scalar", 0, dtype)
+
+    def vector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+        """Vectors from an array (..., n) over the generators."""
+        return self._of_grade(components, "vector", 1, dtype, copy)
+
+    def bivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+        """Bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order."""
+        return self._of_grade(components, "bivector", 2, dtype, copy)
+
+    def k_vector(self, k: int, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+        """Values of grade k from an array (..., n over k)."""
+        if operator.index(k) not in range(self.dimension + 1):
+            raise ValueError(f"{self} has grades 0 to {self.dimension}, got {k}")
+        return self._of_grade(components, f"{k}-vector", k, dtype, copy)
+
+    def pseudoscalar(self, x: Any, *, dtype: Any = None) -> Multivector:
+        """Multiples of I from numbers; an array of shape S is a batch of shape S."""
+        return self._single(x, "pseudoscalar", self.dimension, dtype)
+
+    def multivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+        """Multivectors from an array (..., 2**n) over the whole basis."""
+        return self._wrapped(components, "multivector", self.size, self._all, dtype, copy)
+
+    def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:
+        data = as_coefficients(x, what, dtype)
+        return Multivector._of(duplicate(data)[..., None], 1 << grade, self)
+
+    def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
+        if k > self.dimension:
+            raise ValueError(f"{self} has grades 0 to {self.dimension}, no {what}")
+        return self._wrapped(components, what, math.comb(self.dimension, k), 1 << k, dtype, copy)
+
+    def _wrapped(
+        self, components: Any, what: str, size: int, mask: int, dtype: Any, copy: bool
+    ) -> Multivector:
+        if dtype is None and self.signature == (3, 0, 0):
+            value = Multivector._of_numbers(components, mask)
+            if value is not None:
+                return value
+        data = as_coefficients(components, what, dtype)
+        if not data.shape or data.shape[-1] != size:
+            raise ValueError(
+                f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}"
+            )
+        if copy:
+            data = duplicate(data)
+        elif isinstance(data, np.ndarray):
+            data = data.view()
+        return Multivector._of(data, mask, self)
+
+    # --- what values ask
+
+    @property
+    def _all(self) -> int:
+        """All grades, as bits."""
+        return (1 << self.dimension + 1) - 1
+
+    @property
+    def _grade_of(self) -> np.ndarray[Any, np.dtype[np.int64]]:
+        """The grade of each basis element."""
+        return _grade_of(self)
+
+    def _names(self, mask: int) -> tuple[str, ...]:
+        """Return the names of the basis elements of some grades; that of the scalar is empty."""
+        return _names(self, mask)
+
+    def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
+        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0; small, so float32 stays so."""
+        return _reverse_squares(self, mask)
+
+    def _complement(self, right: bool) -> list[tuple[int, float]]:
+        """Return where each basis element goes by the right or left complement, and with which sign."""
+        return _complement(self, right)
+
+    def _inverse_of_I(self) -> Multivector:
+        return _inverse_of_pseudoscalar(self)
+
+
+def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
+    """Return the algebra Cl(p, q, r) of at most 8 generators: the same object for the same signature.
+
+    ``algebra(3)`` is that of 3-d space, to which `vector`, `e1` and the rest belong. ``algebra(3, 0, 1)``
+    is the plane-based one of Euclidean space, whose null generator comes last, ``e4``;
+    ``algebra(4, 1)`` the conformal one; ``algebra(1, 3)`` that of space-time.
+    """
+    for count in (p, q, r):
+        if not hasattr(count, "__index__"):
+            raise TypeError(f"the signature needs three whole numbers, as in algebra(3, 0, 1), got {count!r}")
+        if isinstance(count, bool) or operator.index(count) < 0:
+            raise ValueError(f"the signature needs three counts >= 0, got {p}, {q}, {r}")
+    if p + q + r > 8:
+        raise ValueError(f"an algebra has at most 8 generators, got {p} + {q} + {r}")
+    return _algebra(operator.index(p), operator.index(q), operator.index(r))
+
+
+@functools.cache
+def _algebra(p: int, q: int, r: int) -> Algebra:
+    if (p, q, r) == (3, 0, 0):
+        return _native.g3()
+    return _native.Algebra(p, q, r)  # type: ignore[return-value]
+
+
+@functools.cache
+def _grade_of(algebra: Algebra) -> np.ndarray[Any, np.dtype[np.int64]]:
+    return np.array([bits.bit_count() for bits, _ in algebra._blades()])
+
+
+@functools.cache
+def _names(algebra: Algebra, mask: int) -> tuple[str, ...]:
+    blades = algebra._blades()
+    return tuple(_name(*blades[i], algebra.dimension) for i in algebra._indices(mask))
+
+
+def _name(bits: int, sign: int, dimension: int) -> str:
+    if bits.bit_count() == dimension and dimension > 1:
+        return "I"
+    generators = [f"e{i + 1}" for i in range(dimension) if bits >> i & 1]
+    # The only basis element against the rising order is e3∧e1.
+    return "∧".join(generators if sign > 0 else reversed(generators))
+
+
+@functools.cache
+def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
+    signs = np.zeros(len(algebra._indices(mask)), dtype=np.int8)
+    terms, _ = algebra._terms("scalar", mask, mask)
+    grades = _grade_of(algebra)[algebra._indices(mask)]
+    for a, _b, _out, sign in terms:
+        signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
+    return signs
+
+
+@functools.cache
+def _complement(algebra: Algebra, right: bool) -> list[tuple[int, float]]:
+    images = algebra._right_complement()
+    if right:
+        return images
+    inverse = [(0, 0.0)] * len(images)
+    for i, (place, sign) in enumerate(images):
+        inverse[place] = (i, sign)
+    return inverse
+
+
+@functools.cache
+def _inverse_of_pseudoscalar(algebra: Algebra) -> Multivector:
+    square = float((algebra.I * algebra.I).grade(0))
+    if not square:
+        raise TypeError(
+            f"I has no inverse in {algebra}, whose metric is degenerate; use right_complement for dual"
+        )
+    return algebra.I / square

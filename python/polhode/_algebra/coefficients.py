@@ -1,0 +1,214 @@
+"""From what people pass to arrays of coefficients: floats, exact numbers, expressions, foreign arrays."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from polhode import _generic, _native
+from polhode._support.arrays import as_floats, is_float
+
+_PLAIN = {int, float, bool, complex, str, bytes, type(None)}
+
+
+def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
+    """Return an array of coefficients: of floats where they are enough, else of the kind that they are.
+
+    NumPy's float32 and float64 stay as they are. Other real numbers become float64, but integers that float64
+    cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other libraries stay
+    theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
+    """
+    if isinstance(values, _native.Multivector):
+        raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
+    if dtype is not None:
+        return _converted(values, what, dtype)
+    if isinstance(values, np.ndarray) and hasattr(values, "mask"):
+        raise TypeError(f"{what} is a masked array; fill it, or take its compressed values")
+    if is_float(values):
+        return values
+    if isinstance(values, list | tuple):
+        strange = [leaf for leaf in _leaves(values) if type(leaf) not in _PLAIN]
+        special = any(not isinstance(leaf, np.ndarray | np.generic) for leaf in strange)
+    else:
+        special = type(values) not in _PLAIN and not isinstance(values, np.ndarray | np.generic)
+    if special:
+        kind = kind_of(values)
+        if not kind.native:
+            tell_jax()
+            return kind.asarray(values)
+    array = _as_array(values, what)
+    if array.dtype == object and _is_exact(array, isinstance(values, np.ndarray)):
+        return _exact(array, what)
+    if array.dtype.kind in "iu" and not _fits_floats(array):
+        return _exact(array.astype(object), what)
+    return array if is_float(array) else as_floats(array, what)
+
+
+def namespace(array: Any) -> Any:
+    """Return the namespace of an array: NumPy's also for exact coefficients."""
+    kind = kind_of(array)
+    return np if kind.exact else kind.xp
+
+
+def kind_of(*values: Any) -> Any:
+    """Return the arithmetic that serves arrays which are not all of NumPy floats."""
+    return _generic.coefficients.of(*values)
+
+
+def duplicate(array: Any) -> Any:
+    """Return the same numbers in memory that nobody else writes to. JAX's arrays are never written to."""
+    if isinstance(array, np.ndarray):
+        return np.array(array, order="C")
+    # A product, unlike a copy, is followed by the derivatives of other libraries.
+    return array if namespace(array).__name__ == "jax.numpy" else array * 1
+
+
+def reshaped(array: Any, shape: tuple[int, ...]) -> Any:
+    """Return the same elements in another shape."""
+    return array.reshape(shape) if isinstance(array, np.ndarray) else kind_of(array).reshape(array, shape)
+
+
+def taken(array: Any, places: list[int]) -> Any:
+    """Return some components, in this order."""
+    if isinstance(array, np.ndarray):
+        return array[..., places]
+    return kind_of(array).stack([array[..., k] for k in places])
+
+
+def tell_jax() -> None:
+    """Make values pytrees of JAX, if JAX has been imported: they then pass through jit, grad and vmap."""
+    _generic.pytrees.register(
+        _native.Multivector,
+        lambda value: ((value._data,), (value._mask, value.algebra)),
+        lambda kind, leaves: _native.Multivector._of(next(iter(leaves)), *kind),
+    )
+    _generic.pytrees.register(
+        _native.Rotor,
+        lambda rotor: ((rotor._data,), None),
+        lambda _, leaves: _native.Rotor._from_rows(next(iter(leaves))),
+    )
+
+
+if "jax" in sys.modules:
+    tell_jax()
+
+
+def scalars(value: Any, like: Any) -> Any:
+    """Return a number or an array as coefficients (…, 1) that go with those of `like`; else None."""
+    if isinstance(value, bool | np.bool_ | list | tuple | str | bytes):
+        return None
+    floating = like is not None and like.dtype != object
+    if type(value) in (int, float) and floating:
+        number = as_floats(value, "scalar")[np.newaxis]
+        return number.astype(like.dtype) if is_float(like) else number  # as a number in NumPy
+    if type(value) is int and like is not None and like.dtype == object:
+        return _whole(value)[np.newaxis]
+    if isinstance(value, np.ndarray | np.number):
+        if value.dtype.kind not in "iufO":
+            return None
+        if value.dtype.kind in "iu" and floating:  # rounded as they are, whatever their values
+            return as_floats(value, "scalar")[..., None]
+    elif not isinstance(value, Real) and foreign_kind(value) is None:
+        return None
+    return as_coefficients(value, "scalar")[..., None]
+
+
+def number_like(value: Any, what: str, like: Any) -> Any:
+    """Return coefficients (…); numbers of Python take the precision of `like`, if that is of floats."""
+    if is_float(like) and type(value) in (int, float):
+        return as_floats(value, what).astype(like.dtype)
+    if type(value) is int and isinstance(like, np.ndarray) and like.dtype == object:
+        return _whole(value)
+    return as_coefficients(value, what)
+
+
+def _whole(value: int) -> Any:
+    """Return an integer beside exact numbers: itself, though a float may hold it, as it does 2**60."""
+    return np.array(value, dtype=object)
+
+
+def foreign_kind(value: Any) -> Any:
+    """Return the arithmetic of a value that is neither a number nor an array of NumPy; else None."""
+    try:
+        kind = kind_of(value)
+    except TypeError:
+        return None
+    return None if kind.native else kind
+
+
+def common(*arrays: Any) -> tuple[Any, ...]:
+    """Return the arrays with coefficients of one kind; floats of two precisions are left to NumPy."""
+    if all(is_float(array) for array in arrays):
+        return arrays
+    kind = kind_of(*arrays)
+    return tuple(kind.asarray(array) for array in arrays)
+
+
+def _exact(array: Any, what: str) -> Any:
+    """Return an array of objects, each of them a number or an expression."""
+    try:
+        return kind_of(array).asarray(array)
+    except TypeError as error:
+        raise TypeError(f"{what} must be real numbers or expressions: {error}") from None
+
+
+def _leaves(values: Any) -> Iterator[Any]:
+    for value in values:
+        if isinstance(value, list | tuple):
+            yield from _leaves(value)
+        else:
+            yield value
+
+
+def _as_array(values: Any, what: str) -> Any:
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise TypeError(f"{what} must be an array of numbers; the rows have unequal lengths") from error
+    except TypeError as error:
+        raise TypeError(f"{what} must be real numbers: {error}") from error
+
+
+def _is_exact(array: Any, asked: bool) -> bool:
+    """Whether an array of objects is meant to be exact: it is, unless a list mixes floats with integers."""
+    return asked or not any(isinstance(x, float) for x in array.flat)
+
+
+def _fits_floats(array: Any) -> bool:
+    """Whether float64 holds all these integers exactly."""
+    if not array.size or max(-int(array.min()), int(array.max())) <= 1 << 53:
+        return True
+    return all(int(float(x)) == x for x in map(int, array.flat))
+
+
+def _converted(values: Any, what: str, dtype: Any) -> Any:
+    """Return coefficients of the type asked for."""
+    given = as_coefficients(values, what)
+    if not isinstance(given, np.ndarray):
+        return _converted_foreign(given, what, dtype)
+    wanted = np.dtype(dtype)
+    if wanted.kind == "O":
+        # Whole floats become integers, so that what is computed of them stays exact.
+        return kind_of(np.empty(0, dtype=object)).asarray(given)
+    if wanted not in (np.float64, np.float32):
+        raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
+    try:
+        return given.astype(wanted, copy=False)
+    except (TypeError, OverflowError) as error:
+        raise TypeError(f"{what} does not become {wanted}: {error}") from error
+
+
+def _converted_foreign(given: Any, what: str, dtype: Any) -> Any:
+    """Return an array of another library in a floating type of it, given by itself or by NumPy's name."""
+    xp = namespace(given)
+    try:
+        wanted = getattr(xp, np.dtype(dtype).name, None)
+    except TypeError:  # it is a type of the library's own
+        wanted = dtype
+    if wanted is None or not xp.isdtype(wanted, "real floating"):
+        raise TypeError(f"{what} of a {type(given).__name__} of {xp.__name__} does not become {dtype}")
+    return xp.astype(given, wanted)

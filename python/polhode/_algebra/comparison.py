@@ -1,0 +1,74 @@
+"""Exact and approximate equality of values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._algebra.coefficients import common, namespace
+from polhode._algebra.grades import over_grades
+from polhode._support.arrays import is_float
+
+if TYPE_CHECKING:
+    from polhode._algebra.multivector import Multivector
+
+
+def equal(a: Multivector, b: Multivector) -> Any:
+    """Whether all components are equal: a bool, or an array of the batch shape."""
+    if a.algebra is not b.algebra:
+        return False
+    left, right = _same_grades(a, b)
+    same: Any = left == right
+    if isinstance(left, np.ndarray):
+        result: Any = np.asarray(same, dtype=bool).all(axis=-1)
+        return result[()]
+    return namespace(left).all(same, axis=-1)
+
+
+def negated(same: Any) -> Any:
+    """Return the opposite truth of each."""
+    return not same if isinstance(same, bool) else ~same
+
+
+def close(a: Multivector, b: Multivector, rtol: float, atol: float) -> Any:
+    """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``."""
+    if np.any(np.less(rtol, 0)) or np.any(np.less(atol, 0)):
+        raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
+    left, right = _same_grades(a, b)
+    if left.dtype == object:
+        left, right = _as_floats(left), _as_floats(right)
+    xp = namespace(left)
+    # Measured in units of the largest component, so that nothing overflows.
+    unit = xp.max(xp.maximum(xp.abs(left), xp.abs(right)), axis=-1, keepdims=True)
+    unit = xp.where(xp.isfinite(unit) & (unit > 0), unit, xp.ones_like(unit))
+    with np.errstate(over="ignore", invalid="ignore"):  # inf − inf and NaN are not close
+        left, right = left / unit, right / unit
+        size = xp.maximum(_length(xp, left), _length(xp, right))
+        near = _length(xp, left - right) <= xp.maximum(rtol * size, atol / unit[..., 0])
+        near = xp.isfinite(size) & near
+    result = xp.logical_or(near, equal(a, b))
+    return result[()] if isinstance(result, np.ndarray) else result
+
+
+def _length(xp: Any, x: Any) -> Any:
+    return xp.sqrt(xp.sum(x * x, axis=-1))
+
+
+def _same_grades(a: Multivector, b: Multivector) -> tuple[Any, Any]:
+    mask = a._mask | b._mask
+    left, right = over_grades(a, mask), over_grades(b, mask)
+    if is_float(left) and is_float(right):
+        return left, right
+    return common(left, right)
+
+
+def _as_floats(data: Any) -> Any:
+    try:
+        return data.astype(np.float64)
+    except TypeError:
+        raise TypeError(
+            "is_close needs numbers; simplify the difference of symbolic values and compare it with =="
+        ) from None
+    except OverflowError:
+        raise ValueError("is_close needs numbers within 1.8e308; compare exact ones with ==") from None

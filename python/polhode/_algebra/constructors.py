@@ -1,0 +1,132 @@
+"""Values of 3-d space from numbers, and numbers from values: constructors, and the Pauli matrices."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.algebra import algebra
+from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.grades import with_grades
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.products import coerced
+from polhode._support.arrays import Array, as_components, mapped
+
+_G3 = algebra(3)
+_KINDS = ("scalar", "vector", "bivector", "trivector")
+_ALL = 0b1111
+
+
+def scalar(a: Any, *, dtype: Any = None) -> Multivector:
+    """Scalars from numbers; an array of shape S is a batch of shape S."""
+    return _G3.scalar(a, dtype=dtype)
+
+
+def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+    """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
+
+    Real numbers become float64, float32 stays; fractions, SymPy expressions, integers beyond 2⁵³ and
+    arrays of objects stay exact; arrays of JAX and others stay theirs. `dtype` converts (``np.float32``,
+    ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of floats in C order.
+    """
+    return _G3.vector(xyz, dtype=dtype, copy=copy)
+
+
+def bivector(c3: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+    """Bivectors ``x e2∧e3 + y e3∧e1 + z e1∧e2`` from an array (..., 3): components of the axial vector.
+
+    `dtype` and `copy` as in `vector`.
+    """
+    return _G3.bivector(c3, dtype=dtype, copy=copy)
+
+
+def trivector(b: Any, *, dtype: Any = None) -> Multivector:
+    """Trivectors ``b I`` from numbers; an array of shape S is a batch of shape S."""
+    return _G3._single(b, "trivector", 3, dtype)
+
+
+def multivector(c8: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
+    """Multivectors from an array (..., 8) over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``.
+
+    `dtype` and `copy` as in `vector`.
+    """
+    return _G3.multivector(c8, dtype=dtype, copy=copy)
+
+
+def cross(a: Multivector, b: Multivector) -> Multivector:
+    """Vector cross product ``a x b = −I a∧b`` (handout eq. 1.24)."""
+    return one_grade(a, 1, "the left factor").wedge(one_grade(b, 1, "the right factor")).dual()
+
+
+def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
+    """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
+    value = coerced(M)
+    if value is None:
+        raise TypeError(f"to_pauli needs a multivector, got {type(M).__name__}")
+    eight = _of_3d(value, "to_pauli")._with_grades(_ALL)
+    numbers: Array = mapped(_native.to_pauli, as_coefficients(np.asarray(eight), "a component", float))
+    return numbers.reshape(*value.shape, 2, 2, 2).view(np.complex128)[..., 0]
+
+
+def from_pauli(matrices: Any) -> Multivector:
+    """Return the multivectors of 2×2 complex matrices, shape (..., 2, 2); the inverse of `to_pauli`."""
+    p = np.asarray(matrices)
+    if p.dtype.kind not in "iufc" or p.shape[-2:] != (2, 2):
+        raise ValueError(f"from_pauli needs numeric matrices of shape (..., 2, 2), got {p.dtype} {p.shape}")
+    numbers = np.ascontiguousarray(p, dtype=np.complex128).view(np.float64).reshape(*p.shape[:-2], 8)
+    return Multivector._of(_native.from_pauli(numbers), _ALL)
+
+
+def one_grade(value: Any, grade: int, what: str) -> Multivector:
+    """Return a value of 3-d space as one of a single grade; the others must be absent or exactly zero."""
+    if not isinstance(value, Multivector):
+        raise TypeError(
+            f"{what} must be a {_KINDS[grade]}, got {type(value).__name__}; see ph.{_KINDS[grade]}"
+        )
+    _of_3d(value, what)
+    if value._mask == 1 << grade:
+        return value
+    if value._held() & ~(1 << grade):
+        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which holds other grades")
+    return Multivector._of(with_grades(value, 1 << grade), 1 << grade)
+
+
+def pure(value: Any, grade: int, what: str) -> Array:
+    """Return the components of a value of one grade, as float64."""
+    return as_coefficients(one_grade(value, grade, what)._data, what, float)  # type: ignore[no-any-return]
+
+
+def _of_3d(value: Multivector, what: str) -> Multivector:
+    if value.algebra is not _G3:
+        raise TypeError(f"{what} must be a value of 3-d space, got one of {value.algebra}")
+    return value
+
+
+def as_vectors(values: Any, what: str) -> Array:
+    """Return components (..., 3) from an array or a vector."""
+    return pure(values, 1, what) if isinstance(values, Multivector) else as_components(values, 3, what)
+
+
+def as_point(value: Any, what: str) -> Array:
+    """Return the components (3,) of a single finite vector, from a vector, an array, or 0."""
+    if not isinstance(value, Multivector) and np.ndim(value) == 0 and np.all(value == 0):
+        return np.zeros(3)
+    components = as_vectors(value, what)
+    if components.shape != (3,):
+        raise ValueError(f"{what} must be a single vector, got shape {components.shape}")
+    if not np.isfinite(components).all():
+        raise ValueError(f"{what} is {components.tolist()}; it must be finite")
+    return components
+
+
+def as_bivectors(values: Any, what: str) -> Array:
+    """Return components (..., 3) over (e2e3, e3e1, e1e2) from an array or a bivector."""
+    return pure(values, 2, what) if isinstance(values, Multivector) else as_components(values, 3, what)
+
+
+e1 = vector([1.0, 0.0, 0.0])
+e2 = vector([0.0, 1.0, 0.0])
+e3 = vector([0.0, 0.0, 1.0])
+I = trivector(1.0)  # noqa: E741  # the handout's name

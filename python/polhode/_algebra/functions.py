@@ -1,0 +1,199 @@
+"""Sizes, powers, inverses, exponentials, logarithms and roots of values."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _generic, _native
+from polhode._algebra import grades as _parts
+from polhode._algebra.coefficients import common, kind_of, taken
+from polhode._algebra.products import coerced
+from polhode._support.arrays import Array, is_float, mapped, new
+
+if TYPE_CHECKING:
+    from polhode._algebra.multivector import Multivector
+
+Signs = np.ndarray[Any, np.dtype[np.int8]]
+
+_BIVECTOR, _EVEN = 0b0100, 0b0101
+
+
+def divided(value: Multivector, other: Any) -> Multivector:
+    """``A/s``, and ``A/B = A B⁻¹``."""
+    divisor = coerced(other, value)
+    if divisor is None:
+        return NotImplemented  # type: ignore[no-any-return]
+    if divisor._mask != 1:
+        return value * divisor.inverse()
+    if isinstance(divisor._data, np.ndarray):
+        zeros = np.argwhere(divisor._data[..., 0] == 0)
+        if len(zeros):
+            index = tuple(int(i) for i in zeros[0])
+            raise ZeroDivisionError(
+                "division of a multivector by zero" + (f" at index {index}" if index else "")
+            )
+    a, b = common(value._data, divisor._data)
+    with np.errstate(over="ignore", invalid="ignore"):
+        quotient = a / b if is_float(a) else kind_of(a, b).divide(a, b)
+    return _native.Multivector._of(quotient, value._mask, value.algebra)
+
+
+def power(value: Multivector, n: Any) -> Multivector:
+    """Return an integer power, by squaring."""
+    try:
+        exponent = operator.index(n)
+    except TypeError:
+        raise TypeError(
+            f"a multivector has integer powers, got {n!r}; write (n * A.log()).exp() for others"
+        ) from None
+    base = value.inverse() if exponent < 0 else value
+    exponent = abs(exponent)
+    if exponent == 0:
+        first = value._data[..., :1]
+        one = np.ones_like(first) if is_float(first) else kind_of(first).zeros_like(first) + 1
+        return _native.Multivector._of(one, 1, value.algebra)
+    result: Multivector | None = None
+    while True:
+        if exponent & 1:
+            result = base if result is None else result * base
+        exponent >>= 1
+        if not exponent:
+            return result  # type: ignore[return-value]
+        base = base * base
+
+
+def as_precise(value: Multivector, like: Multivector) -> Multivector:
+    """Return a value of float64 in single precision, if the other is of it."""
+    if like._is_one:
+        return value
+    return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
+
+
+def norm_squared(value: Multivector) -> Any:
+    """``⟨A ~A⟩``, of the batch shape."""
+    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    if is_float(data):
+        with np.errstate(over="ignore"):
+            counted, signs = _counted(data, signs)
+            return (np.square(counted) * signs).sum(axis=-1)[()]
+    square = value.scalar_product(~value)._data[..., 0]
+    return square[()] if isinstance(square, np.ndarray) else square
+
+
+def norm(value: Multivector) -> Any:
+    """``√abs⟨A ~A⟩``, of the batch shape."""
+    if value._is_one:
+        return np.float64(value._norm_of_one())
+    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    if not is_float(data):
+        kind = kind_of(data)
+        return _generic.functions.norm(kind, data) if min(signs) > 0 else kind.sqrt(abs(norm_squared(value)))
+    if min(signs) > 0 and len(signs) <= 8:
+        return mapped(_native.norm, data)[..., 0][()]
+    unit, size = _unit_and_size(data, signs)
+    return (size * unit)[..., 0][()]
+
+
+def _counted(data: Array, signs: Signs) -> tuple[Array, Signs]:
+    """Return the components of ``E ~E`` not 0, which make up the size, and those signs."""
+    if signs.all():
+        return data, signs
+    # In C order, as sums depend on the order of memory.
+    return np.ascontiguousarray(data[..., signs != 0]), signs[signs != 0]
+
+
+def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
+    """Return the largest component that counts, and the norm in units of it."""
+    counted, signs = _counted(data, signs)
+    unit = np.abs(counted).max(axis=-1, keepdims=True, initial=0)
+    unit = np.where(np.isfinite(unit) & (unit > 0), unit, np.ones_like(unit))
+    squares = np.square(counted / unit) * signs
+    with np.errstate(invalid="ignore"):  # inf − inf
+        return unit, np.sqrt(np.abs(squares.sum(axis=-1, keepdims=True)))
+
+
+def normalized(value: Multivector) -> Multivector:
+    """``A/|A|``, with an error for the first value that has no direction."""
+    data, signs = value._data, value.algebra._reverse_squares(value._mask)
+    if not is_float(data):
+        if min(signs) > 0:
+            return value._like(_generic.functions.normalized(kind_of(data), data))
+        return value / coerced(norm(value), value)
+    # Scaling by the largest component first keeps subnormal values accurate.
+    unit, size = _unit_and_size(data, signs)
+    # Where squares cancel, a size below this is rounding.
+    usable = np.isfinite(data).all(axis=-1) & (size > 8 * np.finfo(data.dtype).eps)[..., 0]
+    _require(usable, "has no direction (norm {})", value)
+    return value._like(data / unit / size)
+
+
+def _require(ok: Any, what: str, value: Multivector) -> None:
+    """Raise a ValueError that names the first batch index where `ok` is false, and the norm there."""
+    if np.all(ok):
+        return
+    index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
+    place = f"the multivector at index {index}" if index else "the multivector"
+    raise ValueError(f"{place} {what.format(np.asarray(norm(value))[index])}")
+
+
+def function(name: str, value: Multivector) -> Multivector:
+    """Return a function of any value: native over floats, else by the generic formulas."""
+    algebra, data = value.algebra, value._data
+    if is_float(data):
+        mask, single = algebra._grades_of_function(name, value._mask), data.dtype == np.float32
+
+        def native(rows: Array) -> Array:
+            return _native.function(algebra, name, rows, single)[..., algebra._indices(mask)]
+
+        result = mapped(native, _parts.over_grades(value, algebra._all))
+        in_range = np.isfinite(result).all(axis=-1)
+        _require(in_range, f"of norm {{}} has no {name} in the range of {data.dtype}; scale it", value)
+    elif algebra.signature == (3, 0, 0):
+        result, mask = getattr(_generic.functions, name)(kind_of(data), data, value._mask)
+    else:
+        result, mask = _generic_function(name, value)
+    return _native.Multivector._of(result, mask, algebra)
+
+
+def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
+    """Return the inverse or the exponential of other coefficients in other algebras."""
+    algebra = value.algebra
+    if name not in ("inverse", "exp"):
+        raise TypeError(
+            f"{name} in {algebra} needs NumPy floats, got {type(value._data).__name__} of {value.dtype}; "
+            "convert exact numbers with .astype(float), other arrays with np.asarray(A.components)"
+        )
+    mask, everything = algebra._grades_of_function(name, value._mask), algebra._all
+    terms, _ = algebra._terms("geometric", everything, everything)
+    full = _parts.over_grades(value, everything)
+    regular = algebra.dimension - algebra.signature[2]
+    null = [(bits >> regular).bit_count() for bits, _ in algebra._blades()]
+    if name == "exp":
+        rows = _generic.algebras.exp(kind_of(full), terms, algebra._indices(value._mask), full, null)
+    else:
+        rows = _generic.algebras.inverse(kind_of(full), terms, algebra.dimension, full, null)
+    return taken(rows, algebra._indices(mask)), mask
+
+
+def exp(value: Multivector) -> Multivector:
+    """``exp A``; a rotor of a bivector of 3-d space."""
+    data, in_space = value._data, value.algebra.signature == (3, 0, 0)
+    if value._mask == _BIVECTOR and in_space and is_float(data):
+        rotors = new((*value.shape, 4), data.dtype)
+        _native.rotor_exp(data, rotors)
+        return _native.Rotor._from_rows(rotors)
+    result = function("exp", value)
+    if result._mask == _EVEN and in_space and not value._held() & ~_BIVECTOR:
+        return _native.Rotor._from_rows(result._data)
+    return result
+
+
+def projected(value: Multivector, blade: Multivector) -> Multivector:
+    """``(A⌋B) B⁻¹``, over the grades of A."""
+    if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
+        raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
+    unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
+    return (value.left_contraction(unit) * unit.inverse())._part(value._mask)

@@ -1,0 +1,177 @@
+"""The grades of values, their signs and sums, and the shapes of batches."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.coefficients import as_coefficients, common, duplicate, kind_of, namespace
+from polhode._algebra.coefficients import reshaped as coefficients_reshaped
+from polhode._algebra.products import coerced, common_algebra
+from polhode._support.arrays import Shape, is_float
+
+if TYPE_CHECKING:
+    from polhode._algebra.multivector import Multivector
+
+V = TypeVar("V", bound="Multivector")
+
+
+def with_grades(value: Multivector, mask: int) -> Any:
+    """Return the components of the grades in `mask`, zeros for those not held: a new array."""
+    data = value._data
+    if mask == value._mask:
+        return np.array(data) if isinstance(data, np.ndarray) else data
+    algebra = value.algebra
+    held, wanted = algebra._indices(value._mask), algebra._indices(mask)
+    if is_float(data):
+        full = np.zeros((*data.shape[:-1], algebra.size), dtype=data.dtype)
+        full[..., held] = data
+        return np.ascontiguousarray(full[..., wanted])
+    place = {index: k for k, index in enumerate(held)}
+    kind = kind_of(data)
+    zero = kind.zeros_like(data[..., 0])
+    return kind.stack([data[..., place[i]] if i in place else zero for i in wanted])
+
+
+def over_grades(value: Multivector, mask: int) -> Any:
+    """Return the components of the grades in `mask` to be read: a copy only where grades are missing."""
+    return value._data if value._mask == mask else with_grades(value, mask)
+
+
+def held(value: Multivector) -> int:
+    """Return the grades, as bits, in which some component is not zero; all where that is not known."""
+    data = value._data
+    if not isinstance(data, np.ndarray):
+        return value._mask
+    nonzero = (data != 0).reshape(-1, data.shape[-1]).any(axis=0)
+    grades = value.algebra._grade_of[value.algebra._indices(value._mask)]
+    return int(np.bitwise_or.reduce(1 << grades[nonzero.astype(bool)], initial=0))
+
+
+def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) -> Any:
+    """Add or subtract, over the grades of both."""
+    other = coerced(right, left)
+    if other is None:
+        return NotImplemented
+    algebra = common_algebra(left, other)
+    mask = left._mask | other._mask
+    a, b = common(over_grades(left, mask), over_grades(other, mask))
+    with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
+        return _native.Multivector._of(combine(a, b), mask, algebra)
+
+
+def signed(value: Multivector, negative: Callable[[int], bool]) -> Multivector:
+    """Return the value with the sign of some grades changed."""
+    grades = value.algebra._grade_of[value.algebra._indices(value._mask)]
+    return value._like(with_signs(value._data, [-1 if negative(int(k)) else 1 for k in grades]))
+
+
+def with_signs(data: Any, signs: Sequence[float]) -> Any:
+    """Return components, those with a negative sign changed."""
+    if is_float(data):
+        return np.where(np.array(signs) < 0, -data, data)
+    parts = [data[..., k] if sign > 0 else -data[..., k] for k, sign in enumerate(signs)]
+    return kind_of(data).stack(parts)
+
+
+def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
+    """Return the value with f of each component; object components one by one, others as one array."""
+    data = value._data
+    changed = np.frompyfunc(f, 1, 1)(data) if data.dtype == object else f(data)
+    if getattr(changed, "shape", None) != data.shape:
+        raise TypeError(f"the function must return one component for each, got {type(changed).__name__}")
+    changed = as_coefficients(changed, "what the function returns")
+    own = duplicate(changed)  # it may be the function's array
+    return _native.Multivector._of(own, value._mask, value.algebra)
+
+
+def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
+    """Raise an IndexError where a plain index is out of range, which JAX would take for the last one."""
+    if all(part is None or part is Ellipsis or isinstance(part, int | np.integer | slice) for part in index):
+        np.broadcast_to(np.int8(0), shape)[index]
+
+
+def reshaped(value: V, shape: tuple[Any, ...]) -> V:
+    """Return a batch of another shape."""
+    if len(shape) == 1 and not hasattr(shape[0], "__index__"):
+        shape = tuple(shape[0])
+    lengths = [operator.index(length) for length in shape]
+    data = value._data
+    if -1 in lengths:
+        known = int(np.prod([length for length in lengths if length != -1]))
+        count = int(np.prod(value.shape))
+        if lengths.count(-1) > 1 or known == 0 or count % known:
+            raise ValueError(f"a batch of shape {value.shape} cannot be reshaped to {tuple(lengths)}")
+        lengths[lengths.index(-1)] = count // known
+    if np.prod(lengths) != np.prod(value.shape):
+        raise ValueError(f"a batch of shape {value.shape} cannot be reshaped to {tuple(lengths)}")
+    return value._like(coefficients_reshaped(data, (*lengths, data.shape[-1])))
+
+
+def stack(values: Iterable[V], axis: int = 0) -> V:
+    """Join values of one batch shape along a new batch axis; all rotors give rotors.
+
+    Values of different grades are joined over the grades of all. `axis` counts batch axes.
+    """
+    parts, shapes, build = _unified(values, "stack")
+    if len(shapes) > 1:
+        raise ValueError(f"stack needs values of one batch shape, got {_listed(shapes)}")
+    axis = _batch_axis(axis, len(next(iter(shapes))) + 1)
+    return build(namespace(parts[0]).stack(parts, axis=axis))  # type: ignore[return-value]
+
+
+def summed(value: Multivector, axis: int | tuple[int, ...] | None) -> Multivector:
+    """Return the sum over batch axes; over all for None."""
+    count = len(value.shape)
+    chosen = tuple(range(count)) if axis is None else axis if isinstance(axis, tuple) else (axis,)
+    axes = tuple(_batch_axis(k, count) for k in chosen)
+    total = namespace(value._data).sum(value._data, axis=axes)
+    return _native.Multivector._of(total, value._mask, value.algebra)
+
+
+def concatenate(values: Iterable[V], axis: int = 0) -> V:
+    """Join batches along an existing batch axis; all rotors give rotors. `axis` counts batch axes."""
+    parts, shapes, build = _unified(values, "concatenate")
+    dimensions = {len(shape) for shape in shapes}
+    if dimensions == {0} or len(dimensions) > 1:
+        raise ValueError(f"concatenate needs batches of as many axes, got shapes {_listed(shapes)}")
+    axis = _batch_axis(axis, dimensions.pop())
+    if len({shape[:axis] + shape[axis + 1 :] for shape in shapes}) > 1:
+        raise ValueError(f"the batch shapes differ elsewhere than in axis {axis}: {_listed(shapes)}")
+    return build(namespace(parts[0]).concat(parts, axis=axis))  # type: ignore[return-value]
+
+
+def _listed(shapes: Iterable[Shape]) -> str:
+    return " and ".join(str(shape) for shape in sorted(shapes, key=str))
+
+
+def _batch_axis(axis: int, count: int) -> int:
+    """Return the axis counted from 0."""
+    place = operator.index(axis)
+    if not -count <= place < count:
+        raise ValueError(f"batch axis {axis} is out of range for {count} batch axes")
+    return place % count
+
+
+def _unified(
+    values: Iterable[Multivector], name: str
+) -> tuple[list[Any], set[Shape], Callable[[Any], Multivector]]:
+    """Return components over the grades of all values, their batch shapes, and what builds the result."""
+    items = list(values)
+    for i, item in enumerate(items):
+        if not isinstance(item, _native.Multivector):
+            raise TypeError(f"{name} joins multivectors; item {i} is {type(item).__name__}")
+    if not items:
+        raise ValueError(f"{name} needs at least one value")
+    algebra, mask = items[0].algebra, 0
+    for item in items:
+        algebra = common_algebra(items[0], item)
+        mask |= item._mask
+    parts = list(common(*(over_grades(item, mask) for item in items)))
+    if all(isinstance(item, _native.Rotor) for item in items):
+        return parts, {item.shape for item in items}, _native.Rotor._from_rows
+    return parts, {item.shape for item in items}, lambda data: _native.Multivector._of(data, mask, algebra)

@@ -1,0 +1,287 @@
+"""Between rotors: slerp, the mean attitude, and a smooth path through many."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from polhode import _generic
+from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of, namespace
+from polhode._algebra.constructors import bivector
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import Array, as_floats, frozen, is_float
+
+# Roundings of a sum of four products of rounded numbers.
+_HALF_TURN = 4
+
+_NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
+_WEIGHTS = "weights must be {} finite numbers >= 0, not all 0, got {}"
+
+
+def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
+    """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
+
+    The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
+    or −S. Where the attitudes are half a turn apart, to rounding, both ways are as long, and S keeps its
+    sign: from R to S and from R to −S go opposite ways round.
+    """
+    for value in (R, S):
+        if not isinstance(value, Rotor):
+            raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
+    step = (~R * S)._data
+    longer = step[..., :1] < -_half_turn(step)
+    shorter = Rotor.from_components(namespace(step).where(longer, -step, step))
+    path: Rotor = R * shorter**t
+    return path
+
+
+def _half_turn(components: Any) -> float:
+    """Return how far from 0 rounding leaves the scalar part of ``~R S`` where it turns by half a turn.
+
+    It is a sum of four products of components that are rounded themselves, in sizes a sum of at most 1.
+    """
+    return _HALF_TURN * (
+        float(np.finfo(components.dtype).eps) if is_float(components) else kind_of(components).eps
+    )
+
+
+def mean(R: Rotor, weights: Any = None) -> Rotor:
+    """Return the mean attitude of a batch (n,), whatever the signs: the Q that minimises ``Σ w |R − Q|²``.
+
+    The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
+    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
+    ValueError where no attitude is closer than all others, as for half turns about three axes; while JAX
+    traces, the result is arbitrary there. Arrays of other libraries stay theirs; derivatives are right up to
+    the third.
+    """
+    if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
+        raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
+    kind = kind_of(R._data)
+    if kind.exact:
+        raise TypeError(
+            f"mean needs floats, got rotors of {R.dtype}; convert exact numbers with .astype(float)"
+        )
+    others = None if weights is None else foreign_kind(weights)
+    if not is_float(R._data) or (others is not None and not others.exact):
+        return _foreign_mean(R, weights)
+    w = np.ones(R.shape) if weights is None else as_floats(weights, "weights")
+    if w.shape != R.shape or not (np.isfinite(w).all() and (w >= 0).all() and w.any()):
+        raise ValueError(_WEIGHTS.format(R.shape[0], w.tolist()))
+    rows = as_floats(R.components, "a component")
+    values, vectors = np.linalg.eigh((w[:, np.newaxis] * rows).T @ rows)
+    if values[3] - values[2] <= 8 * np.finfo(R.dtype).eps * values[3]:
+        raise ValueError(_NO_MEAN)
+    best = vectors[:, 3]
+    return Rotor.from_components((-best if best[0] < 0 else best).astype(R.dtype))
+
+
+def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
+    """Return the mean of arrays of another library, in its own arrays and with their derivatives."""
+    given = [] if weights is None else [as_coefficients(weights, "weights")]
+    kind = kind_of(R._data, *given)
+    rows, xp = kind.asarray(R._data), kind.xp
+    if given:
+        w = kind.asarray(given[0])
+        if tuple(w.shape) != R.shape:
+            raise ValueError(_WEIGHTS.format(R.shape[0], f"shape {tuple(w.shape)}"))
+        usable = xp.all(xp.isfinite(w) & (w >= 0)) & xp.any(w > 0)
+        kind.require(usable, _WEIGHTS.format(R.shape[0], w))
+        weighted = w[:, None] * rows
+    else:
+        weighted = rows
+    best = _generic.eigen.largest(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows), _NO_MEAN)
+    return Rotor.from_components(kind.where(best[0] < 0, -best, best))
+
+
+class RotorSpline:
+    """A smooth path through the attitudes of `rotors` (n,) at increasing `times` (n,), n >= 2.
+
+    The cubic spline ``s(t)`` of the rotors' components, divided by its norm: ``R(t) = s/|s|``. Rotor,
+    angular velocity and angular acceleration are continuous; the path turns with what its rotors are
+    multiplied by, from either side, and backwards in time it is the same. Between close rotors it errs
+    by their distance to the fourth power, in the rate to the third.
+
+    Each rotor first takes the sign that is nearer to the one before it, so that the path goes the short
+    way round and stays on one sheet of the double cover; it begins at ``rotors[0]``. Half a turn apart, where
+    both signs are as near, two neighbours keep theirs, as in `slerp`. At each end the first
+    two intervals share one cubic ("not a knot"); three rotors give a parabola, two a line, along which the
+    rate is not constant as that of `slerp` is. A steady turn is likewise met closely, not exactly. Where the
+    times are so uneven that the path could swing half a turn away from its rotors, a ValueError says so.
+
+    >>> spline = RotorSpline(times, rotors)
+    >>> spline(t), spline.omega_body(t)
+    """
+
+    __slots__ = ("_slopes", "_times", "_values")
+
+    def __init__(self, times: Any, rotors: Rotor) -> None:
+        if not isinstance(rotors, Rotor) or len(rotors.shape) != 1 or rotors.shape[0] < 2:
+            raise ValueError(f"a spline needs a batch of rotors of shape (n,), n >= 2, got {rotors!r}")
+        if not is_float(rotors._data) or foreign_kind(times) is not None:
+            raise TypeError(
+                "a spline needs NumPy floats; convert exact numbers with .astype(float), the arrays of other "
+                "libraries with np.asarray(rotors.components)"
+            )
+        knots = np.array(as_floats(times, "times"))
+        if knots.shape != rotors.shape or not np.isfinite(knots).all():
+            raise ValueError(f"times must be {len(rotors)} finite numbers, one for each rotor, got {knots}")
+        if not (np.diff(knots) > 0).all():
+            i = int(np.argmin(np.diff(knots) > 0))
+            raise ValueError(f"times must increase, but {knots[i]:g} at index {i} precedes {knots[i + 1]:g}")
+        self._times = frozen(knots)
+        self._values = frozen(_one_sheet(rotors.astype(float)._data))
+        self._slopes = frozen(_spline_slopes(knots, self._values))
+        _require_near(knots, self._values, self._slopes)
+
+    @property
+    def times(self) -> Array:
+        """The times (n,) of the rotors."""
+        return self._times.copy()
+
+    @property
+    def rotors(self) -> Rotor:
+        """The rotors (n,) on the path, each with the sign the path has."""
+        return Rotor.from_components(self._values)
+
+    def __call__(self, t: Any) -> Rotor:
+        """Return the rotors at the times t (...), which lie between the first and the last."""
+        return Rotor.from_components(self._at(t)[0])
+
+    def omega_body(self, t: Any) -> Multivector:
+        """Return the angular velocity at the times t, a bivector in body axes.
+
+        With ``s = |s| R``, ``~s s' = ½(|s|²)' + |s|² ~R R'``, and ``Ω_B = −2 ~R R'`` (handout eq. 4.13).
+        """
+        s, rate = self._at(t)
+        even = bivector(rate[..., 1:]) + rate[..., 0]
+        size: Array = np.linalg.norm(s, axis=-1)
+        return (~Rotor.from_components(s) * even).grade(2) * (-2 / size)
+
+    def __repr__(self) -> str:
+        first, last = self._times[[0, -1]]
+        return f"RotorSpline({len(self._times)} rotors, times {first:.8g} to {last:.8g})"
+
+    def _at(self, t: Any) -> tuple[Array, Array]:
+        """Return s and its rate at t: on each interval the cubic of its end values and slopes."""
+        when = as_floats(t, "the time")
+        first, last = self._times[[0, -1]]
+        outside = ~((when >= first) & (when <= last))
+        if outside.any():
+            index = tuple(int(i) for i in np.argwhere(outside)[0])
+            place = f" at index {index}" if index else ""
+            raise ValueError(
+                f"the spline goes from {first:g} to {last:g}; the time{place} is {when[index]:g}, outside it"
+            )
+        k = np.clip(np.searchsorted(self._times, when, side="right") - 1, 0, len(self._times) - 2)
+        step = (self._times[k + 1] - self._times[k])[..., np.newaxis]
+        u = ((when - self._times[k])[..., np.newaxis]) / step
+        a, b = self._values[k], self._values[k + 1]
+        # The slopes beyond that of the chord, at either end.
+        p, q = step * self._slopes[k] - (b - a), step * self._slopes[k + 1] - (b - a)
+        s = (1 - u) * a + u * b + u * (1 - u) * ((1 - u) * p - u * q)
+        rate = (b - a + (1 - u) * (1 - 3 * u) * p + u * (3 * u - 2) * q) / step
+        return s, rate
+
+
+def _one_sheet(components: Array) -> Array:
+    """Return the rotors' components with the signs that keep neighbours at most a right angle apart.
+
+    Where they are a right angle apart to rounding, attitudes half a turn apart, they keep the signs given.
+    """
+    apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < -_half_turn(components)
+    signs = np.cumprod(np.where(apart, -1.0, 1.0))
+    return np.concatenate([components[:1], signs[:, np.newaxis] * components[1:]])
+
+
+def _require_near(x: Array, y: Array, slopes: Array) -> None:
+    """Raise a ValueError if the spline may come near 0, where it would have no direction.
+
+    A cubic lies in the hull of its ends a, b and the points a third of the end slopes away from them. The
+    ends are √½ or more along the line to the middle of their chord; so must the other two be, but for some
+    room, and then so is every point between.
+    """
+    step = np.diff(x)[:, np.newaxis]
+    a, b = y[:-1], y[1:]
+    middle = (a + b) / np.linalg.norm(a + b, axis=-1, keepdims=True)
+    along = [np.sum(middle * c, axis=-1) for c in (a + step * slopes[:-1] / 3, b - step * slopes[1:] / 3)]
+    far = ~(np.minimum(*along) >= 0.1)
+    if far.any():
+        i = int(np.argmax(far))
+        raise ValueError(
+            f"from {x[i]:g} to {x[i + 1]:g} a smooth path would swing far from the rotors at both times; "
+            "give more of them there, at more even times"
+        )
+
+
+def _spline_slopes(x: Array, y: Array) -> Array:
+    """Return the slopes (n, m) at x (n,) of the not-a-knot cubic spline through y (n, m).
+
+    A continuous second derivative asks of the slopes d, with steps h and slopes of chords c,
+    ``h_k d_{k-1} + 2 (h_{k-1} + h_k) d_k + h_{k-1} d_{k+1} = 3 (h_k c_{k-1} + h_{k-1} c_k)``; a continuous
+    third one at x_1, that ``h_1 d_0 + (h_0 + h_1) d_1`` is a known `_edge`. With it d_0 leaves the first
+    equation, whose diagonal still outweighs the rest; and so at the other end.
+    """
+    h = np.diff(x)[:, np.newaxis]
+    c = np.diff(y, axis=0) / h
+    if len(x) == 2:
+        return np.concatenate([c, c])
+    before, after = h[:-1], h[1:]
+    both = before + after
+    right = 3 * (after * c[:-1] + before * c[1:])
+    if len(x) == 3:
+        inner = right / (3 * both)
+    else:
+        diagonal = 2 * both
+        first = _edge(h[0], h[1], c[0], c[1])
+        last = _edge(h[-1], h[-2], c[-1], c[-2])
+        diagonal[[0, -1]] -= both[[0, -1]]
+        right[0] -= first
+        right[-1] -= last
+        lower, upper = after.copy(), before.copy()
+        lower[0] = upper[-1] = 0
+        inner = _tridiagonal(lower, diagonal, upper, right)
+    d_first = (_edge(h[0], h[1], c[0], c[1]) - both[0] * inner[0]) / h[1]
+    d_last = (_edge(h[-1], h[-2], c[-1], c[-2]) - both[-1] * inner[-1]) / h[-2]
+    return np.concatenate([d_first[np.newaxis], inner, d_last[np.newaxis]])
+
+
+def _edge(h0: Array, h1: Array, c0: Array, c1: Array) -> Array:
+    """Return ``h1 d0 + (h0 + h1) d1`` where one cubic spans the first two steps."""
+    edge: Array = ((3 * h0 + 2 * h1) * h1 * c0 + h0**2 * c1) / (h0 + h1)
+    return edge
+
+
+def _tridiagonal(lower: Array, diagonal: Array, upper: Array, right: Array) -> Array:
+    """Solve ``lower x_{k-1} + diagonal x_k + upper x_{k+1} = right`` by cyclic reduction.
+
+    Every odd equation loses its neighbours to the even ones beside it, which leaves half as many; stable
+    where the diagonal outweighs the rest of its row.
+    """
+    n = len(diagonal)
+    if n == 1:
+        return right / diagonal
+    low, high = lower[1::2] / diagonal[:-1:2], np.zeros_like(diagonal[1::2])
+    after = diagonal[2::2]
+    high[: len(after)] = upper[1 : 2 * len(after) : 2] / after
+
+    def following(values: Array) -> Array:
+        """Return the even rows from the second on, zero where an odd row is the last."""
+        padded = np.zeros_like(values[1::2])
+        padded[: len(after)] = values[2::2]
+        return padded
+
+    odd = _tridiagonal(
+        -low * lower[:-1:2],
+        diagonal[1::2] - low * upper[:-1:2] - high * following(lower),
+        -high * following(upper),
+        right[1::2] - low * right[:-1:2] - high * following(right),
+    )
+    x = np.empty_like(right)
+    x[1::2] = odd
+    left, beyond = np.zeros_like(right[::2]), np.zeros_like(right[::2])
+    left[1:] = odd[: len(left) - 1]
+    beyond[: len(odd)] = odd
+    x[::2] = (right[::2] - lower[::2] * left - upper[::2] * beyond) / diagonal[::2]
+    return x

@@ -1,0 +1,77 @@
+"""Products of any two values: over broadcast batches, into given arrays, with any coefficients."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode import _generic, _native
+from polhode._algebra.coefficients import kind_of, scalars
+from polhode._support.arrays import Array, Shape, common_batch, is_float, new, rows
+
+if TYPE_CHECKING:
+    from polhode._algebra.multivector import Multivector
+
+
+def product(name: str, left: Multivector, right: Multivector, out: Any = None) -> Multivector:
+    """Return a named product, or write it to `out` and return a view of that."""
+    algebra = common_algebra(left, right)
+    mask, size = algebra._result(name, left._mask, right._mask)
+    a, b = left._data, right._data
+    rotors = name == "geometric" and isinstance(left, _native.Rotor) and isinstance(right, _native.Rotor)
+    if not (is_float(a) and is_float(b)):
+        if out is not None:
+            raise TypeError(f"out needs factors of floats, got {left.dtype} and {right.dtype}")
+        terms, _ = algebra._terms(name, left._mask, right._mask)
+        kind = kind_of(a, b)
+        result = _generic.products.product(kind, terms, size, kind.asarray(a), kind.asarray(b))
+        if rotors:
+            return _native.Rotor._from_rows(_generic.rotors.from_components(kind, result))
+        return _native.Multivector._of(result, mask, algebra)
+    batch, a, b = aligned(a, b)
+    result = result_array((*batch, size), a.dtype, (a, b), out)
+    if rotors:
+        _native.rotor_compose(a, b, result)
+        return _native.Rotor._from_rows(result)
+    _native.product(algebra, name, a, left._mask, b, right._mask, result)
+    return _native.Multivector._of(result, mask, algebra)
+
+
+def aligned(a: Array, b: Array) -> tuple[Shape, Array, Array]:
+    """Return the common batch shape of two arrays of floats, and their rows in the precision of both."""
+    batch, dtype = common_batch(a.shape[:-1], b.shape[:-1]), np.result_type(a, b)
+    return batch, rows(a.astype(dtype, copy=False), batch), rows(b.astype(dtype, copy=False), batch)
+
+
+def result_array(shape: Shape, dtype: Any, operands: tuple[Array, ...], out: Any) -> Array:
+    """Return a new array for a result, or a view of `out` if it can take it."""
+    if out is None:
+        return new(shape, dtype)
+    if not isinstance(out, np.ndarray):
+        raise TypeError(f"out must be a NumPy array, got {type(out).__name__}")
+    if out.shape != shape or out.dtype != dtype:
+        raise ValueError(f"out is {out.dtype} of shape {out.shape}, the result {dtype} of shape {shape}")
+    if not (out.flags.c_contiguous and out.flags.writeable):
+        raise ValueError("out must be writable and in C order")
+    if any(np.may_share_memory(out, operand) for operand in operands):
+        raise ValueError("out overlaps an operand; give an array of its own")
+    return out.view()
+
+
+def common_algebra(left: Multivector, right: Multivector) -> Any:
+    """Return the algebra of both, or say which two they belong to."""
+    algebra = left.algebra
+    if algebra is not right.algebra:
+        raise TypeError(f"the values belong to different algebras, {algebra} and {right.algebra}")
+    return algebra
+
+
+def coerced(value: Any, like: Multivector | None = None) -> Multivector | None:
+    """Return a multivector; a number or an array becomes scalars of the algebra of `like`; else None."""
+    if isinstance(value, _native.Multivector):
+        return value  # type: ignore[return-value]
+    data = scalars(value, like._data if like is not None else None)
+    if data is None:
+        return None
+    return _native.Multivector._of(data, 1, like.algebra if like is not None else None)

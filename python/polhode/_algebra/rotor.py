@@ -1,0 +1,286 @@
+"""Rotors: unit even elements, which turn any multivector by ``X ↦ R X ~R``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from polhode import _generic, _native
+from polhode._algebra.coefficients import as_coefficients, kind_of, number_like, reshaped, taken
+from polhode._algebra.constructors import one_grade
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.native import joins
+from polhode._algebra.products import aligned, common_algebra, result_array
+from polhode._support.arrays import Array, Shape, batch_shape, is_float, joined, mapped, new
+from polhode._support.extras import optional
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+QuaternionOrder = Literal["wxyz", "xyzw"]
+
+_BIVECTOR, _EVEN = 0b0100, 0b0101
+
+
+def _components(values: Any, size: int, what: str) -> Any:
+    """Return coefficients of shape (..., size)."""
+    data = as_coefficients(values, what)
+    if not data.shape or data.shape[-1] != size:
+        raise ValueError(f"{what} needs {size} components in the last axis, got shape {tuple(data.shape)}")
+    return data
+
+
+def _computed(name: str, *operands: Any) -> Any:
+    """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
+    if all(map(is_float, operands)):
+        return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
+    kind = kind_of(*operands)
+    return getattr(_generic.rotors, name)(kind, *map(kind.asarray, operands))
+
+
+@joins(_native.Rotor)
+class Rotor(_native.Rotor, Multivector):
+    """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
+
+    Active: ``R(X) = R X ~R`` for X of any grade; ``S*R`` turns by R first. Components
+    ``(1, e2e3, e3e1, e1e2)``, always of norm 1. R and −R turn alike; both are kept apart, so that
+    a motion's rotor is continuous. The quaternion ``w + xi + yj + zk`` has the rotor
+    ``w − x e2e3 − y e3e1 − z e1e2``.
+
+    What JAX gives as a derivative by a rotor comes as a Rotor too, but is none: only its `components` mean
+    something. Take derivatives by a bivector, a rotation vector or components instead.
+    """
+
+    __slots__ = ()
+
+    # --- constructors
+
+    def _like(self, data: Any) -> Rotor:
+        return Rotor._from_rows(data)
+
+    @staticmethod
+    def _restored(data: Any, _mask: int, _algebra: Any) -> Rotor:
+        return Rotor._from_rows(data)
+
+    @staticmethod
+    def identity(shape: int | Shape = ()) -> Rotor:
+        """Return the rotor 1, which turns nothing."""
+        return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
+
+    @staticmethod
+    def from_components(c4: Any) -> Rotor:
+        """From components (..., 4) over ``(1, e2e3, e3e1, e1e2)``, divided by their norm."""
+        return Rotor._from_rows(_computed("from_components", _components(c4, 4, "rotor")))
+
+    @staticmethod
+    def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
+        """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
+        plane = one_grade(B, 2, "the plane")._data
+        angle = number_like(theta, "angle", plane)
+        if is_float(plane) and is_float(angle):
+            angle = angle[..., np.newaxis]  # a column, beside the plane
+        return Rotor._from_rows(_computed("from_plane_angle", plane, angle))
+
+    @staticmethod
+    def from_vectors(a: Multivector, b: Multivector) -> Rotor:
+        """Turn the direction of a into that of b, the short way; lengths are ignored.
+
+        For opposite directions the plane is not determined: one through a and the basis vector farthest
+        from it is taken.
+        """
+        first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
+        return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
+
+    @staticmethod
+    def from_matrix(m: Any) -> Rotor:
+        """From rotation matrices (..., 3, 3) acting on columns; the nearest rotation, within 1e-4 of one.
+
+        A ValueError for a reflection or anything farther off. The rotor's scalar part is >= 0.
+        """
+        matrices = as_coefficients(m, "rotation matrix")
+        if tuple(matrices.shape[-2:]) != (3, 3):
+            raise ValueError(f"a rotation matrix has shape (..., 3, 3), got {tuple(matrices.shape)}")
+        if is_float(matrices):
+            matrices = matrices.reshape((*matrices.shape[:-2], 9))
+        return Rotor._from_rows(_computed("from_matrix", matrices))
+
+    @staticmethod
+    def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
+        """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
+        given = _components(q, 4, "quaternion")
+        return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
+
+    @staticmethod
+    def from_rotation_vector(v: Any) -> Rotor:
+        """From vectors (..., 3) along the axis, of length the angle in radians; an array or a Multivector."""
+        array = one_grade(v, 1, "a rotation vector")._data if isinstance(v, Multivector) else v
+        return Rotor._from_rows(_computed("from_rotation_vector", _components(array, 3, "rotation vector")))
+
+    @staticmethod
+    def from_scipy(rot: Rotation) -> Rotor:
+        """From a ``scipy.spatial.transform.Rotation``."""
+        if not hasattr(rot, "as_quat"):
+            raise TypeError(f"from_scipy needs a scipy.spatial.transform.Rotation, got {type(rot).__name__}")
+        return Rotor.from_quaternion(rot.as_quat(), order="xyzw")
+
+    @staticmethod
+    def from_numpy_quaternion(q: Any) -> Rotor:
+        """From quaternions of the package numpy-quaternion, one or an array (...), divided by their norm."""
+        quaternion = optional("quaternion", "quaternion", "from_numpy_quaternion")
+        array = np.asarray(q)
+        if array.dtype != np.dtype(quaternion.quaternion):
+            raise TypeError(f"from_numpy_quaternion needs an array of dtype quaternion, got {array.dtype}")
+        return Rotor.from_quaternion(quaternion.as_float_array(array), order="wxyz")
+
+    @staticmethod
+    def from_euler(seq: str, angles: Any, degrees: bool = False) -> Rotor:
+        """From Euler angles (..., n) about n = 1 to 3 axes, in radians; named as SciPy names them.
+
+        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
+        so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
+        For one axis a single angle needs no array. Angles are numbers, SymPy expressions, or arrays of any
+        library, which stay theirs.
+        """
+        from polhode._algebra import euler
+
+        return euler.from_euler(seq, angles, degrees)
+
+    @staticmethod
+    def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
+        """Return rotors distributed uniformly over all attitudes; `rng` is a NumPy generator or a seed."""
+        return Rotor.from_components(np.random.default_rng(rng).standard_normal((*batch_shape(shape), 4)))
+
+    # --- converters
+
+    def to_matrix(self) -> Any:
+        """Rotation matrices (..., 3, 3) acting on columns."""
+        return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
+
+    def to_quaternion(self, *, order: QuaternionOrder) -> Any:
+        """Quaternions (..., 4), Hamilton's and active; the order must be said."""
+        wxyz_first = _to_wxyz(order)[0] == 0
+        wxyz = _computed("to_quaternion", self._data)
+        return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
+
+    def to_rotation_vector(self) -> Any:
+        """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
+        return _computed("to_rotation_vector", self._data)
+
+    def to_scipy(self) -> Rotation:
+        """Return a ``scipy.spatial.transform.Rotation``."""
+        transform = optional("scipy.spatial.transform", "scipy", "to_scipy")
+        rotation: Rotation = transform.Rotation.from_quat(self.to_quaternion(order="xyzw"))
+        return rotation
+
+    def to_numpy_quaternion(self) -> Any:
+        """Return an array (...) of dtype quaternion, of the package numpy-quaternion."""
+        quaternion = optional("quaternion", "quaternion", "to_numpy_quaternion")
+        return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
+
+    def to_euler(self, seq: str, degrees: bool = False) -> Any:
+        """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
+
+        The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same
+        ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
+        difference of the others is determined: the third angle is then 0, and the three angles give the
+        attitude as ever, so nothing is lost and nothing is warned of.
+        """
+        from polhode._algebra import euler
+
+        return euler.to_euler(self, seq, degrees)
+
+    def plane_angle(self) -> tuple[Multivector, Any]:
+        """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
+        if not is_float(self._data):
+            plane, angle = _generic.rotors.plane_angle(kind_of(self._data), self._data)
+            return Multivector._of(plane, _BIVECTOR), angle
+        pairs = _computed("plane_angle", self._data)
+        return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
+
+    def distance(self, other: Rotor) -> Any:
+        """Return the angle in [0, π] of the turn from this attitude to the other, whatever their signs.
+
+        A float, or an array of the batch shape; accurate however close the attitudes are. Derivatives at 0,
+        where there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.
+        """
+        from polhode._algebra import geometry
+
+        return geometry.distance(self, other)
+
+    def astype(self, dtype: Any) -> Rotor:
+        """Return it with components of another type, of norm 1 in the precision of that."""
+        return Rotor.from_components(Multivector.astype(self, dtype)._data)
+
+    # --- action and algebra
+
+    def _turn(self, X: Any, out: Any = None) -> Multivector:
+        """``R X ~R``, where it is not native."""
+        if not isinstance(X, Multivector):  # an array would be a batch of scalars, which stay as they are
+            raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
+        common_algebra(self, X)
+        a, b = self._data, X._data
+        if not (is_float(a) and is_float(b)):
+            if out is not None:
+                raise TypeError(f"out needs operands of floats, got {self.dtype} and {X.dtype}")
+            kind = kind_of(a, b)
+            return X._like(_generic.rotors.apply(kind, kind.asarray(a), kind.asarray(b), X._mask))
+        batch, a, b = aligned(a, b)
+        result = result_array((*batch, b.shape[-1]), a.dtype, (a, b), out)
+        _native.rotor_apply(a, b, X._mask, result)
+        return X._like(result)
+
+    def _log(self) -> Multivector:
+        """Return the logarithm, where it is not native."""
+        data = self._data
+        if not is_float(data):
+            return Multivector._of(_generic.rotors.log(kind_of(data), data), _BIVECTOR)
+        result = new((*self.shape, 3), data.dtype)
+        _native.rotor_log(data, result)
+        return Multivector._of(result, _BIVECTOR)
+
+    def inverse(self) -> Rotor:
+        """``~R``."""
+        return ~self
+
+    def sqrt(self) -> Rotor:
+        """Return the half-way rotor, whose square is R."""
+        return self**0.5
+
+    def normalized(self) -> Rotor:
+        """Return itself: a rotor has norm 1."""
+        return self
+
+    def grade_involution(self) -> Rotor:
+        """Return itself: a rotor is even."""
+        return self
+
+    def __pow__(self, n: Any) -> Rotor:
+        """``exp(n log R)``: turns by n times the angle, for any real n or array of them."""
+        if isinstance(n, int) and not is_float(self._data):
+            return Rotor._from_rows(_generic.rotors.power(kind_of(self._data), self._data, n))
+        powers = number_like(n, "the power of a rotor", self._data)
+        if is_float(self._data) and is_float(powers) and not self._is_one:
+            return _powers(self, powers)
+        turn = self.log() * powers
+        power: Rotor = turn.exp()
+        return power
+
+
+def _powers(R: Rotor, n: Array) -> Rotor:
+    """Return ``exp(n log R)`` for a batch."""
+    if not np.isfinite(n).all():
+        raise ValueError(f"the power of a rotor must be finite, got {n[~np.isfinite(n)][0]}")
+    batch, data, exponents = aligned(R._data, n[..., np.newaxis])
+    result = new((*batch, 4), data.dtype)
+    _native.rotor_power(data, exponents, result)
+    return Rotor._from_rows(result)
+
+
+def _to_wxyz(order: str) -> list[int]:
+    """Return where w, x, y, z stand in a quaternion of this order."""
+    if order == "wxyz":
+        return [0, 1, 2, 3]
+    if order == "xyzw":
+        return [3, 0, 1, 2]
+    raise ValueError(f'the quaternion order must be "wxyz" or "xyzw", got {order!r}')

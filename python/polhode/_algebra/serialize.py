@@ -1,0 +1,91 @@
+"""Values as plain dictionaries, for JSON and the like."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.algebra import algebra
+from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import is_float
+
+_KEYS = {"algebra", "grades", "rotor", "shape", "dtype", "components"}
+_DTYPES = {"float64": np.float64, "float32": np.float32, "object": object}
+
+
+def to_dict(value: Multivector) -> dict[str, Any]:
+    """Return signature, grades, whether it is a rotor, batch shape, type and components as nested lists.
+
+    All of them are what JSON has: fractions are text, ``"1/3"``. `from_dict` gives the value back, with
+    every bit of it. A TypeError for symbolic coefficients; arrays of other libraries come back as floats.
+    """
+    if not isinstance(value, _native.Multivector):
+        raise TypeError(f"to_dict needs a multivector, got {type(value).__name__}")
+    data = np.asarray(value._data)
+    return {
+        "algebra": list(value.algebra.signature),
+        "grades": list(value.grades),
+        "rotor": isinstance(value, Rotor),
+        "shape": list(value.shape),
+        "dtype": data.dtype.name,
+        "components": np.frompyfunc(_plain, 1, 1)(data).tolist() if data.dtype == object else data.tolist(),
+    }
+
+
+def _plain(x: Any) -> Any:
+    if isinstance(x, Fraction):
+        return str(x)
+    if isinstance(x, int | float):
+        return x
+    raise TypeError(f"a component is {x!r} ({type(x).__name__}), which JSON cannot hold")
+
+
+def from_dict(fields: Mapping[str, Any]) -> Multivector:
+    """Return the value that `to_dict` made the fields of. A ValueError names what does not fit."""
+    missing = _KEYS - set(fields)
+    if missing:
+        raise ValueError(f"a value needs the fields {sorted(_KEYS)}; missing: {sorted(missing)}")
+    try:
+        return _restored(fields)
+    except (TypeError, ArithmeticError) as error:
+        raise ValueError(f"the fields do not make a value: {error}") from error
+
+
+def _restored(fields: Mapping[str, Any]) -> Multivector:
+    signature, grades = list(fields["algebra"]), list(fields["grades"])
+    if len(signature) != 3:
+        raise ValueError(f"an algebra is three counts (p, q, r), got {signature}")
+    space = algebra(*signature)
+    if not grades or grades != sorted(set(grades)) or not set(grades) <= set(range(space.dimension + 1)):
+        raise ValueError(f"grades must rise from 0 to at most {space.dimension}, got {grades}")
+    mask = sum(1 << k for k in grades)
+    if fields["dtype"] not in _DTYPES:
+        raise ValueError(f"dtype must be one of {', '.join(_DTYPES)}, got {fields['dtype']!r}")
+    numbers = np.asarray(np.frompyfunc(_number, 1, 1)(np.array(fields["components"], dtype=object)))
+    shape = (*map(operator.index, fields["shape"]), len(space._indices(mask)))
+    if numbers.size != math.prod(shape):
+        raise ValueError(f"grades {grades} and shape {fields['shape']} do not fit {numbers.size} components")
+    data = as_coefficients(numbers, "a component", _DTYPES[fields["dtype"]]).reshape(shape)
+    if not isinstance(fields["rotor"], bool):
+        raise ValueError(f"rotor must be true or false, got {fields['rotor']!r}")
+    if not fields["rotor"]:
+        return Multivector._of(data, mask, space)
+    if space is not algebra(3) or grades != [0, 2]:
+        raise ValueError(f"a rotor is of Cl(3) with grades [0, 2], got {space} with {grades}")
+    unit = Rotor.from_components(data)
+    # Dividing by a norm that is 1 but for rounding would change the last bits.
+    rounding = 32 * np.finfo(data.dtype if is_float(data) else float).eps
+    same = unit.is_close(Multivector._of(data, mask), rtol=rounding)
+    return Rotor._from_rows(data) if np.all(same) else unit
+
+
+def _number(x: Any) -> Any:
+    return Fraction(x) if isinstance(x, str) else x

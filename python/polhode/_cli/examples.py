@@ -1,0 +1,87 @@
+"""The command ``polhode examples``, and the scenes that come with the package."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import tomllib
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).parents[1] / "_examples"
+
+
+def add(commands: Any) -> None:
+    """Add the command to those of `polhode`."""
+    examples = commands.add_parser(
+        "examples",
+        help="list the example scenes, or copy some to work on",
+        description="List the example scenes, or copy those that are named. No existing file is replaced.",
+    )
+    examples.add_argument(
+        "names", metavar="NAME", nargs="*", help="an example, as listed; all are listed without"
+    )
+    examples.add_argument(
+        "-o",
+        "--output",
+        metavar="FOLDER",
+        default=".",
+        help="copy into this folder; the current one if left out",
+    )
+    examples.set_defaults(command=lambda options: _run(options, examples))
+
+
+def examples() -> dict[str, Path]:
+    """Return the scene file of each example by its name; a FileNotFoundError where there are none."""
+    if not (found := {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}):
+        raise FileNotFoundError(
+            f"{FOLDER} has no examples: this copy of polhode was installed without them. Install a wheel, or "
+            "take them from the folder examples/ of the sources"
+        )
+    return found
+
+
+def _run(options: argparse.Namespace, parser: argparse.ArgumentParser) -> int:
+    known = examples()
+    if not options.names:
+        width = max(map(len, known))
+        print("\n".join(f"{name:<{width}}  {_content(path)['title']}" for name, path in known.items()))
+        return 0
+    names = [name.removesuffix(".toml") for name in options.names]
+    for name in names:
+        if name not in known:
+            close = difflib.get_close_matches(name, known, n=1)
+            hint = f"did you mean {close[0]}?" if close else "`polhode examples` lists them"
+            parser.error(f"no example is named {name!r}; {hint}")
+    copied = _copy(
+        [file for name in dict.fromkeys(names) for file in _files(known[name])], Path(options.output)
+    )
+    print("Written", *(f"  {path}" for path in copied), sep="\n")
+    print(f"Try `polhode run {copied[0]}` or `polhode view {copied[0]}`.")
+    return 0
+
+
+def _content(path: Path) -> dict[str, Any]:
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def _files(scene: Path) -> list[Path]:
+    """Return a scene file and the mesh that it names."""
+    mesh = _content(scene)["body"].get("mesh")
+    return [scene] if mesh is None else [scene, scene.with_name(mesh)]
+
+
+def _copy(files: list[Path], folder: Path) -> list[Path]:
+    """Copy files into a folder, all or none, and return the copies; an OSError if one is there already."""
+    targets = {folder / file.name: file.read_bytes() for file in files}
+    if not folder.is_dir():
+        raise FileNotFoundError(f"there is no directory {folder}; make it first")
+    for path in targets:
+        if path.exists() or path.is_symlink():
+            raise FileExistsError(
+                f"{path} exists and is not replaced; move it, or choose another folder with -o"
+            )
+    for path, content in targets.items():
+        with path.open("xb") as file:
+            file.write(content)
+    return list(targets)

@@ -1,0 +1,408 @@
+"""The command ``polhode``."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import os
+import re
+import signal
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polhode._cli.arguments import file_name
+from polhode._native import SceneError, __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polhode._mechanics.trajectory import Trajectory
+    from polhode._scene.scene import Scene
+
+OK, FAILED, USAGE, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; the exit code is its value."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
+    _heed_ctrl_c()
+    options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
+    try:
+        with _printed_warnings():
+            code = int(options.command(options))
+        print(end="", flush=True)
+    except KeyboardInterrupt as stop:
+        code = _complain(str(stop) or "interrupted; no file was changed", INTERRUPTED)
+    except SceneError as error:
+        code = _complain(str(error), BAD_INPUT)
+    except BrokenPipeError:
+        code = FAILED  # the reader of our output has gone; there is nobody to tell
+    except (OSError, ValueError, ImportError, MemoryError) as error:
+        code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+    _let_go_of_output()
+    return code
+
+
+def _heed_ctrl_c() -> None:
+    """Let Ctrl-C end the command also where it was started to ignore it, as a background job of a script.
+
+    A long run is ended by ``kill -INT``, which keeps the bodies that are complete, wherever it was started.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _printed_warnings() -> Iterator[None]:
+    """Print warnings about results as errors are printed."""
+
+    def show(message: object, *_: object) -> None:
+        print(f"polhode: warning: {message}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        for category in (UserWarning, RuntimeWarning):
+            warnings.simplefilter("always", category)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
+
+
+def _let_go_of_output() -> None:
+    """Drop what cannot be written, which Python would try once more, and complain of, when it ends."""
+    try:
+        print(end="", flush=True)
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _complain(message: str, code: int) -> int:
+    print(message, file=sys.stderr)
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="polhode",
+        description="Rigid-body motion in the language of geometric algebra.",
+        epilog=(
+            "Exit codes: 0 ok, 1 the run failed or an equation is false, 2 wrong usage, 3 bad input file "
+            "or formula, 4 a conserved quantity drifted past its bound, 130 interrupted."
+        ),
+    )
+    parser.add_argument("--version", action="version", version=f"polhode {__version__}")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    run = commands.add_parser("run", help="run a scene: summary, netCDF file, figures")
+    run.add_argument("scene", metavar="SCENE.toml", help="the scene file")
+    run.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE.nc",
+        type=file_name("a motion"),
+        help="write the motion, or all those of an ensemble, to this netCDF file, and figures beside it "
+        "(FILE-motion.png …)",
+    )
+    run.add_argument(
+        "--html",
+        metavar="FILE.html",
+        type=file_name("a page"),
+        help="write a page that shows the motion in any browser, without anything from outside",
+    )
+    run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
+    run.add_argument(
+        "--threads",
+        metavar="N",
+        type=_thread_count,
+        help="share an ensemble's bodies among N threads, all cores if left out; the results are the same",
+    )
+    run.set_defaults(command=_run)
+
+    check = commands.add_parser("check", help="check a scene and what it names, without running it")
+    check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
+    check.add_argument("--json", action="store_true", help="print the findings as JSON")
+    check.set_defaults(command=_check)
+    _add_view(commands)
+    _add_formulas(commands)
+    _add_others(commands)
+    return parser
+
+
+def _add_view(commands: Any) -> None:
+    view = commands.add_parser(
+        "view",
+        help="show a motion in the browser",
+        description="Show a scene, or a motion that was written, in the browser of this machine. The file is "
+        "read again whenever the page is loaded, so that a scene can be edited beside it.",
+    )
+    view.add_argument("file", metavar="FILE", help="a scene, or the netCDF file of one body's motion")
+    view.add_argument(
+        "--port", metavar="N", type=_port, default=0, help="serve at this port; a free one if left out"
+    )
+    view.add_argument(
+        "--no-browser", dest="browser", action="store_false", help="only print where the page is"
+    )
+    view.set_defaults(command=_view)
+
+
+def _add_formulas(commands: Any) -> None:
+    evaluate = commands.add_parser(
+        "eval",
+        help="evaluate formulas",
+        description="Evaluate formulas, written as on paper or in ASCII: `-I a∧b` is `-I a^b`.",
+        epilog="Lines of files and of standard input are formulas, `let NAME = VALUE`, or comments after #.",
+    )
+    evaluate.add_argument("formulas", metavar="FORMULA", nargs="*", help="a formula, or an equation to check")
+    evaluate.add_argument(
+        "-f", "--file", metavar="FILE", help="read formulas from this file first, from standard input for -"
+    )
+    evaluate.add_argument(
+        "--let",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        type=_definition,
+        help="give a name a value, which may have units (θ=90deg), or define a function (V(x)=½ x·x)",
+    )
+    form = evaluate.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print the values as JSON")
+    form.add_argument("--latex", action="store_true", help="print formulas and values as LaTeX")
+    evaluate.set_defaults(command=_eval)
+
+    repl = commands.add_parser("repl", help="evaluate formulas as you type them")
+    repl.set_defaults(command=_repl)
+
+
+def _add_others(commands: Any) -> None:
+    from polhode._cli import demo, examples
+    from polhode._cli import figure as _figure_command
+
+    _figure_command.add(commands, _progress)
+    demo.add(commands)
+    examples.add(commands)
+
+
+def _definition(text: str) -> str:
+    """Return what --let is given; without a name and a value it is wrong usage."""
+    name, sign, value = text.partition("=")
+    if not (sign and name.strip() and value.strip()):
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as θ=90deg, found {text!r}")
+    return text
+
+
+# What begins with a minus and yet is no option: a formula -a∧b, a view -20,35.
+_VALUES = {"eval": r"-[^-fh]", "figure": r"-[.\d]", "film": r"-[.\d]"}
+
+
+def _with_values(arguments: list[str]) -> list[str]:
+    """Return arguments among which these are taken for values: argparse takes no option with a space."""
+    value = _VALUES.get(arguments[0]) if arguments else None
+    return arguments if value is None else [f" {x}" if re.match(value, x) else x for x in arguments]
+
+
+def _eval(options: argparse.Namespace) -> int:
+    from polhode._formula.shell import eval as _eval
+
+    try:
+        return _eval.run(options)
+    except _eval.UnreadableError as error:
+        return _complain(str(error), BAD_INPUT)
+
+
+def _view(options: argparse.Namespace) -> int:
+    from polhode._viewer import server
+
+    try:
+        return server.run(options, _progress)
+    except server.UnreadableError as error:
+        return _complain(str(error), BAD_INPUT)
+
+
+def _repl(_: argparse.Namespace) -> int:
+    from polhode._formula.shell import repl as _repl
+
+    return _repl.run()
+
+
+def _thread_count(text: str) -> int:
+    """Return how many threads; anything but a whole number from 1 on is wrong usage."""
+    if not (text.isascii() and text.isdigit() and int(text) >= 1):
+        raise argparse.ArgumentTypeError(f"expected a whole number of threads, 1 or more, found {text!r}")
+    return int(text)
+
+
+def _port(text: str) -> int:
+    """Return a port; anything else is wrong usage."""
+    if not (text.isascii() and text.isdigit() and int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"expected a port, a whole number up to 65535, found {text!r}")
+    return int(text)
+
+
+def _run(options: argparse.Namespace) -> int:
+    from polhode._scene.scene import Scene
+
+    output = None if options.output is None else Path(options.output)
+    scene = Scene.read(options.scene)
+    targets = _checked_targets(output, scene)
+    html = _checked_page(options.html)
+    run = _run_one if scene.ensemble is None else _run_many
+    result = run(scene, targets, html, options)
+    written = result["files"] = [str(path) for path in (*targets, *([html] if html else []))]
+    if options.json:
+        print(json.dumps(result, indent=2, allow_nan=False))
+    elif written:
+        print("Written")
+        print("\n".join(f"  {path}" for path in written))
+    else:
+        print("Nothing was written; add -o FILE.nc for data and figures, --html FILE.html for a page.")
+    if result["run"]["drift_within_bound"] is None:
+        return _complain("polhode: error: no body could be followed to the end", FAILED)
+    return OK if result["run"]["drift_within_bound"] else DRIFTED
+
+
+def _run_one(
+    scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
+) -> dict[str, Any]:
+    """Run one body, print its page and write its files; return its summary."""
+    from polhode._report.summary import summary
+    from polhode._report.text import as_text
+
+    with _progress(scene.path.name) as report:
+        trajectory = scene.run(report, options.threads)
+    result = summary(scene, trajectory)
+    if not options.json:
+        print(as_text(result))
+    _write(targets, html, scene, trajectory)
+    return result
+
+
+def _run_many(
+    scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
+) -> dict[str, Any]:
+    """The same for the bodies of an ensemble."""
+    from polhode._report.ensemble import run as _ensemble_run
+    from polhode._report.ensemble.summary import summary
+    from polhode._report.ensemble.text import as_text
+
+    pages = {}
+    if html:
+        from polhode._viewer.server import scene_page
+
+        pages[html] = scene_page(scene)
+    result = summary(_ensemble_run.run(scene, targets, options.threads, pages))
+    if not options.json:
+        print(as_text(result))
+    return result
+
+
+def _check(options: argparse.Namespace) -> int:
+    from polhode._scene.scene import Scene
+
+    findings = []
+    for path in options.scenes:
+        try:
+            scene = Scene.read(path)
+        except SceneError as error:
+            findings.append({"scene": path, "ok": False, "errors": str(error)})
+            if not options.json:
+                _complain(str(error), BAD_INPUT)
+        else:
+            findings.append({"scene": path, "ok": True, "body": repr(scene.body), **_size(scene)})
+            if not options.json:
+                print(f"{path}: ok, {scene.body!r}, {len(scene.times)} output times{_many(scene)}")
+    if options.json:
+        print(json.dumps(findings, indent=2))
+    return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
+
+
+def _size(scene: Scene) -> dict[str, int]:
+    """Return how many bodies an ensemble has and how much memory they will take; nothing without one."""
+    if scene.ensemble is None:
+        return {}
+    return {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
+
+
+def _many(scene: Scene) -> str:
+    """Return the same in words."""
+    if scene.ensemble is None:
+        return ""
+    from polhode._support.memory import size
+
+    return f", {scene.ensemble.number} bodies, {size(scene.result_bytes)} of results"
+
+
+def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
+    """Return the paths of the data and two figures; what cannot be written is refused before the work."""
+    if output is None:
+        return []
+    from polhode._figures.registry import ON_ELLIPSOID
+    from polhode._report.describe import kind_of
+    from polhode._report.netcdf import require_libraries
+    from polhode._support.extras import optional
+    from polhode._support.files import check_target
+
+    require_libraries()
+    optional("matplotlib", "plot", "a figure")
+    figures = ("motion", "polhode" if kind_of(scene) in ON_ELLIPSOID else "axis")
+    if scene.ensemble is not None:
+        figures = ("ensemble", "directions")
+    targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in figures)]
+    for path in targets:
+        check_target(path)
+    return targets
+
+
+def _checked_page(name: str | None) -> Path | None:
+    """Return the path of the page; what cannot be made or written is refused before the work."""
+    if name is None:
+        return None
+    from polhode._viewer.server import check_page
+
+    check_page(Path(name))
+    return Path(name)
+
+
+def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Trajectory) -> None:
+    """Write the data, the figures and the page, all of them or none."""
+    from polhode._support.files import write_atomically
+
+    contents: dict[Path, bytes] = {}
+    if targets:
+        from polhode._figures.registry import characteristic_figure
+        from polhode._figures.style import as_png, motion_figure
+        from polhode._report.netcdf import netcdf
+
+        second = characteristic_figure(scene, trajectory)
+        made = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
+        contents |= dict(zip(targets, made, strict=True))
+    if html:
+        from polhode._viewer.server import motion_page
+
+        contents[html] = motion_page(trajectory)
+    write_atomically(contents)
+
+
+@contextmanager
+def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
+    """Show a bar on standard error, if that is a terminal and the run takes long enough to see it."""
+    from polhode._support.extras import progress_bar
+
+    if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:
+        yield None
+        return
+    with shown as bar:
+        task = bar.add_task(name, total=1.0)
+
+        def report(number: int, fraction: float) -> None:
+            bar.update(task, description=f"{name}, pass {number}", completed=fraction)
+
+        yield report
+
+
+if __name__ == "__main__":
+    sys.exit(main())

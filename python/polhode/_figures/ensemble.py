@@ -1,0 +1,251 @@
+"""Figures of an ensemble: how its motions spread with time, and where its bodies point in space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._algebra.constructors import vector
+from polhode._figures.style import _BLACK, _BLUE, _ORANGE, new_figure, time_unit
+from polhode._report.ensemble.collect import Gathered
+from polhode._report.ensemble.quantiles import first_above, quantiles
+from polhode._report.text import time as told_time
+from polhode._support.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_WIDE, _NARROW = "#CFE3F1", "#86BBDD"
+
+# Width in rad of the kernel by which directions are smeared, and the cells in which they are counted before
+# and in which the density is drawn.
+_SMEAR = np.radians(4.0)
+_COUNTED, _DRAWN = (180, 90), (240, 120)
+# Cells whose kernels are computed at once: some 30 MB.
+_AT_ONCE = 256
+# The cosine above which a direction is said to be along another.
+_ALONG = 0.999
+# The latitude in rad from which a label finds no room above.
+_HIGH = np.radians(70)
+# The colours' range, of the density over that of directions all alike.
+_FAINTEST, _DENSEST = 0.03, 100.0
+
+
+def fan_figure(gathered: Gathered) -> Figure:
+    """Draw over time how bodies lie around the undisturbed motion: bands of quantiles.
+
+    From above the angle of the attitude from the undisturbed one, the tilt of an axis, and the rate.
+    """
+    figure = new_figure(8, 8)
+    panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+    times, along = _scale(gathered.scene.elapsed)
+    seconds, unit = time_unit(np.sqrt(times[0] * times[-1]) if along == "log" else times)
+    for axes, (name, factor, label) in zip(
+        panels,
+        (
+            ("from_nominal", 180 / np.pi, "attitude, from that of the\nundisturbed body, degrees"),
+            ("tilt", 180 / np.pi, f"tilt of the axis\nfrom {gathered.tilt_name}, degrees"),
+            ("rate", 1.0, "angular velocity |Ω|,\nrad/s"),
+        ),
+        strict=True,
+    ):
+        bands = factor * quantiles(gathered.series[name][:, -len(times) :])
+        _fan(axes, times / seconds, bands)
+        axes.set_xscale(along)
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.25, lw=0.6)
+        axes.margins(x=0)
+    _horizons(panels[0], gathered, seconds)
+    panels[1].ticklabel_format(axis="y", useOffset=False)
+    panels[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    panels[-1].set_xlabel(f"time, {unit}")
+    figure.align_ylabels()
+    figure.suptitle(gathered.scene.name)
+    figure.supxlabel(
+        f"Quantiles over {_counted(gathered)}; the axis: {gathered.axis_name}.",
+        fontsize=9,
+    )
+    return figure
+
+
+def _scale(times: Array) -> tuple[Array, str]:
+    """Return the times that are drawn, and along which scale: those in equal ratios without the start."""
+    if len(times) > 3 and times[-1] - times[-2] > 2 * (times[2] - times[1]):
+        return times[1:], "log"
+    return times, "linear"
+
+
+def _fan(axes: Axes, t: Array, bands: Array) -> None:
+    low, lower, median, upper, high = bands
+    axes.fill_between(t, low, high, color=_WIDE, lw=0, label="5 to 95 %")
+    axes.fill_between(t, lower, upper, color=_NARROW, lw=0, label="25 to 75 %")
+    axes.plot(t, median, color=_BLUE, lw=1.4, label="median")
+
+
+def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
+    """Mark when the 95 % quantile of the angle passes 10° and 90°."""
+    highest = quantiles(gathered.series["from_nominal"])[-1]
+    axes.set_ylim(0, 185)
+    axes.set_yticks(range(0, 181, 45))
+    for angle in (10, 90):
+        moment = first_above(gathered.scene.elapsed, highest, np.radians(angle))
+        if not moment:
+            continue
+        # To the left, above the bands, if there is room.
+        left = axes.transLimits.transform(axes.transScale.transform((moment / seconds, angle)))[0] > 0.35
+        axes.plot(moment / seconds, angle, "o", color=_ORANGE, ms=5, mec="white", mew=0.8, zorder=5)
+        axes.annotate(
+            f"95 % within {angle}° for {told_time(moment, 3)}",
+            (moment / seconds, angle),
+            xytext=(-7, 7) if left else (9, 0),
+            textcoords="offset points",
+            ha="right" if left else "left",
+            va="baseline" if left else "center",
+            color=_ORANGE,
+            fontsize=9,
+            bbox={"fc": "white", "ec": "none", "alpha": 0.0 if left else 0.75, "pad": 1.5},
+        )
+
+
+def _counted(gathered: Gathered) -> str:
+    finished = gathered.complete - len(gathered.failures)
+    without = f" ({len(gathered.failures)} failed on the way)" if gathered.failures else ""
+    counted = f"{finished:,}".replace(",", "\u2009")
+    return f"{counted} {'body' if finished == 1 else 'bodies'}{without}"
+
+
+def directions_figure(gathered: Gathered) -> Figure:
+    """Draw maps of the sphere, equal in area, of where the axis points in space at three times.
+
+    In the middle of each is that from which the axis is tilted, L of the undisturbed body or e3; else e1.
+    """
+    figure = new_figure(11, 3.5)
+    middle, name = _middle(gathered)
+    frame = _frame(middle)
+    panels = figure.subplots(1, 3, subplot_kw={"projection": "hammer"})
+    times = gathered.scene.elapsed
+    drawn: Any = None
+    for k, axes in enumerate(panels):
+        directions = gathered.directions[:, k].astype(float)
+        drawn = _map(axes, directions[np.isfinite(directions).all(axis=1)] @ frame.T)
+        when = float(times[gathered.shown[k]])
+        axes.set_title("at the start" if when == 0 else f"after {told_time(when, 3)}", fontsize=11)
+        _mark(axes, gathered, frame, gathered.shown[k])
+    bar = figure.colorbar(
+        drawn, ax=list(panels), orientation="horizontal", shrink=0.4, aspect=40, pad=0.03, extend="both"
+    )
+    bar.set_label("density, over that of directions all alike", fontsize=9)
+    figure.suptitle(gathered.scene.name)
+    figure.supxlabel(
+        f"Where {gathered.axis_name} points in space, of {_counted(gathered)}, smeared over "
+        f"{np.degrees(_SMEAR):.0f}°; ring: the undisturbed body.\n"
+        f"The sphere of space axes from outside, in equal areas, about {name}; "
+        f"{'e2' if abs(frame[0, 2]) > _ALONG else 'e3'} is above it.",
+        fontsize=9,
+    )
+    return figure
+
+
+def _middle(gathered: Gathered) -> tuple[Array, str]:
+    """Return the direction in the middle of the maps and its name: that from which the axis is tilted."""
+    momentum = gathered.nominal.momentum_space.components[0]
+    size = float(np.linalg.norm(momentum))
+    if gathered.tilt_name == "L" and size > 0:
+        return momentum / size, "the momentum L of the undisturbed body"
+    if gathered.tilt_name == "the vertical":
+        return np.array([0.0, 0.0, 1.0]), "e3"
+    return np.array([1.0, 0.0, 0.0]), "e1"
+
+
+def _frame(middle: Array) -> Array:
+    """Return the rotation (3, 3) that puts a direction to the middle and e3 above it, e2 above e3."""
+    up = np.array([0.0, 1.0, 0.0]) if abs(middle[2]) > _ALONG else np.array([0.0, 0.0, 1.0])
+    up = up - (up @ middle) * middle
+    up = up / np.linalg.norm(up)
+    return np.stack([middle, np.cross(up, middle), up])
+
+
+def _map(axes: Axes, directions: Array) -> Any:
+    from matplotlib import colormaps
+    from matplotlib.colors import LogNorm
+
+    longitude, latitude = np.meshgrid(
+        np.linspace(-np.pi, np.pi, _DRAWN[0] + 1), np.linspace(-np.pi / 2, np.pi / 2, _DRAWN[1] + 1)
+    )
+    density = _density(directions, _unit_vectors(longitude, latitude))
+    colours = colormaps["YlGnBu"].with_extremes(under="white")
+    drawn = axes.pcolormesh(
+        longitude,
+        latitude,
+        np.maximum(density, np.finfo(float).tiny),
+        cmap=colours,
+        norm=LogNorm(_FAINTEST, _DENSEST),
+        shading="gouraud",
+        rasterized=True,
+    )
+    axes.grid(color=_BLACK, alpha=0.25, lw=0.5)
+    axes.set_xticks(np.radians([-120, -60, 0, 60, 120]), [])
+    axes.set_yticks(np.radians([-60, -30, 0, 30, 60]), [])
+    return drawn
+
+
+def _mark(axes: Axes, gathered: Gathered, frame: Array, k: int) -> None:
+    """Mark where the axis of the undisturbed body points, and the axes of space."""
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=2, foreground="white")]
+    nominal = gathered.nominal
+    path = nominal.rotor(vector(gathered.axis)).components[k]
+    axes.plot(*_angles(frame @ path), "o", mfc="none", mec=_ORANGE, mew=1.4, ms=9, zorder=5)
+    for name, direction in zip(("e1", "e2", "e3"), frame.T, strict=True):
+        place = _angles(direction)
+        axes.plot(*place, "o", color=_BLACK, ms=3.5, mec="white", mew=0.6, zorder=4)
+        above = place[1] > _HIGH
+        offset = (7, -10) if above else (7, 4)
+        axes.annotate(
+            name,
+            place,
+            xytext=offset,
+            textcoords="offset points",
+            fontsize=8,
+            zorder=6,
+            path_effects=halo,
+        )
+
+
+def _unit_vectors(longitude: Array, latitude: Array) -> Array:
+    across = np.cos(latitude)
+    return np.stack([across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1)
+
+
+def _angles(direction: Array) -> tuple[Any, Any]:
+    """Return longitudes and latitudes of directions (..., 3)."""
+    x, y, z = np.moveaxis(direction, -1, 0)
+    return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+
+
+def _density(directions: Array, points: Array) -> Array:
+    """Return the density of directions (n, 3) at points (..., 3) of the sphere, 1 where all are alike.
+
+    A sum of kernels ``exp(κ(cos θ − 1))``, κ = 1/width², each of the integral ``2π(1 − exp(−2κ))/κ``.
+    Directions in one cell of a fine grid are put together in their mean, which is much closer to them than
+    the width.
+    """
+    longitude, latitude = _angles(directions)
+    columns = ((longitude / (2 * np.pi) + 0.5) * _COUNTED[0]).astype(int) % _COUNTED[0]
+    rows = np.minimum(((latitude / np.pi + 0.5) * _COUNTED[1]).astype(int), _COUNTED[1] - 1)
+    cells, which, counts = np.unique(rows * _COUNTED[0] + columns, return_inverse=True, return_counts=True)
+    means = np.stack([np.bincount(which, directions[:, k], len(cells)) for k in range(3)], axis=-1)
+    means = means / np.linalg.norm(means, axis=-1, keepdims=True)
+    sharpness = 1 / _SMEAR**2
+    flat = points.reshape(-1, 3).astype(np.float32)
+    total = np.zeros(len(flat))
+    for start in range(0, len(cells), _AT_ONCE):
+        some = slice(start, start + _AT_ONCE)
+        near = flat @ means[some].T.astype(np.float32)
+        total += np.exp(np.float32(sharpness) * (near - 1)) @ counts[some].astype(np.float32)
+    size = (1 - np.exp(-2 * sharpness)) / (2 * sharpness)
+    density: Array = total / (max(len(directions), 1) * size)
+    return density.reshape(points.shape[:-1])

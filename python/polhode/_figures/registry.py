@@ -1,0 +1,210 @@
+"""The kinds of figures that a motion has, and figures as files."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._figures.camera import view_of
+from polhode._figures.spheres import axis_figure, orbit_figure, polhode_figure
+from polhode._figures.style import main_axis, motion_figure, require_times
+from polhode._report.describe import kind_of, long_axis, orbit_of, weight, wheel
+from polhode._support.arrays import Array
+from polhode._support.extras import optional
+from polhode._support.files import form_of, write_atomically
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from polhode._mechanics.trajectory import Trajectory
+    from polhode._scene.scene import Scene
+
+# Kinds of motion whose angular velocity stays on an ellipsoid in the body.
+ON_ELLIPSOID = ("free", "damped", "gyrostat")
+# Kinds in which depth is drawn, seen from a direction.
+_SEEN = ("polhode", "locus", "phase", "scene")
+
+# In SVG text is outlines, for few readers have a font with ∧ and ₁; in PDF it stays text, in a font of the
+# type that journals take.
+_AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 42}
+_UNDATED: dict[str, dict[str, Any]] = {
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None},
+    "png": {"Software": None},
+}
+
+
+def figure(trajectory: Trajectory, kind: str, view: Any = None, time: float | None = None) -> Figure:
+    """Return a figure of one body; see `Trajectory.plot`."""
+    check(kind, view, time)
+    require_times(trajectory)
+    return KINDS[kind](trajectory, view, time)
+
+
+def check(kind: str, view: Any, time: float | None) -> None:
+    """Raise a ValueError for a figure that no motion has."""
+    if kind not in KINDS:
+        raise ValueError(f"unknown kind of figure {kind!r}, expected one of {', '.join(KINDS)}")
+    if view is not None and kind not in _SEEN:
+        raise ValueError(f"view is for the kinds {', '.join(_SEEN)}; {kind!r} has no depth")
+    if time is not None and kind != "scene":
+        raise ValueError(f"time is for the kind 'scene'; {kind!r} shows all times")
+    view_of(view)
+
+
+def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
+    """Draw what a kind of motion is known by: its polhode, or the path of an axis."""
+    kind = kind_of(scene)
+    if kind in ON_ELLIPSOID:
+        return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
+    if kind == "satellite":
+        path = long_axis(orbit_of(scene.torque), trajectory)
+        return orbit_figure(trajectory, path, "the axis of the least moment")
+    if scene.held and (c := weight(scene.torque)).any():
+        return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
+    number, axis = main_axis(trajectory)
+    return axis_figure(trajectory, axis, f"principal axis {number}")
+
+
+def encoded(figure: Figure, form: str) -> bytes:
+    """Return a figure as the bytes of a file, the same for the same figure."""
+    buffer = io.BytesIO()
+    with optional("matplotlib", "plot", "a figure").rc_context(_AS_FILES):
+        figure.savefig(buffer, format=form, dpi=200, metadata=_UNDATED[form])
+    return buffer.getvalue()
+
+
+def write(figure: Figure, path: Path) -> None:
+    """Write a figure, whole or not at all."""
+    write_atomically({path: encoded(figure, form_of(path, "a figure"))})
+
+
+def _motion(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    return motion_figure(trajectory)
+
+
+def _polhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    kind = _kind(trajectory)
+    if kind not in ON_ELLIPSOID:
+        raise ValueError(
+            "kind 'polhode' is for bodies that no torque but damping in proportion to L turns, or with a "
+            f"wheel, whose Ω stays on an ellipsoid; {_acting(trajectory)}"
+        )
+    h = _wheel(trajectory)
+    return polhode_figure(trajectory, h if kind == "gyrostat" else None, view)
+
+
+def _herpolhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    from polhode._figures.herpolhode import herpolhode_figure
+
+    if _kind(trajectory) != "free":
+        raise ValueError(
+            "kind 'herpolhode' is for free bodies: only their Ω stays in an invariable plane; "
+            + _acting(trajectory)
+        )
+    _require_path(trajectory, "herpolhode")
+    return herpolhode_figure(trajectory)
+
+
+def _locus(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    from polhode._figures.tilt import locus_figure
+
+    return locus_figure(trajectory, _weight(trajectory, "locus"), view)
+
+
+def _drift(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    from polhode._figures.drift import drift_figure
+
+    return drift_figure(trajectory)
+
+
+def _phase(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    from polhode._figures import phase_portrait, tilt
+
+    _require_path(trajectory, "phase")
+    kind = _kind(trajectory)
+    if kind in ON_ELLIPSOID:
+        return phase_portrait.phase_figure(trajectory, _wheel(trajectory), view)
+    if view is not None:
+        raise ValueError("view is for the phase portraits of bodies without torque; this one has no depth")
+    if kind == "heavy":
+        return tilt.top_figure(trajectory, _weight(trajectory, "phase"))
+    if kind == "satellite":
+        return tilt.satellite_figure(trajectory)
+    return tilt.angle_figure(trajectory)
+
+
+def _scene(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
+    from polhode._figures.stage import scene_figure
+
+    return scene_figure(trajectory, view, time)
+
+
+KINDS: dict[str, Callable[[Trajectory, Any, float | None], Figure]] = {
+    "motion": _motion,
+    "polhode": _polhode,
+    "herpolhode": _herpolhode,
+    "locus": _locus,
+    "drift": _drift,
+    "phase": _phase,
+    "scene": _scene,
+}
+
+
+# --- what a motion is of
+
+
+def _kind(trajectory: Trajectory) -> str:
+    """Return the kind of motion by what acted, or where that is not known by what was conserved."""
+    if trajectory._origin is not None:
+        return kind_of(trajectory._origin)
+    if "angular_momentum" not in trajectory.certificate.conserved:
+        return "unknown"
+    return "gyrostat" if _wheel(trajectory).any() else "free"
+
+
+def _wheel(trajectory: Trajectory) -> Array:
+    """Return the momentum of wheels (3,) in body axes: L but for that of the body's own turning."""
+    if trajectory._origin is not None:
+        return np.zeros(3) + wheel(trajectory._origin.torque)
+    momentum = (~trajectory.rotor)(trajectory.momentum_space).components
+    h: Array = (momentum - trajectory.inertia(trajectory.omega_body).components).mean(axis=0)
+    return h if np.linalg.norm(h) > 1e-9 * np.abs(momentum).max(initial=0.0) else np.zeros(3)
+
+
+def _weight(trajectory: Trajectory, kind: str) -> Array:
+    """Return m g times the centre of mass (3,) in body axes; a ValueError without gravity."""
+    setting = trajectory._origin
+    c = None if setting is None or not setting.held else weight(setting.torque)
+    if c is None or not c.any():
+        raise ValueError(
+            f"kind {kind!r} is for a body held at a fixed point under gravity (ph.torque.heavy, or "
+            f"[gravity] in a scene); {_acting(trajectory)}"
+        )
+    _require_path(trajectory, kind)
+    return c
+
+
+def _acting(trajectory: Trajectory) -> str:
+    """Say what acts, for an error."""
+    setting = trajectory._origin
+    if setting is None:
+        return (
+            "what acted on this one is not known, for it was picked from a batch or unpickled; "
+            "simulate the body alone"
+        )
+    if setting.torque is None:
+        return "on this one no torque acts"
+    return f"on this one acts {', '.join(law.name for law in setting.torque.laws)}"
+
+
+def _require_path(trajectory: Trajectory, kind: str) -> None:
+    n = len(trajectory.time)
+    if n < 2:
+        raise ValueError(
+            f"kind {kind!r} draws a path, which needs 2 output times or more; this motion has {n}"
+        )

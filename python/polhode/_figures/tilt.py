@@ -1,0 +1,218 @@
+"""The axis of a body in space: its path on the unit sphere, and its angle against the rate of that."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._algebra.constructors import bivector, vector
+from polhode._figures.spheres import path_figure
+from polhode._figures.style import (
+    _BLACK,
+    OTHERS,
+    SPACE_AXES,
+    TRACE,
+    dress,
+    entitle,
+    explain,
+    in_our_look,
+    main_axis,
+    new_figure,
+    title_of,
+)
+from polhode._mechanics.closed_forms import LagrangeTop
+from polhode._mechanics.smooth import rotor_at, samples
+from polhode._report.describe import long_axis, orbit_of
+from polhode._support.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from polhode._mechanics.trajectory import Trajectory
+
+# Tilts and rates at which the energy is computed for its curves.
+_GRID = (321, 241)
+# How far beyond the tilts of a motion its phase portrait reaches, over their span, and at least, in rad.
+_BEYOND, _LEAST = 0.35, 1e-5
+# An axis that tilts less quickly keeps its tilt, in rad/s.
+_STILL = 1e-9
+
+
+def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
+    """Draw the path of the axis from the fixed point to the centre of mass, and the bounds of its tilt."""
+    axis = c / np.linalg.norm(c)
+    path = samples(trajectory).rotor(vector(axis)).components
+    top = _lagrange(trajectory, c)
+    caption = (
+        "Path on the unit sphere of the axis from the fixed point to the centre of mass, in space axes eₖ, "
+        "from the dot; gravity is along −e₃. "
+    )
+    if top is None:
+        low, high = (float(x) for x in np.degrees([_tilt(path).min(), _tilt(path).max()]))
+        bounds = (np.radians(low), np.radians(high))
+        caption += f"Black: the least and the largest tilt that it reached, {low:.5g}° and {high:.5g}°. "
+    else:
+        told = top.describe()
+        bounds = (told["tilt_min"], told["tilt_max"])
+        low, high = (float(x) for x in np.degrees(bounds))
+        caption += f"Black: the bounds of its tilt, {low:.5g}° and {high:.5g}°. "
+    return path_figure(trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
+
+
+@in_our_look
+def top_figure(trajectory: Trajectory, c: Array) -> Figure:
+    """Draw the tilt of a top's axis against its rate, among the curves of energy of its two momenta."""
+    theta, rate = _tilt_and_rate(trajectory, c / np.linalg.norm(c))
+    figure, axes = _portrait(trajectory)
+    top = _lagrange(trajectory, c)
+    caption = "Tilt θ of the axis from the fixed point to the centre of mass from up, e₃, and its rate"
+    told = {} if top is None else top.describe()
+    fastest = float(np.nanmax(np.abs(rate), initial=0.0))
+    if top is None:
+        _draw(axes, np.degrees(theta), np.degrees(rate))
+        caption += ", from the dot."
+    elif fastest <= _STILL and not told["precession_rate"]:
+        _draw(axes, np.degrees(theta), np.nan_to_num(np.degrees(rate)))
+        caption += ": the axis stands still."
+    else:
+        _draw_energy(axes, trajectory, c, told, fastest)
+        _draw(axes, np.degrees(theta), np.degrees(rate))
+        for bound in (told["tilt_min"], told["tilt_max"]):
+            axes.axvline(np.degrees(bound), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
+        caption += (
+            f", from the dot. Black: the curve of its energy, {told['energy']:.5g} J; grey: other energies "
+            f"with the same momentum about e₃, {told['vertical_momentum']:.5g} kg m²/s, and about the axis, "
+            f"{told['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
+        )
+    axes.set_xlabel("tilt θ, degrees")
+    axes.set_ylabel("θ', degrees/s")
+    explain(figure, caption)
+    return figure
+
+
+@in_our_look
+def satellite_figure(trajectory: Trajectory) -> Figure:
+    """Draw the angle of a satellite's long axis from up, in the plane of its orbit, against its rate."""
+    assert trajectory._origin is not None
+    along, _, up = long_axis(orbit_of(trajectory._origin.torque), trajectory).T
+    angle = np.unwrap(np.arctan2(along, up))
+    rate = _rate_of(angle, trajectory.time)
+    figure, axes = _portrait(trajectory)
+    turns = 2 * np.pi * np.round(angle / (2 * np.pi))
+    jumps = np.flatnonzero(np.diff(turns)) + 1
+    within = np.insert(np.degrees(angle - turns), jumps, np.nan)
+    _draw(axes, within, np.insert(np.degrees(rate), jumps, np.nan))
+    axes.set_xlabel("angle from up, forward along the orbit, degrees")
+    axes.set_ylabel("its rate, degrees/s")
+    explain(
+        figure,
+        "The axis of the least moment, in the plane of the orbit, from the dot; the rate is that between "
+        "output times.",
+    )
+    return figure
+
+
+@in_our_look
+def angle_figure(trajectory: Trajectory) -> Figure:
+    """Draw the angle from e3 of the axis about which the body mostly turns, against its rate."""
+    number, axis = main_axis(trajectory)
+    theta, rate = _tilt_and_rate(trajectory, axis)
+    figure, axes = _portrait(trajectory)
+    _draw(axes, np.degrees(theta), np.degrees(rate))
+    name = "₁₂₃"[number - 1]
+    axes.set_xlabel(f"angle θ of principal axis {number} from e₃, degrees")
+    axes.set_ylabel("θ', degrees/s")
+    explain(
+        figure,
+        f"The axis f{name} about which the body mostly turns: its angle from e₃ of space, from the dot.",
+    )
+    return figure
+
+
+def _rate_of(angle: Array, time: Array) -> Array:
+    """Return the rate of an angle (n,) from its values; one time has one rate."""
+    moments, first, which = np.unique(time, return_index=True, return_inverse=True)
+    if len(moments) < 2:
+        return np.zeros_like(angle)
+    rate: Array = np.gradient(angle[first], moments)[which]
+    return rate
+
+
+def _portrait(trajectory: Trajectory) -> tuple[Figure, Axes]:
+    figure = new_figure(5.2, 4.6)
+    axes = figure.add_subplot()
+    entitle(figure, title_of(trajectory, "Phase portrait"))
+    dress(axes)
+    axes.axhline(0, color=_BLACK, lw=0.5, zorder=1)
+    return figure, axes
+
+
+def _draw(axes: Axes, angle: Array, rate: Array) -> None:
+    axes.plot(angle, rate, color=TRACE, lw=1.3, zorder=3)
+    axes.plot(angle[0], rate[0], "o", color=TRACE, ms=6, mec="white", mew=0.8, zorder=5)
+
+
+def _lagrange(trajectory: Trajectory, c: Array) -> LagrangeTop | None:
+    """Return the motion in closed form; None for a body that is not symmetric about c."""
+    try:
+        return LagrangeTop(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0], c)
+    except ValueError:
+        return None
+
+
+def _tilt(path: Array) -> Array:
+    """Return the angles (n,) of directions (n, 3) from e3."""
+    angles: Array = np.arctan2(np.hypot(path[:, 0], path[:, 1]), path[:, 2])
+    return angles
+
+
+def _tilt_and_rate(trajectory: Trajectory, axis: Array) -> tuple[Array, Array]:
+    """Return the angle from e3 of a direction n fixed in the body (3,) and its rate, by n' = n·Ω_S (4.4)."""
+    states = samples(trajectory)
+    n = states.rotor(vector(axis))
+    moving = n.dot(states.rotor(states.omega_body)).components
+    path = n.components
+    across = np.hypot(path[:, 0], path[:, 1])
+    # cos θ = n·e3, so that −sin θ θ' = n'·e3; upright the rate has no sign, and is left out.
+    rate = np.full(len(across), np.nan)
+    np.divide(-moving[:, 2], across, out=rate, where=across > 1e-9)
+    return _tilt(path), rate
+
+
+def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, told: dict[str, Any], fastest: float) -> None:
+    """Draw the curves of equal energy with the momenta of this motion, about up and about its axis."""
+    low, high = told["tilt_min"], told["tilt_max"]
+    beyond = max(_BEYOND * (high - low), _LEAST)
+    theta = np.linspace(max(low - beyond, 1e-4), min(high + beyond, np.pi - 1e-4), _GRID[0])
+    reach = 1.45 * fastest if fastest > _STILL else beyond * told["precession_rate"]
+    rate = np.linspace(-abs(reach), abs(reach), _GRID[1])
+    energy = _energy(trajectory, c, told, theta, rate[:, np.newaxis])
+    least, present = float(energy.min()), told["energy"]
+    span = max(present - least, 1e-12 * abs(present))
+    others = least + span * np.array([0.2, 0.6, 1.5, 2.1, 2.8, 3.6])
+    x, y = np.degrees(theta), np.degrees(rate)
+    axes.contour(x, y, energy, levels=others, colors=OTHERS, linewidths=0.8, zorder=1)
+    axes.contour(x, y, energy, levels=[present], colors=_BLACK, linewidths=2.6, zorder=2)
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+
+
+def _energy(trajectory: Trajectory, c: Array, told: dict[str, Any], theta: Array, rate: Array) -> Array:
+    """Return the energy of tops whose axis has the tilts and rates, with the momenta of this motion.
+
+    In the body with the axis a, the line of nodes n and w = a × n. There up is cos θ a + sin θ w, and L has
+    the given part along a, a part along w such that that along up is right, and that of a turn θ' along n.
+    """
+    size = float(np.linalg.norm(c))
+    a = c / size
+    n = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
+    n /= np.linalg.norm(n)
+    w = np.cross(a, n)
+    theta, rate = np.broadcast_arrays(theta, rate)
+    side = (told["vertical_momentum"] - told["axial_momentum"] * np.cos(theta)) / np.sin(theta)
+    momentum = told["axial_momentum"] * a + side[..., np.newaxis] * w
+    momentum = momentum + trajectory.inertia(bivector(rate[..., np.newaxis] * n)).components
+    omega = trajectory.inertia.inverse(bivector(momentum)).components
+    energy: Array = 0.5 * (omega * momentum).sum(axis=-1) + size * np.cos(theta)
+    return energy

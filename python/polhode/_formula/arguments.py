@@ -1,0 +1,247 @@
+"""What a formula is given for its names."""
+
+from __future__ import annotations
+
+import operator
+import unicodedata
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.algebra import algebra as algebra_of
+from polhode._algebra.coefficients import scalars
+from polhode._algebra.linear_map import LinearMap
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._formula.errors import FormulaError
+from polhode._support.arrays import is_float
+
+# A name, grades as bits, and whether it stands for a value, a rotor, or a linear map of these grades.
+Kind = tuple[str, int, int]
+
+_VALUE, _ROTOR, _MAP = 0, 1, 2
+_WORDS = {
+    "scalar": (0b0001, _VALUE),
+    "vector": (0b0010, _VALUE),
+    "bivector": (0b0100, _VALUE),
+    "trivector": (0b1000, _VALUE),
+    "rotor": (0b0101, _ROTOR),
+    "map of vectors": (1, _MAP),
+    "map of bivectors": (2, _MAP),
+}
+
+
+@dataclass(frozen=True)
+class Given:
+    """The algebra of all values, their kinds, and the values: multivectors, linear maps, Python's numbers.
+
+    What no formula takes is refused, each with its reason.
+    """
+
+    algebra: Any
+    kinds: list[Kind]
+    values: list[Any]
+    refused: dict[str, TypeError]
+
+    def inputs(self, program: _native.Program) -> list[Any]:
+        """Return what a program takes: multivectors, and of maps matrices (..., 9), determinants (..., 1)."""
+        self._require_one_shape(program)
+        return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
+
+    def narrowed(self) -> Given:
+        """Return the same with single values of those grades alone in which they are not zero."""
+        values = [_narrowed(value) for value in self.values]
+        kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
+        return Given(self.algebra, kinds, values, self.refused)
+
+    def with_scalars(self, program: _native.Program) -> Given:
+        """Return the same with scalars for Python's numbers, in the precision of the values that are used."""
+        used = [self.values[place] for place, _, _ in program.inputs]
+        data = [value._data for value in used if isinstance(value, Multivector)]
+        data += [value.matrix for value in used if isinstance(value, LinearMap)]
+        if data and all(map(is_float, data)):
+            like: Any = np.empty(0, np.result_type(*data))
+        else:
+            like = next((x for x in data if not is_float(x)), None)
+        values = [
+            value if isinstance(value, Multivector | LinearMap) else self._scalar(value, like)
+            for value in self.values
+        ]
+        return Given(self.algebra, self.kinds, values, self.refused)
+
+    def _scalar(self, number: float, like: Any) -> Multivector:
+        return Multivector._of(scalars(number, like), 1, self.algebra)
+
+    def _require_one_shape(self, program: _native.Program) -> None:
+        """Raise for batches that do not broadcast."""
+        used = dict.fromkeys(place for place, _, _ in program.inputs)
+        shapes = {self.kinds[place][0]: _batch(self.values[place]) for place in used}
+        try:
+            np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+            raise ValueError(f"the batches of values do not broadcast: {told}") from None
+
+    def _input(self, value: Any, kind: str, grade: int) -> Any:
+        if kind == "value":
+            return value
+        if kind == "determinant":
+            return np.asarray(value.determinant)[..., np.newaxis]
+        matrix = value.matrix if grade == 1 else value.bivector_matrix
+        return matrix.reshape(*matrix.shape[:-2], 9)
+
+
+def _batch(value: Any) -> tuple[int, ...]:
+    return tuple(value.shape if isinstance(value, Multivector) else value.matrix.shape[:-2])
+
+
+def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
+    """Return the values by name. Those that no formula takes are told of only if this one needs them."""
+    everything = _together(values, named)
+    algebra, owner = _main_algebra(core, everything)
+    known: dict[str, Any] = {}
+    refused: dict[str, TypeError] = {}
+    for name, value in everything.items():
+        try:
+            known[name] = _value(name, value, algebra, owner)
+        except TypeError as error:
+            refused[name] = error
+    kinds = [(name, *_kind(value)) for name, value in known.items()]
+    return Given(algebra, kinds, list(known.values()), refused)
+
+
+def compiled(core: _native.Formula, known: Given) -> tuple[_native.Program, Given]:
+    """Return the program for the values, and the values as it takes them."""
+    try:
+        program = core.program(known.algebra, known.kinds)
+    except FormulaError as error:
+        wanted = _native.canonical(error.text[slice(*error.span)])
+        for name, reason in known.refused.items():
+            if wanted is not None and _native.canonical(name) == wanted:
+                raise reason from None
+        # As for methods, a single value without a scalar part, such as e1*e2, counts as a bivector.
+        known = known.narrowed()
+        program = core.program(known.algebra, known.kinds)
+    return program, known.with_scalars(program)
+
+
+def _main_algebra(core: _native.Formula, values: dict[str, Any]) -> tuple[Any, str]:
+    """Return the algebra of the first value whose name the text may have, or 3-d space; and what has it."""
+    if core.algebra is not None:
+        return core.algebra, "the formula"
+    letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
+    for name, value in values.items():
+        if isinstance(value, Multivector | LinearMap) and _may_have(letters, name):
+            return _algebra_of(value), name
+    return algebra_of(3), "the formula"
+
+
+def _folded(text: str) -> set[str]:
+    """Return the characters of a text, in whatever style of letters."""
+    return set(unicodedata.normalize("NFKD", text))
+
+
+def _may_have(letters: set[str], name: str) -> bool:
+    """Whether a text of these letters may have a name in it, whose subscripts may be written otherwise."""
+    return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
+
+
+def _narrowed(value: Any) -> Any:
+    if not isinstance(value, Multivector) or isinstance(value, Rotor) or value.shape:
+        return value
+    held = value._held()
+    return value if held in (0, value._mask) else value._part(held)
+
+
+def kinds_of(algebra: Any, kinds: dict[str, Any]) -> tuple[Any, list[Kind]]:
+    """Return the algebra and the kinds of names, given by values or by what they would be."""
+    values = {name: kind for name, kind in kinds.items() if isinstance(kind, Multivector)}
+    algebra = _common_algebra(algebra, values)
+    return algebra, [(name, *_said(name, kind, algebra)) for name, kind in kinds.items()]
+
+
+def _said(name: str, kind: Any, algebra: Any) -> tuple[int, int]:
+    if isinstance(kind, Multivector | LinearMap):
+        return _kind(kind)
+    if isinstance(kind, str):
+        if kind not in _WORDS:
+            raise ValueError(f"{name} is {kind!r}, expected grades or one of {', '.join(map(repr, _WORDS))}")
+        return _WORDS[kind]
+    if isinstance(kind, float | np.ndarray | np.number):
+        return 0b0001, _VALUE
+    mask, n = 0, algebra.dimension
+    for k in kind if isinstance(kind, Iterable) else (kind,):
+        try:
+            grade = operator.index(k)
+        except TypeError:
+            raise TypeError(f"{name} is a {type(k).__name__}, expected grades, such as 1 or (0, 2)") from None
+        if grade not in range(n + 1):
+            raise ValueError(f"{name} has grade {grade}, but {algebra} has grades 0 to {n}")
+        mask |= 1 << grade
+    if not mask:
+        raise ValueError(f"{name} has no grades; zero is a scalar, grade 0")
+    return mask, _VALUE
+
+
+def _kind(value: Any) -> tuple[int, int]:
+    if isinstance(value, LinearMap):
+        return value.grade, _MAP
+    if not isinstance(value, Multivector):
+        return 0b0001, _VALUE
+    return value._mask, _ROTOR if isinstance(value, Rotor) else _VALUE
+
+
+def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[str, Any]:
+    if values is None:
+        return named
+    if not isinstance(values, Mapping):
+        raise TypeError(f"values are given as keywords or as a mapping by name, got {type(values).__name__}")
+    for name in values:
+        if not isinstance(name, str):
+            raise TypeError(f"values are given by name, got {name!r}, which is no text")
+    twice = [name for name in values if name in named]
+    if twice:
+        raise TypeError(f"{twice[0]!r} is given twice, in the mapping and as a keyword")
+    return {**values, **named}
+
+
+def _algebra_of(value: Multivector | LinearMap) -> Any:
+    """Return the algebra of a value; linear maps are of 3-d space."""
+    return value.algebra if isinstance(value, Multivector) else algebra_of(3)
+
+
+def _require_algebra(name: str, value: Multivector | LinearMap, algebra: Any, owner: str) -> None:
+    own = _algebra_of(value)
+    if own is not algebra:
+        raise TypeError(f"the values are of different algebras: {owner} of {algebra}, {name} of {own}")
+
+
+def _common_algebra(algebra: Any, values: dict[str, Multivector]) -> Any:
+    """Return the one algebra of all values; of 3-d space if there are none."""
+    owner = "the formula"
+    for name, value in values.items():
+        if algebra is None:
+            algebra, owner = _algebra_of(value), name
+        _require_algebra(name, value, algebra, owner)
+    return algebra_of(3) if algebra is None else algebra
+
+
+def _value(name: str, value: Any, algebra: Any, owner: str) -> Any:
+    if isinstance(value, Multivector | LinearMap):
+        _require_algebra(name, value, algebra, owner)
+        return value
+    if type(value) in (int, float):
+        return value
+    data = scalars(value, None)
+    if data is not None:
+        return Multivector._of(data, 1, algebra)
+    remedy = "values are multivectors, linear maps, numbers, and arrays as batches of numbers"
+    if callable(value):
+        remedy = "formulas call linear maps (ph.LinearMap.from_function) and functions they define themselves"
+    elif isinstance(value, list | tuple):
+        remedy = "wrap components with ph.vector, a batch of numbers with np.array"
+    kind = f"an array of {value.dtype}" if isinstance(value, np.ndarray) else f"a {type(value).__name__}"
+    raise TypeError(f"{name} is {kind}; {remedy}")

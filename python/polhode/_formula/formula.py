@@ -1,0 +1,241 @@
+"""Formulas as on paper, compiled once and called on values of any kind."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.algebra import Algebra
+from polhode._algebra.algebra import algebra as algebra_of
+from polhode._algebra.coefficients import kind_of
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._formula.agreement import Agreement, agreement
+from polhode._formula.arguments import Given, compiled, given, kinds_of
+from polhode._formula.errors import FormulaError
+from polhode._formula.interpreter import Step, Walk, steps_of
+from polhode._support.arrays import is_float, new, rows
+
+__all__ = ["Agreement", "Formula", "FormulaError", "evaluate", "formula"]
+
+_G3 = algebra_of(3)
+
+
+class Formula:
+    """A formula as on paper: ``f = ph.formula("R (x·Ω) ~R")``, then ``f(R=R, x=x, Ω=Ω)``.
+
+    Juxtaposition is the geometric product; ``∧`` (``^``), ``·`` (``|``) and ``×``, the commutator, bind
+    tighter than it. One-letter names may run together: ``RaR̃`` is ``R a ~R``.
+
+    Called with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping:
+    multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
+    coefficients are of any kind; grades are checked before anything is computed. Names that the formula does
+    not use may have any values. An equation evaluates to an
+    `Agreement`.
+
+    Made by `formula`; equal to any of the same text, algebra and definitions.
+    """
+
+    # The native function in a slot is what a call of the formula calls; JAX wants weak references.
+    __slots__ = ("__call__", "__weakref__", "_core")
+    __call__: Callable[..., Any]
+    _core: _native.Formula
+
+    def __init__(self, core: _native.Formula) -> None:
+        if not isinstance(core, _native.Formula):
+            raise TypeError("a Formula is made by ph.formula(text)")
+        self._core = core
+        self.__call__ = core.caller()
+
+    @property
+    def text(self) -> str:
+        """The text as it was given."""
+        return self._core.text
+
+    def __str__(self) -> str:
+        """The formula in canonical spelling, as on paper."""
+        return self.spelled("unicode")
+
+    @property
+    def ascii(self) -> str:
+        """The formula in ASCII spelling, but for names, which stay."""
+        return self.spelled("ascii")
+
+    @property
+    def latex(self) -> str:
+        """The formula as LaTeX, for mathematics mode."""
+        return self.spelled("latex")
+
+    def _repr_latex_(self) -> str:
+        return f"${self.latex}$"
+
+    # --- what is known of it before there are values
+
+    def spelled(self, style: str, /, **kinds: Any) -> str:
+        """Return it in canonical spelling, "unicode", "ascii" or "latex", for names as `tree` explains.
+
+        So it is known which letters stand side by side: without any `kinds`, each word counts as one name.
+        """
+        return self._core.spelled(style, *kinds_of(self._core.algebra, kinds))
+
+    def tree(self, /, **kinds: Any) -> dict[str, Any]:
+        """Return the syntax tree: nested dictionaries of kind, text, span (in characters), grades, children.
+
+        `kinds` say what the names stand for: a grade or several, ``a=1, M=(0, 2)``; ``R="rotor"``;
+        ``inertia="map of bivectors"``, ``"map of vectors"``; or a value. Without any, each word counts as
+        one name of a value of any grades.
+        """
+        algebra, items = kinds_of(self._core.algebra, kinds)
+        return self._core.tree(algebra, items)
+
+    def grades(self, /, **kinds: Any) -> tuple[int, ...]:
+        """Return the grades of the value, for names that stand for what `tree` explains."""
+        program = self._program(kinds)
+        masks = [step[3] for step in program.steps]
+        mask = 0
+        for sides in program.results:
+            for side in sides:
+                mask |= masks[side]
+        return tuple(k for k in range(mask.bit_length()) if mask >> k & 1)
+
+    def steps(self, /, **kinds: Any) -> list[str]:
+        """Return what is computed, step by step, for names that stand for what `tree` explains."""
+        program = self._program(kinds)
+        return described(self.text, steps_of(program), program.names)
+
+    def _program(self, kinds: dict[str, Any]) -> _native.Program:
+        algebra, items = kinds_of(self._core.algebra, kinds)
+        return self._core.program(algebra, items)
+
+    # --- derivatives
+
+    def grad(self, *names: str) -> Callable[..., Any]:
+        """Return the function that gives the gradients by these names, through JAX; of a scalar formula.
+
+        It takes values as the formula does. The gradient by a name is of the grades of its value, components
+        being the derivatives by components; several names give a tuple. NumPy's floats give NumPy's floats of
+        double precision; arrays of JAX, traced ones too, theirs. In a batch each row has its own gradient.
+        """
+        from polhode._formula.gradient import gradient
+
+        return gradient(self._core, names)
+
+    # --- the rest
+
+    def __repr__(self) -> str:
+        return f"ph.formula({self.text!r})"
+
+    def _key(self) -> tuple[Any, ...]:
+        return self.text, self._core.algebra, tuple(self._core.definitions)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, Formula) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.text, tuple(self._core.definitions)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        text, algebra, definitions = self._key()
+        return formula, (text, algebra, dict(definitions))
+
+
+def formula(text: str, algebra: Algebra | None = None, define: Mapping[str, str] | None = None) -> Formula:
+    """Return a formula, ready to be called on values; a `FormulaError` if the text is none.
+
+    Parameters
+    ----------
+    text
+        As on paper, such as ``"R v ~R + (a∧b)·c"``; an equation has sides, ``"~R R = 1"``.
+    algebra
+        That of the values; without it, the one they have.
+    define
+        Values and functions by formulas of their own: ``{"c": "0.1 e3", "V(x)": "½ x·x"}``, each of which may
+        use those before it.
+    """
+    if not isinstance(text, str):
+        raise TypeError(f"a formula is a text, got {type(text).__name__}")
+    if algebra is not None and not isinstance(algebra, Algebra):
+        raise TypeError(f"algebra must be one of ph.algebra(…), got {type(algebra).__name__}")
+    if define is not None and not isinstance(define, Mapping):
+        raise TypeError(f'define must be a mapping such as {{"V(x)": "½ x·x"}}, got {type(define).__name__}')
+    definitions = list((define or {}).items())
+    for definition in definitions:
+        if not all(isinstance(part, str) for part in definition):
+            raise TypeError(f"define gives texts to texts, got {definition[0]!r}: {definition[1]!r}")
+    return Formula(_native.Formula(text, algebra, definitions))
+
+
+def evaluate(text: str, values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
+    """Return the value of a formula: ``ph.evaluate("-I a∧b", a=a, b=b)``. See `Formula`."""
+    made = _compiled(text) if isinstance(text, str) else formula(text)
+    return made(*(() if values is None else (values,)), **named)
+
+
+@functools.lru_cache(maxsize=256)
+def _compiled(text: str) -> Formula:
+    return formula(text)
+
+
+# --- values
+
+
+def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, Any] | None) -> Any:
+    """Return the value of a formula, where it is not native: the general way of every call."""
+    if len(arguments) > 1:
+        raise TypeError(f"a formula takes one mapping of values and keywords, got {len(arguments)} values")
+    program, known = compiled(core, given(core, arguments[0] if arguments else None, named or {}))
+    return evaluated(core.text, program, known)
+
+
+def evaluated(text: str, program: _native.Program, known: Given) -> Any:
+    """Return the value of a program for values of the kinds that it was made for."""
+    inputs = known.inputs(program)
+    kind = program.value_type
+    if kind is not None:
+        data = [x._data if isinstance(x, Multivector) else x for x in inputs]
+        if all(map(is_float, data)):
+            return _run(program, kind, data)
+    walk = Walk(text, steps_of(program), inputs, known.algebra)
+    results = program.results
+    if len(results[0]) == 1:
+        return walk.last()
+    if not inputs and known.algebra is _G3:  # numbers alone are compared as they are written
+        walk.kind = kind_of(np.empty(0, dtype=object))
+    return agreement(walk, results)
+
+
+def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:
+    """Return the value of a program of 3-d space over floats, block by block."""
+    mask, size, unit = kind
+    dtypes, shapes = {x.dtype for x in data}, {x.shape[:-1] for x in data}
+    dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # of two precisions, the higher
+    batch = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+    out = new((*batch, size), dtype)
+    program.run([rows(x.astype(dtype, copy=False), batch) for x in data], out)
+    return Rotor._from_rows(out) if unit else Multivector._of(out, mask)
+
+
+def described(text: str, steps: list[Step], names: list[str]) -> list[str]:
+    """Return what the steps do, one line each; inputs and constants stand where they are used."""
+    shown: list[str] = []
+    lines: list[str] = []
+    for step in steps:
+        place = text[slice(*step.span)]
+        if step.name in ("input", "constant", "pi"):
+            shown.append(names[step.detail] if step.name == "input" else place)
+            continue
+        operands = [shown[i] for i in step.operands]
+        if step.name == "power":
+            operands.append(str(step.detail))
+        name = step.detail if step.name == "product" else step.name
+        if step.name == "map":
+            name = names[step.detail]
+        grades = ", ".join(str(k) for k in range(step.mask.bit_length()) if step.mask >> k & 1)
+        shown.append(f"#{len(lines) + 1}")
+        done = f"{name}({', '.join(operands)})"
+        lines.append(f"{shown[-1]} = {done}: {'rotor' if step.unit else f'grade {grades}'}, for {place}")
+    return lines

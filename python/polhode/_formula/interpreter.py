@@ -1,0 +1,177 @@
+"""The steps of a formula, walked by the methods of values: for what the compiled core does not run."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.coefficients import common, kind_of
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.products import product
+from polhode._algebra.rotor import Rotor
+from polhode._formula.errors import FormulaError
+from polhode._generic.exact import divide, is_symbolic
+from polhode._generic.numeric import Numeric
+from polhode._support.arrays import is_float
+
+
+class Step(NamedTuple):
+    """An operation on earlier steps, and what comes of it.
+
+    Attributes
+    ----------
+    name
+        Of the operation.
+    operands
+        The numbers of the steps it needs.
+    detail
+        What else it needs: a number, an input, a power.
+    mask, unit
+        The grades of the value, as bits, and whether it is a rotor.
+    span
+        Where it stands in the text, in characters.
+    """
+
+    name: str
+    operands: tuple[int, ...]
+    detail: Any
+    mask: int
+    unit: bool
+    span: tuple[int, int]
+
+
+def steps_of(program: _native.Program) -> list[Step]:
+    """Return the steps of a program."""
+    return [Step(*step) for step in program.steps]
+
+
+class Walk:
+    """The values of all steps of a program, one after the other. Errors tell the place in the text.
+
+    `inputs` are multivectors, and of maps the matrices (..., 9) and determinants (..., 1).
+    """
+
+    def __init__(self, text: str, steps: Sequence[Step], inputs: Sequence[Any], algebra: Any) -> None:
+        self.text, self.steps, self.inputs, self.algebra = text, steps, inputs, algebra
+        arrays = [x._data if isinstance(x, Multivector) else x for x in inputs]
+        if all(map(is_float, arrays)):
+            self.kind: Any = Numeric(np, np.result_type(*arrays) if arrays else np.dtype(np.float64))
+        else:
+            self.kind = kind_of(*arrays)
+        self.symbolic = self.kind.exact and any(is_symbolic(x) for array in arrays for x in array.flat)
+
+    def __iter__(self) -> Iterator[tuple[Step, tuple[Multivector, ...], Multivector]]:
+        """Each step with its operands and its value."""
+        done: list[Any] = []
+        last = {i: number for number, step in enumerate(self.steps) for i in step.operands}
+        for number, step in enumerate(self.steps):
+            operands = tuple(done[i] for i in step.operands)
+            done.append(self._value(step, operands))
+            yield step, operands, done[-1]
+            for i in step.operands:  # large batches go when nobody needs them any more
+                if last[i] == number:
+                    done[i] = None
+
+    def last(self) -> Multivector:
+        """Return the value of the last step."""
+        *_, (_, _, value) = self
+        return value
+
+    def _value(self, step: Step, operands: tuple[Multivector, ...]) -> Multivector:
+        try:
+            return _typed(_STEPS[step.name](self, step, *operands), step)
+        except (ValueError, ZeroDivisionError, TypeError) as error:
+            if type(error).__module__ != "builtins":  # of a library that traces
+                raise
+            raise FormulaError(str(error), self.text, step.span) from error
+
+    def of(self, components: Sequence[Any], mask: int) -> Multivector:
+        """Return a value of given components, of the kind of the others."""
+        data = self.kind.asarray(components if self.kind.exact else np.array(components, dtype=np.float64))
+        return Multivector._of(data, mask, self.algebra)
+
+    def scalars(self, numbers: Any) -> Multivector:
+        """Return a batch of numbers as scalars."""
+        return Multivector._of(self.kind.asarray(numbers)[..., None], 1, self.algebra)
+
+    def number(self, value: float, ratio: tuple[int, int] | None) -> Any:
+        """Return a number as it was written: exact beside exact ones."""
+        if not self.kind.exact:
+            return value
+        if ratio is None:
+            raise ValueError(
+                "numbers in a formula are exact up to 2⁵³, and ratios of such; "
+                "give this one by name to compute exactly"
+            )
+        return sys.modules["sympy"].Rational(*ratio) if self.symbolic else divide(*ratio)
+
+
+def _typed(value: Multivector, step: Step) -> Multivector:
+    """Return a value of the grades and the type that the step has for all values."""
+    if value._mask != step.mask:
+        value = value._part(step.mask)
+    if isinstance(value, Rotor) == step.unit:
+        return value
+    return Rotor._from_rows(value._data) if step.unit else value._part(step.mask)
+
+
+def _constant(walk: Walk, step: Step) -> Multivector:
+    """Return a number times a basis element."""
+    value, ratio, blade = step.detail
+    number = walk.number(value, ratio)
+    return walk.of([number if i == blade else 0 for i in walk.algebra._indices(step.mask)], step.mask)
+
+
+def _pi(walk: Walk, step: Step) -> Multivector:
+    """π: a symbol beside symbols."""
+    return walk.of([sys.modules["sympy"].pi if walk.symbolic else walk.kind.pi], step.mask)
+
+
+def _map(walk: Walk, step: Step, argument: Multivector) -> Multivector:
+    """Return the matrix of a linear map times the components; of a trivector, its determinant."""
+    matrix, x = common(walk.inputs[step.detail], argument._data)
+    with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
+        if x.shape[-1] == 1:
+            return Multivector._of(x * matrix, step.mask)
+        rows = [sum(matrix[..., 3 * i + j] * x[..., j] for j in range(3)) for i in range(3)]
+        return Multivector._of(walk.kind.stack(rows), step.mask)
+
+
+def _of_scalars(walk: Walk, step: Step, a: Multivector) -> Multivector:
+    """sin, cos or tan."""
+    x = walk.kind.asarray(a._data)[..., 0]
+    if not walk.kind.exact:
+        walk.kind.require_finite([x])
+    return walk.scalars(getattr(walk.kind, step.name)(x))
+
+
+_STEPS: dict[str, Callable[..., Multivector]] = {
+    "input": lambda walk, step: walk.inputs[step.detail],
+    "constant": _constant,
+    "pi": _pi,
+    "add": lambda _, __, a, b: a + b,
+    "subtract": lambda _, __, a, b: a - b,
+    "negate": lambda _, __, a: -a,
+    "product": lambda _, step, a, b: product(step.detail, a, b),
+    "compose": lambda _, __, a, b: a * b,
+    "turn": lambda _, __, rotor, x: rotor(x),
+    "divide": lambda _, __, a, s: a / s,
+    "reverse": lambda _, __, a: ~a,
+    "part": lambda _, __, a: a,
+    "dual": lambda _, __, a: a.dual(),
+    "undual": lambda _, __, a: a.undual(),
+    "exp": lambda _, __, a: a.exp(),
+    "log": lambda _, __, a: a.log(),
+    "sqrt": lambda _, __, a: a.sqrt(),
+    "inverse": lambda _, __, a: a.inverse(),
+    "power": lambda _, step, rotor: rotor**step.detail,
+    "norm": lambda walk, _, a: walk.scalars(a.norm()),
+    "sin": _of_scalars,
+    "cos": _of_scalars,
+    "tan": _of_scalars,
+    "map": _map,
+}

@@ -1,0 +1,1 @@
+"""Formulas line by line: the commands and the notebook magic."""

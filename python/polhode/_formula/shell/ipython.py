@@ -1,0 +1,100 @@
+"""``%ga`` and ``%%ga`` for notebooks: formulas that use the notebook's names and add to them."""
+
+from __future__ import annotations
+
+import numbers
+import re
+import sys
+import unicodedata
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.linear_map import LinearMap
+from polhode._formula.shell.session import FUNCTIONS, Answer, LineError, Session, canonical, without_comment
+
+_CALLS = re.compile(rf"\b({'|'.join(FUNCTIONS)})\s*\(")
+
+
+class NotebookError(ValueError):
+    """What is wrong with a line of formulas; a notebook shows it without the calls that led there."""
+
+    def _render_traceback_(self) -> list[str]:
+        return str(self).splitlines()
+
+
+def spelled(text: str, everything: dict[str, Any]) -> dict[str, str]:
+    """Return the names of a notebook that a text may use: by their spelling in formulas.
+
+    Large arrays, and all values where they are of several algebras, are only given to formulas that may use
+    them: those with all the letters of their names.
+    """
+    usable = {name: value for name, value in everything.items() if _is_usable(value)}
+    algebras = {signature for value in usable.values() if (signature := _signature(value))}
+    letters = set(unicodedata.normalize("NFKD", _CALLS.sub("(", text)))
+    found: dict[str, str] = {}
+    for name, value in usable.items():
+        occurs = all(c in letters for c in unicodedata.normalize("NFKD", name) if c.isalpha())
+        single = getattr(value, "shape", ()) == ()
+        spelling = canonical(name) if occurs or (single and len(algebras) < 2) else None
+        if spelling and (spelling == name or spelling not in found):
+            found[spelling] = name
+    return found
+
+
+def _is_usable(value: Any) -> bool:
+    if isinstance(value, np.ndarray):
+        return value.dtype.kind in "iufO"
+    if isinstance(value, _native.Multivector | LinearMap):
+        return True
+    if isinstance(value, numbers.Real):
+        return value is not True and value is not False
+    sympy = sys.modules.get("sympy")
+    return hasattr(value, "__array_namespace__") or (sympy is not None and isinstance(value, sympy.Expr))
+
+
+def _signature(value: Any) -> tuple[int, int, int] | None:
+    """Return that of the algebra a value belongs to; linear maps are of 3-d space."""
+    if isinstance(value, _native.Multivector):
+        return value.algebra.signature
+    return (3, 0, 0) if isinstance(value, LinearMap) else None
+
+
+def magic(everything: dict[str, Any]) -> Any:
+    """Return the function behind ``%ga`` and ``%%ga`` for a notebook with these names."""
+    session = Session(only_finite=False)
+
+    def run(text: str) -> Answer:
+        bodies = " ".join(body for _, body in session.functions.values())
+        called = spelled(f"{text} {bodies}", everything)
+        session.values = {spelling: everything[name] for spelling, name in called.items()}
+        answer = session.run(text)
+        if answer.name and answer.value is not None:
+            everything[called.get(answer.name, answer.name)] = answer.value
+        return answer
+
+    def ga(line: str, cell: str | None = None) -> Any:
+        """Evaluate formulas, one a line; the value of the last is displayed.
+
+        ``name = …`` gives a name of the notebook a value, in which units are read (``θ = 90 deg``), and
+        ``f(x) = …`` defines a function for later lines. ``lhs == rhs`` compares; ``#`` begins a comment.
+        """
+        value = None
+        # The line of the magic itself is the first of a cell.
+        for number, text in enumerate([line, *(cell or "").splitlines()], 1):
+            text = without_comment(text)
+            try:
+                answer = run(text) if text else None
+            except LineError as mistake:
+                raise NotebookError(mistake.shown("%ga", number, text)) from None
+            if answer and answer.name is None:
+                value = answer.value
+        return value
+
+    return ga
+
+
+def load(shell: Any) -> None:
+    """Add the magics to a shell of IPython."""
+    shell.register_magic_function(magic(shell.user_ns), magic_kind="line_cell", magic_name="ga")

@@ -1,0 +1,1 @@
+"""Bodies, their states and their motion."""

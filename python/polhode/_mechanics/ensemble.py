@@ -1,0 +1,235 @@
+"""Many bodies at once: what is given of them, broadcast, and what comes of it."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.parameters import Batch, check_finite, common
+from polhode._mechanics.result import Certificate, Failure
+from polhode._mechanics.state import State
+from polhode._mechanics.trajectory import Drift, Trajectory
+from polhode._support import memory
+from polhode._support.arrays import Array, Shape, frozen
+
+# Of a point: rotor, angular velocity, momentum and energy; place and velocity, where forces move bodies.
+_BYTES_OF_POINT = 8 * (4 + 3 + 3 + 1)
+_BYTES_OF_CENTER = 8 * (3 + 3)
+# Of a body: its inertia and start on the way, and what the certificate tells of it.
+_BYTES_OF_BODY = 800
+
+# The longest step in s, how many steps a pass may take, and times at which steps end.
+StepLimits = tuple[float | None, float | None, list[float]]
+
+_VECTOR, _BIVECTOR = 0b0010, 0b0100
+_NOWHERE: Any = (None, None)
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble:
+    """Bodies, their starts and what acts on them; batch shapes that broadcast to `shape`.
+
+    `inertias` is an array of objects (...), `start_times` (...), `rotors` (..., 4), `omegas` (..., 3),
+    `places` and `velocities` (..., 3), `masses` (...), NaN where they are not known; `laws` may be batches.
+    """
+
+    shape: Shape
+    inertias: Any
+    start_times: Array
+    rotors: Array
+    omegas: Array
+    places: Array
+    velocities: Array
+    masses: Array
+    laws: tuple[_native.Law, ...]
+    forces: tuple[_native.Force, ...]
+    times: Array
+    method: str
+    step: float | None
+    rtol: float | None
+    limits: StepLimits
+
+    @property
+    def bodies(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def bytes(self) -> int:
+        """What the results take, and what is needed on the way."""
+        point = _BYTES_OF_POINT + (_BYTES_OF_CENTER if self.forces else 0)
+        return self.bodies * (point * len(self.times) + _BYTES_OF_BODY)
+
+    def block(self, rows: slice) -> Ensemble:
+        """Return the bodies of some rows of the first batch axis."""
+        n = len(self.shape)
+
+        def own(array: Any, components: int = 1) -> Any:
+            leads = array.ndim - components == n and array.shape[0] > 1
+            return array[rows] if leads else array
+
+        def law(one: _native.Law) -> _native.Law:
+            if len(one.shape) < n or one.shape[0] == 1:
+                return one
+            return _native.Law(one.name, *(_rows_of(argument, rows) for argument in one.arguments))
+
+        return replace(
+            self,
+            shape=(len(range(*rows.indices(self.shape[0]))), *self.shape[1:]),
+            inertias=own(self.inertias, 0),
+            start_times=own(self.start_times, 0),
+            rotors=own(self.rotors),
+            omegas=own(self.omegas),
+            places=own(self.places),
+            velocities=own(self.velocities),
+            masses=own(self.masses, 0),
+            laws=tuple(map(law, self.laws)),
+        )
+
+    def run(self, threads: int | None, progress: Callable[[int, float], object] | None) -> Trajectory:
+        """Return the motions. A MemoryError, before anything is computed, if they would not fit."""
+        memory.require(
+            self.bytes,
+            f"the motions of {self.bodies} bodies at {len(self.times)} times",
+            "take fewer times, or blocks of bodies by ph.simulate_blocks",
+        )
+        if not self.bodies:
+            return self._nothing()
+        # The core takes one time at least.
+        times = self.times if len(self.times) else self.start_times.ravel()[:1]
+        centers = np.concatenate(np.broadcast_arrays(self.places, self.velocities), axis=-1)
+        arrays, told = _native.simulate_many(
+            self.shape,
+            ([inertia._core for inertia in self.inertias.flat], self.inertias.shape),
+            np.ascontiguousarray(self.start_times),
+            self.rotors,
+            self.omegas,
+            list(self.laws),
+            np.ascontiguousarray(centers),
+            self.masses,
+            list(self.forces),
+            times,
+            self.method,
+            self.step,
+            self.rtol,
+            self.limits,
+            threads,
+            progress,
+        )
+        n = len(self.times)
+        arrays = [frozen(x.reshape(*self.shape, *x.shape[1:])[..., :n, :]) for x in arrays]
+        certificate = self._certificate(told)
+        warn_of(certificate)
+        return self._trajectory(arrays, certificate, self._failures(told))
+
+    def _nothing(self) -> Trajectory:
+        sizes = (4, 3, 3, 1, 3, 3) if self.forces else (4, 3, 3, 1)
+        arrays = [frozen(np.zeros((*self.shape, len(self.times), size))) for size in sizes]
+        none = np.zeros(self.shape)
+        whole = none.astype(int)
+        certificate = Certificate(self.method, none, whole, whole, none, {}, {}, none)
+        return self._trajectory(arrays, certificate, ())
+
+    def _trajectory(
+        self, arrays: list[Array], certificate: Certificate, failures: tuple[Failure, ...]
+    ) -> Trajectory:
+        rotors, omegas, momenta, energies, *centers = arrays
+        inertias = self.inertias
+        # Without forces they are found when they are asked for.
+        position, velocity = [Multivector._of(rows, _VECTOR) for rows in centers] or _NOWHERE
+        return Trajectory(
+            frozen(self.times.copy()),
+            Rotor._from_rows(rotors),
+            Multivector._of(omegas, _BIVECTOR),
+            Multivector._of(momenta, _BIVECTOR),
+            energies[..., 0],
+            position,
+            velocity,
+            np.broadcast_to(inertias, self.shape) if inertias.ndim else inertias[()],
+            certificate,
+            failures=failures,
+            _drift=None if centers else self._drift(),
+        )
+
+    def _drift(self) -> Drift:
+        shape = (*self.shape, 3)
+        return Drift(
+            np.broadcast_to(self.start_times, self.shape),
+            np.broadcast_to(self.places, shape),
+            np.broadcast_to(self.velocities, shape),
+        )
+
+    def _certificate(self, told: dict[str, Any]) -> Certificate:
+        """Return what the core tells of each body; of those that failed no drift and no error."""
+        names, codes = told["methods"]
+        failed = np.zeros(len(codes), bool)
+        failed[told["failed"]] = True
+
+        def column(numbers: Array) -> Array:
+            return frozen(numbers.reshape(self.shape))
+
+        def finished(numbers: Array) -> Array:
+            return column(np.where(failed, np.nan, numbers))
+
+        # A body that failed before it had a method is told the one that was asked for.
+        names = np.array([name or self.method for name in names])
+        used = np.unique(codes if failed.all() else codes[~failed])
+        return Certificate(
+            str(names[used[0]]) if len(used) == 1 else column(names[codes]),
+            column(told["step"]),
+            column(told["steps"]),
+            column(told["evaluations"]),
+            finished(told["error_estimate"]),
+            {name: column(numbers) for name, numbers in told["conserved"].items()},
+            {name: finished(numbers) for name, numbers in told["drift"].items()},
+            finished(told["norm_drift"]),
+            tuple(told["warnings"]),
+        )
+
+    def _failures(self, told: dict[str, Any]) -> tuple[Failure, ...]:
+        if not told["failed"]:
+            return ()
+        indices = np.stack(np.unravel_index(told["failed"], self.shape), axis=-1).tolist()
+        rows = zip(indices, told["failure_times"], told["messages"], strict=True)
+        return tuple(Failure(tuple(index), time, message) for index, time, message in rows)
+
+
+def _rows_of(argument: Any, rows: slice) -> Any:
+    """Return an argument of a law for some bodies; those of formulas are pairs of names and values."""
+    if isinstance(argument, Batch):
+        return argument[rows]
+    if isinstance(argument, tuple) and any(isinstance(x, tuple) and len(x) == 2 for x in argument):
+        return tuple((name, _rows_of(value, rows)) for name, value in argument)
+    return argument
+
+
+# --- what is given
+
+
+def warn_of(certificate: Certificate) -> None:
+    """Report what the certificate warns of to the caller of `simulate`."""
+    for warning in certificate.warnings:
+        warnings.warn(warning, RuntimeWarning, stacklevel=3)
+
+
+def shape_of(bodies: Any, state: State, torque_shape: Shape) -> Shape:
+    """Return the shape to which body, state and torque broadcast."""
+    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque_shape}
+    return common(shapes, "body, state and torque")
+
+
+def check_state(state: State) -> None:
+    """A state's numbers must be finite."""
+    if not isinstance(state, State):
+        raise TypeError(f"state must be a State, got {type(state).__name__}")
+    for name in ("position", "velocity"):
+        check_finite(getattr(state, name)._data, f"the {name}")
+    check_finite(state.omega_body._data, "the angular velocity")
+    check_finite(np.asarray(state.time)[..., np.newaxis], "the time of the state")

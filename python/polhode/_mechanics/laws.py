@@ -1,0 +1,116 @@
+"""Laws and events are values made of a name and checked arguments: the checks, and how they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
+
+import numpy as np
+
+from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.constructors import as_bivectors, as_vectors
+from polhode._algebra.linear_map import LinearMap
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._formula.errors import FormulaError
+from polhode._support.arrays import Array, as_float, as_floats
+
+T = TypeVar("T")
+
+
+def finite(value: float, name: str) -> float:
+    if not np.isfinite(value):
+        raise ValueError(f"{name} is {value}; it must be finite")
+    return value
+
+
+def number(value: Any, name: str) -> float:
+    return finite(as_float(value, name), name)
+
+
+def three(components: Array, name: str) -> tuple[float, ...]:
+    if components.shape != (3,):
+        raise ValueError(f"{name} must be a single value, got shape {components.shape}")
+    if not np.isfinite(components).all():
+        raise ValueError(f"{name} is {components.tolist()}; it must be finite")
+    return tuple(components.tolist())
+
+
+def vector_of(value: Any, name: str) -> tuple[float, ...]:
+    return three(as_vectors(value, name), name)
+
+
+def bivector_of(value: Any, name: str) -> tuple[float, ...]:
+    return three(as_bivectors(value, name), name)
+
+
+def formula_value(value: Any, name: str, batches: bool = False) -> Any:
+    """Return a value for a formula: a finite multivector over float64, a linear map or a number.
+
+    Multivectors are single ones unless `batches` are taken.
+    """
+    if isinstance(value, LinearMap):
+        return value
+    if not isinstance(value, Multivector):
+        one = as_floats(value, name)
+        if one.ndim:
+            raise TypeError(
+                f"{name} is an array of shape {one.shape}; wrap components with ph.vector or ph.bivector"
+                f"{', a batch of numbers with ph.scalar' if batches else ''}"
+            )
+        return finite(float(one), name)
+    if value.shape and not batches:
+        raise ValueError(f"{name} must be a single value, got batch shape {value.shape}")
+    data = as_coefficients(value._data, name, float)
+    if not np.isfinite(data).all():
+        raise ValueError(f"{name} is {value}; it must be finite")
+    return Rotor._from_rows(data) if isinstance(value, Rotor) else Multivector._of(data, value._mask)
+
+
+def narrowed(value: Any) -> Any:
+    if not isinstance(value, Multivector) or isinstance(value, Rotor):
+        return value
+    held = value._held()
+    return value if held in (0, value._mask) else value._part(held)
+
+
+def made_of_formula(
+    make: Callable[[tuple[tuple[str, Any], ...]], T],
+    text: str,
+    values: dict[str, Any],
+    batches: bool = False,
+) -> T:
+    """Return what `make` makes of a formula with these values for its names, which may be `batches`."""
+    if not isinstance(text, str):
+        raise TypeError(f"a formula is a text, got {type(text).__name__}")
+    given = {name: formula_value(value, name, batches) for name, value in values.items()}
+    try:
+        return make(tuple(given.items()))
+    except FormulaError:
+        # As in formulas elsewhere, a single value without a scalar part, such as e1*e2, counts as a bivector.
+        given = {name: narrowed(value) for name, value in given.items()}
+    return make(tuple(given.items()))
+
+
+def function_of(f: Any, names: str) -> Any:
+    """Return a function, which is to be called with these."""
+    if not callable(f):
+        raise TypeError(f"a function of {names} is needed, got {type(f).__name__}")
+    return f
+
+
+def shown(name: str, arguments: Iterable[Any], named: Mapping[str, Any], form: str = "") -> str:
+    """Return the call that makes a value, its numbers in a format."""
+    texts = [_text(x, form) for x in arguments] + [f"{key}={_text(x, form)}" for key, x in named.items()]
+    return f"{name}({', '.join(texts)})"
+
+
+def _text(x: Any, form: str) -> str:
+    if isinstance(x, tuple):
+        return "[" + ", ".join(_text(one, form) for one in x) + "]"
+    if isinstance(x, str):
+        return repr(x)
+    if isinstance(x, float):
+        return format(x, form)
+    # A function by its name; a map by what it does.
+    return str(x) if isinstance(x, LinearMap) else str(getattr(x, "__name__", x))

@@ -1,0 +1,167 @@
+"""What torque laws are given: numbers for all bodies, or for each body of a batch its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from polhode._algebra.coefficients import as_coefficients
+from polhode._algebra.constructors import as_bivectors, as_vectors
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import Array, Shape, as_floats, frozen
+
+
+class Batch:
+    """A row of numbers for each body of a batch: a value, equal where its numbers are.
+
+    Attributes
+    ----------
+    rows
+        The numbers, (*shape, k), read-only and in C order.
+    like
+        For a formula a single multivector of the same kind; else 1.0.
+    """
+
+    __slots__ = ("like", "rows")
+
+    def __init__(self, rows: Array, like: Any = 1.0) -> None:
+        self.rows, self.like = frozen(np.array(rows, dtype=float, order="C")), like
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the batch of bodies."""
+        return self.rows.shape[:-1]
+
+    def __getitem__(self, index: slice) -> Batch:
+        return Batch(self.rows[index], self.like)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Batch):
+            return NotImplemented
+        return self._kind() == other._kind() and np.array_equal(self.rows, other.rows)
+
+    def __hash__(self) -> int:
+        return hash((self.rows.shape, self.rows.tobytes()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Batch, (self.rows, self.like)
+
+    def __repr__(self) -> str:
+        return f"batch {self.shape}"
+
+    def _kind(self) -> tuple[Any, ...]:
+        return type(self.like), getattr(self.like, "grades", None)
+
+
+Numbers = float | tuple[float, ...] | Batch
+
+
+def numbers(value: Any, name: str) -> float | Batch:
+    """Return a finite number, or a batch from an array."""
+    array = as_floats(value, name)
+    check_finite(array[..., np.newaxis], name)
+    return Batch(array[..., np.newaxis]) if array.ndim else float(array)
+
+
+def vectors(value: Any, name: str) -> tuple[float, ...] | Batch:
+    """Return three finite numbers, or a batch, from vectors or an array (..., 3)."""
+    return rows(as_vectors(value, name), name)
+
+
+def bivectors(value: Any, name: str) -> tuple[float, ...] | Batch:
+    """Return three finite numbers, or a batch, from bivectors or an array (..., 3)."""
+    return rows(as_bivectors(value, name), name)
+
+
+def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
+    """Return the components of a rotor, or a batch of them; of None those of the identity."""
+    if value is None:
+        return (1.0, 0.0, 0.0, 0.0)
+    if not isinstance(value, Rotor):
+        raise TypeError(f"{name} must be a Rotor, got {type(value).__name__}; see Rotor.from_components")
+    return rows(as_coefficients(value._data, name, float), name)
+
+
+def gains(value: Any, name: str) -> tuple[float, ...] | Batch:
+    """Return three numbers, none negative, from a number or three, or a batch from (..., 3) or (..., 1)."""
+    array = as_floats(value, name)
+    if array.shape[-1:] not in ((), (3,)) and not (array.ndim > 1 and array.shape[-1] == 1):
+        raise ValueError(
+            f"{name} must be a number or three along the body axes, or a batch (..., 3) of them or (..., 1), "
+            f"got shape {array.shape}"
+        )
+    check_not_negative(array, name)
+    return rows(np.broadcast_to(array, (*array.shape[:-1], 3)), name)
+
+
+def rows(components: Array, name: str) -> tuple[float, ...] | Batch:
+    """Return components as a tuple, or a batch of them; they must be finite."""
+    check_finite(components, name)
+    return Batch(components) if components.ndim > 1 else tuple(components.tolist())
+
+
+def check_finite(components: Array, what: str) -> None:
+    """Raise a ValueError with the first row, and its index, that is not finite."""
+    wrong = ~np.isfinite(components)
+    if wrong.any():
+        index = _first(wrong)[:-1]
+        row = components[index].tolist()
+        value = row[0] if len(row) == 1 else row
+        raise ValueError(f"{place(index)}{what} is {value}; it must be finite")
+
+
+def check_not_negative(values: Array, name: str) -> None:
+    """Raise a ValueError with the first value that is negative."""
+    if (values < 0).any():
+        index = _first(values < 0)
+        told = f"{place(index)}{name} is {values[tuple(index)]}"
+        raise ValueError(f"{told}; a damper takes energy away, so it must not be negative")
+
+
+def place(index: tuple[int, ...]) -> str:
+    """``at index (2,): ``; nothing for a single value."""
+    return f"at index {index}: " if index else ""
+
+
+def _first(where: Any) -> tuple[int, ...]:
+    return tuple(int(i) for i in np.argwhere(where)[0])
+
+
+def together(arguments: tuple[Any, ...], names: str) -> tuple[Any, ...]:
+    """Return arguments whose batches are broadcast to one shape."""
+    shape = common(
+        {f"argument {k}": x.shape for k, x in enumerate(arguments, 1) if isinstance(x, Batch)}, names
+    )
+    return tuple(_broadcast(x, shape) if isinstance(x, Batch) else x for x in arguments)
+
+
+def _broadcast(batch: Batch, shape: Shape) -> Batch:
+    if batch.shape == shape:
+        return batch
+    return Batch(np.broadcast_to(batch.rows, (*shape, batch.rows.shape[-1])), batch.like)
+
+
+def named_together(given: tuple[tuple[str, Any], ...]) -> tuple[tuple[str, Any], ...]:
+    """Return the values of names in a formula, batches as such and broadcast to one shape."""
+    many = {name: x for name, x in given if isinstance(x, Multivector) and x.shape}
+    shape = common({f"`{name}`": x.shape for name, x in many.items()}, "the formula")
+    return tuple((name, _broadcast(_of_values(x), shape) if name in many else x) for name, x in given)
+
+
+def _of_values(values: Multivector) -> Batch:
+    data = as_coefficients(values._data, "a value", float)
+    if isinstance(values, Rotor):
+        return Batch(data, Rotor.identity())
+    return Batch(data, Multivector._of(np.ones(data.shape[-1]), values._mask))
+
+
+def common(shapes: Mapping[str, Shape], what: str) -> Shape:
+    """Return the shape to which batches broadcast; what does not is a ValueError with the shapes."""
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{shape} of {name}" for name, shape in shapes.items() if shape)
+        raise ValueError(f"the batch shapes of {what} do not broadcast together: {told}") from None

@@ -1,0 +1,65 @@
+"""States as close in time as a smooth curve needs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._support.arrays import Array
+
+if TYPE_CHECKING:
+    from polhode._mechanics.trajectory import Trajectory
+
+# The body turns by less than this from one point to the next, in rad, unless that takes too many points.
+_TURN, _MOST = 0.08, 20_000
+
+
+class Samples(NamedTuple):
+    """Times (n,) in s, rotors and angular velocities in body axes (n,)."""
+
+    time: Array
+    rotor: Rotor
+    omega_body: Multivector
+
+
+def samples(trajectory: Trajectory) -> Samples:
+    """Return the states at the output times; where these are too far apart and it can, at times between."""
+    time = trajectory.time
+    given = Samples(time, trajectory.rotor, trajectory.omega_body)
+    if trajectory._motion is None or len(time) < 2:
+        return given
+    speed = trajectory.omega_body.norm()
+    steps = np.diff(time)
+    turns = np.maximum(speed[1:], speed[:-1]) * steps
+    most = max(1, _MOST // len(steps))
+    parts = np.clip(np.ceil(turns / _TURN), 1, most).astype(int)
+    if parts.max() == 1:
+        return given
+    starts = np.repeat(time[:-1], parts)
+    within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    times = np.append(starts + within * np.repeat(steps / parts, parts), time[-1])
+    state = trajectory.at(times)
+    return Samples(times, state.rotor, state.omega_body)
+
+
+def states_at(trajectory: Trajectory, times: Array) -> Samples:
+    """Return the states at times; of a motion that knows no others, at the output times next to them."""
+    if trajectory._motion is not None:
+        state = trajectory.at(times)
+        return Samples(times, state.rotor, state.omega_body)
+    if len(trajectory.time) == 1:
+        return Samples(trajectory.time, trajectory.rotor, trajectory.omega_body)
+    after = np.clip(np.searchsorted(trajectory.time, times), 1, len(trajectory.time) - 1)
+    middles = 0.5 * (trajectory.time[after - 1] + trajectory.time[after])
+    rows = np.where(times < middles, after - 1, after)
+    rotors = Rotor._from_rows(trajectory.rotor._data[rows])
+    return Samples(trajectory.time[rows], rotors, trajectory.omega_body[rows])
+
+
+def rotor_at(trajectory: Trajectory, k: int) -> Rotor:
+    """Return the rotor at an output time by its number, as a rotor."""
+    rotor: Rotor = Rotor._from_rows(trajectory.rotor._data[k])
+    return rotor

@@ -1,0 +1,168 @@
+"""States of a body: attitude, rotation, place, at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polhode._algebra.constructors import as_bivectors, as_vectors, bivector, vector
+from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.parameters import common
+from polhode._support.arrays import Array, Shape, as_floats, frozen
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+_ORIGIN = vector([0.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class State:
+    """A body's state: attitude, rotation, place, time; or those of a batch of bodies, whose shapes broadcast.
+
+    ``a == b`` is a bool: whether the shapes and all numbers are equal. ``state[i]`` is one state of a batch,
+    or fewer, by an index of NumPy over its shape.
+
+    Attributes
+    ----------
+    rotor
+        From body axes to space axes.
+    omega_body
+        Angular velocity in body axes, a bivector in rad/s; an array (..., 3) of its components
+        ``(e2e3, e3e1, e1e2)``, which are those of the axial vector, is taken too.
+    position, velocity
+        Of the centre of mass in space, vectors in m and m/s.
+    time
+        In s, a float or an array (...): `simulate` starts there.
+
+    Parameters
+    ----------
+    rotor, omega_body, position, velocity, time
+        The attributes. Position, velocity and time are 0 if left out.
+    omega_space
+        Angular velocity in space axes, in place of `omega_body`.
+    """
+
+    rotor: Rotor
+    omega_body: Multivector
+    position: Multivector
+    velocity: Multivector
+    time: float | Array
+
+    def __init__(
+        self,
+        rotor: Rotor,
+        omega_body: Multivector | ArrayLike | None = None,
+        position: Multivector | ArrayLike = 0,
+        velocity: Multivector | ArrayLike = 0,
+        *,
+        time: ArrayLike = 0.0,
+        omega_space: Multivector | ArrayLike | None = None,
+    ) -> None:
+        if not isinstance(rotor, Rotor):
+            raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")
+        if (omega_body is None) == (omega_space is None):
+            raise TypeError("give either omega_body or omega_space, the angular velocity in rad/s")
+        if omega_space is not None:
+            omega_body = (~rotor)(angular_velocity(omega_space))
+        # A frozen instance's own dictionary, which takes what a frozen instance does not.
+        self.__dict__.update(
+            rotor=rotor,
+            omega_body=angular_velocity(omega_body),
+            position=_place(position, "position"),
+            velocity=_place(velocity, "velocity"),
+            time=_time(time),
+        )
+
+    @classmethod
+    def _at_origin(cls, rotor: Rotor, omega_body: Multivector, time: Any) -> State:
+        """Return the state of values that need no check, at rest in the origin."""
+        self = object.__new__(cls)
+        # Four times as fast as object.__setattr__.
+        self.__dict__.update(
+            rotor=rotor, omega_body=omega_body, position=_ORIGIN, velocity=_ORIGIN, time=_time(time)
+        )
+        return self
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the batch; ``()`` for one state."""
+        return common(self._shapes(), "a state")
+
+    @property
+    def omega_space(self) -> Multivector:
+        """Angular velocity in space axes, a bivector in rad/s."""
+        return self.rotor(self.omega_body)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, State):
+            return NotImplemented
+        if self.shape != other.shape:
+            return False
+        names = ("rotor", "omega_body", "position", "velocity", "time")
+        return all(np.all(getattr(self, name) == getattr(other, name)) for name in names)
+
+    __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
+
+    def __getitem__(self, index: Any) -> State:
+        parts, shape = index if isinstance(index, tuple) else (index,), self.shape
+        try:
+            time = np.broadcast_to(self.time, shape)[parts]
+        except IndexError as error:
+            raise IndexError(f"{error} (batch shape {shape})") from None
+        # The index is to stay off the axis of components.
+        rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
+
+        def picked(value: Multivector) -> Array:
+            components = value.components
+            return np.ascontiguousarray(np.broadcast_to(components, (*shape, components.shape[-1]))[rows])
+
+        return State(
+            Rotor._from_rows(picked(self.rotor)),
+            bivector(picked(self.omega_body)),
+            vector(picked(self.position)),
+            vector(picked(self.velocity)),
+            time=time,
+        )
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single state has no length; only batches have")
+        return self.shape[0]
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[State]:
+        return (self[i] for i in range(len(self)))
+
+    def _shapes(self) -> dict[str, Shape]:
+        """Return the batch shape of each part, by its name in messages."""
+        return {
+            "the rotor": self.rotor.shape,
+            "the angular velocity": self.omega_body.shape,
+            "the position": self.position.shape,
+            "the velocity": self.velocity.shape,
+            "the time": np.shape(self.time),
+        }
+
+
+def angular_velocity(value: Any) -> Multivector:
+    """Return bivectors from bivectors, or from an array (..., 3)."""
+    return bivector(as_bivectors(value, "the angular velocity"))
+
+
+def _place(value: Any, name: str) -> Multivector:
+    zero = not isinstance(value, Multivector) and np.ndim(value) == 0 and value == 0
+    return _ORIGIN if zero else vector(as_vectors(value, name))
+
+
+def _time(value: Any) -> float | Array:
+    if type(value) is float:
+        return value
+    times = as_floats(value, "time")
+    return frozen(times.copy()) if times.ndim else float(times)

@@ -1,0 +1,239 @@
+"""What a simulation was asked for, and the scene that asks for the same."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from polhode import _native
+from polhode._algebra.multivector import Multivector
+from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.state import State
+from polhode._support.arrays import Array
+from polhode.force import Force
+from polhode.torque import Torque
+
+
+class UnwritableError(ValueError):
+    """A motion that no scene can ask for; the message says what is in the way."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """The motion of one body as `polhode.simulate` was asked for it.
+
+    Attributes
+    ----------
+    body
+        A `Body`, or the `Inertia` that rules its motion.
+    state
+        The single state at the start.
+    torque, force
+        What turns and moves it; None where nothing does.
+    times
+        Output times in s, (n,).
+    method, step, tolerance
+        As for `polhode.simulate`; the larger one of rtol and atol.
+    limits
+        `max_step`, `max_steps` and `breaks`.
+    """
+
+    body: Body | Inertia
+    state: State
+    torque: Torque | None
+    force: Force | None
+    times: Array
+    method: str = "auto"
+    step: float | None = None
+    tolerance: float | None = None
+    limits: tuple[float | None, float | None, list[float]] = (None, None, [])
+
+    @property
+    def held(self) -> bool:
+        """Whether the body is held at a fixed point, the origin of its axes."""
+        return self.torque is not None and self.torque.holds
+
+    def scene(self) -> str:
+        """Return the scene, in TOML, whose body, start and laws are these to the last bit.
+
+        Its output times go from the start to the last one in equal intervals. Principal moments are found
+        from the same inertia matrix again, to its rounding, and rise where it is not diagonal. An
+        `UnwritableError` for Python functions, linear maps, a law that stands twice, and motions that do not
+        go beyond their start.
+        """
+        laws = self.torque.laws if self.torque else ()
+        tables = {
+            "define": _definitions(law for law in laws if law.name == "formula"),
+            "body": self._body(),
+            "initial": self._initial(),
+            "torque": _fields(laws, _TORQUES, "torque"),
+            "force": _fields(self.force.laws if self.force else (), _FORCES, "force"),
+            "run": self._run(),
+            "method": self._method(),
+        }
+        written = [
+            "\n".join([f"[{title}]", *(f"{_key(name)} = {_value(x)}" for name, x in table.items())])
+            for title, table in tables.items()
+            if table
+        ]
+        return f"# Written by Polhode {_native.__version__}. SI units.\n\n" + "\n\n".join(written) + "\n"
+
+    def _body(self) -> dict[str, Any]:
+        inertia = self.body.inertia if isinstance(self.body, Body) else self.body
+        frame, moments = inertia.principal_frame.components, inertia.principal_moments
+        own = np.array_equal(frame, [1, 0, 0, 0]) and np.array_equal(np.diag(moments), inertia.matrix)
+        fields: dict[str, Any] = {"moments": moments} if own else {"inertia": inertia.matrix}
+        if isinstance(self.body, Body):
+            fields |= {"mass": self.body.mass, "center_of_mass": self.body.center_of_mass.components}
+        return fields
+
+    def _initial(self) -> dict[str, Any]:
+        fields: dict[str, Any] = {
+            "attitude": {"rotor": self.state.rotor.components},
+            "spin": {"bivector": self.state.omega_body.components},
+        }
+        for name in ("position", "velocity"):
+            components = getattr(self.state, name).components
+            if components.any():
+                fields[name] = components
+        if self.state.time:
+            fields["time"] = self.state.time
+        return fields
+
+    def _run(self) -> dict[str, Any]:
+        start = float(self.state.time)
+        duration = float(np.max(self.times, initial=start)) - start
+        if duration <= 0:
+            raise UnwritableError(
+                f"a scene goes on from its start at {start:g} s, and this motion has no later time"
+            )
+        return {"duration": duration, "samples": max(2, len(self.times))}
+
+    def _method(self) -> dict[str, Any]:
+        fields: dict[str, Any] = {}
+        # A scene is exact by itself where a closed form is known.
+        if self.method not in ("auto", "exact"):
+            fields["name"] = self.method
+        if self.step is not None:
+            fields["step"] = self.step
+        if self.tolerance is not None:
+            if self.tolerance >= 1:
+                raise UnwritableError(f"tolerance must be less than 1 in a scene, got {self.tolerance}")
+            fields["rtol"] = self.tolerance
+        max_step, max_steps, breaks = self.limits
+        if breaks:
+            raise UnwritableError("a scene has no breaks; give max_step instead")
+        given = {"max_step": max_step, "max_steps": max_steps}
+        fields |= {name: value for name, value in given.items() if value is not None}
+        return fields
+
+
+# --- laws, as the fields of [torque] and [force]
+
+
+def _gradient(n: float, eccentricity: float, mean_anomaly: float) -> dict[str, float]:
+    return {"rate": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
+
+
+def _tabulated(times: Any, torques: Any, frame: str, kind: str) -> dict[str, Any]:
+    return {"times": times, "torques": torques, "frame": frame, "kind": kind}
+
+
+def _thrust(F: Any, at: Any = None) -> dict[str, Any]:
+    return {"force": F} if at is None else {"force": F, "at": at}
+
+
+def _rotor(components: Any) -> dict[str, Any]:
+    return {"rotor": components}
+
+
+# What the field of a law is given, made of the law's arguments.
+_Field = Callable[..., Any]
+
+_TORQUES: dict[str, _Field] = {
+    **dict.fromkeys(
+        (
+            "heavy",
+            "larmor",
+            "damping",
+            "viscous_damping",
+            "quadratic_damping",
+            "gyrostat",
+            "constant_body",
+            "constant_space",
+        ),
+        lambda argument: argument,
+    ),
+    "gravity_gradient": _gradient,
+    "magnetic": lambda dipole, field: {"dipole": dipole, "field": field},
+    "torsion_spring": lambda k, rest: {"stiffness": k, "rest": _rotor(rest)},
+    "pd_control": lambda kp, kd, target: {"kp": kp, "kd": kd, "target": _rotor(target)},
+    "tabulated": _tabulated,
+    "formula": lambda text, frame, values: text,
+}
+
+_FORCES: dict[str, _Field] = {
+    **dict.fromkeys(("constant", "drag", "quadratic_drag", "central"), lambda argument: argument),
+    "thrust": _thrust,
+    "spring": lambda k, anchor: {"stiffness": k, "anchor": anchor},
+}
+
+
+def _fields(laws: Iterable[Any], known: dict[str, _Field], what: str) -> dict[str, Any]:
+    """Return the fields of a table whose laws add up, in their order."""
+    fields: dict[str, Any] = {}
+    for law in laws:
+        if law.name not in known:
+            raise UnwritableError(f"a scene has no {what} that is a {law.name} of Python's")
+        name = f"torque_{law.arguments[1]}" if (what, law.name) == ("torque", "formula") else law.name
+        if name in fields:
+            raise UnwritableError(f"a scene has but one {what} `{name}`, and this motion has two")
+        fields[name] = known[law.name](*law.arguments)
+    return fields
+
+
+def _definitions(formulas: Iterable[Any]) -> dict[str, Any]:
+    """Return what names in formulas stand for."""
+    defined: dict[str, Any] = {}
+    for law in formulas:
+        for name, value in law.arguments[2]:
+            text = _definition(name, value)
+            if defined.setdefault(name, text) != text:
+                raise UnwritableError(f"`{name}` has two values in formulas, and in a scene but one")
+    return defined
+
+
+def _definition(name: str, value: Any) -> float | str:
+    """Return a number as such, and the sum of components that a multivector is."""
+    if isinstance(value, float):
+        return value
+    if not isinstance(value, Multivector):
+        raise UnwritableError(f"`{name}` is no multivector; a scene does not define a linear map")
+    names = value.algebra._names(value._mask)
+    terms = (f"({float(x)!r}) {name}".strip() for x, name in zip(value.components, names, strict=True))
+    # In a formula an e may be a basis vector.
+    return " + ".join(terms).replace("e+", "E+").replace("e-", "E-") or "0"
+
+
+# --- TOML
+
+
+def _key(name: str) -> str:
+    return name if name.isascii() and name.isidentifier() else _value(name)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, str):
+        # JSON's escapes are TOML's, which wants one more.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(name)} = {_value(x)}" for name, x in value.items()) + " }"
+    if isinstance(value, int):
+        return str(value)
+    if np.ndim(value):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return repr(float(value))

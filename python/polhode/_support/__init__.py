@@ -1,0 +1,1 @@
+"""What every other folder uses: arrays, files, optional libraries and memory."""

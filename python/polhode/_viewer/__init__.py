@@ -1,0 +1,1 @@
+"""The viewer: pages, the server and the widget."""

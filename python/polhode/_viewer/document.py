@@ -1,0 +1,249 @@
+"""What the viewer is given to show: scenes and motions as documents.
+
+Their form is `PageDocument` in `viewer/src/document.ts`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import tempfile
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polhode._algebra.constructors import bivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.bodies import Body, Inertia, bodies_of
+from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere, _ClosedForm
+from polhode._mechanics.free_motion import FreeMotion
+from polhode._mechanics.laws import finite
+from polhode._mechanics.simulate import as_force, as_torque, simulate
+from polhode._mechanics.state import State
+from polhode._mechanics.trajectory import Trajectory
+from polhode._native import SceneError
+from polhode._scene.scene import Scene
+from polhode._scene.writer import Problem, UnwritableError
+from polhode._support.arrays import as_float
+from polhode._support.packing import packed, unpacked
+from polhode._viewer.recording import recorded
+from polhode.torque import Torque, damping, heavy, larmor, settled
+
+Document = dict[str, Any]
+
+# How long a motion is shown if nobody says it: turns at the initial rate, or s of a body at rest.
+_TURNS, _REST = 20, 10.0
+_SAMPLES = 1001
+
+
+def document(
+    x: Any,
+    state: State | None = None,
+    torque: Any = None,
+    force: Any = None,
+    *,
+    duration: float | None = None,
+) -> Document:
+    """Return the document that shows something.
+
+    Parameters
+    ----------
+    x
+        - A `Scene`, or the path of a scene file.
+        - A `Trajectory` of one body, or the path of a netCDF file of one.
+        - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
+        - A `Body` or an `Inertia`, with a state, and a torque and a force as for `polhode.simulate`.
+    duration
+        For how long, in s, of motions that have no end of their own; None for 20 turns at the initial rate.
+
+    The page solves a scene by itself, and so everything that a scene can say: a motion that was exact is
+    given as a scene alone, one that was stepped as a scene with its states at up to 20,000 times, so that
+    it need not be followed again before something is changed. A motion that no scene can say, as that under
+    a Python function, is given by its states alone.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For what cannot be shown, and arguments that do not fit together.
+    SceneError, OSError
+        For files.
+    """
+    if isinstance(x, (Body, Inertia)):
+        if state is None:
+            raise TypeError("a body alone does not move; give its state too")
+        if not isinstance(state, State):
+            raise TypeError(f"state must be a State, got {type(state).__name__}")
+        law, push = as_torque(torque), None if force is None else as_force(force)
+        _refuse_batch(state, law)
+        bodies, law = settled(bodies_of(x), law)
+        return _of_problem(_problem(bodies[()], state, law, push, duration))
+    _refuse(x, state=state, torque=torque, force=force)
+    if isinstance(x, (FreeMotion, _ClosedForm)):
+        return _of_problem(_solved(x, duration))
+    _refuse(x, duration=duration)
+    if isinstance(x, Scene):
+        return of_scene(x)
+    if isinstance(x, Trajectory):
+        return of_trajectory(x)
+    if isinstance(x, (str, os.PathLike)):
+        return of_file(Path(x))
+    raise TypeError(
+        f"cannot show what is of type {type(x).__name__}; give a Scene, a Trajectory, a motion in closed "
+        "form, the path of a scene or of a netCDF file, or a Body and its State"
+    )
+
+
+def _refuse(x: Any, **given: Any) -> None:
+    """Raise a TypeError for arguments that what is shown has by itself."""
+    if extra := [name for name, value in given.items() if value is not None]:
+        what = repr(str(x)) if isinstance(x, (str, os.PathLike)) else f"a {type(x).__name__}"
+        raise TypeError(f"{' and '.join(extra)} cannot be given for {what}, which has its own")
+
+
+def of_scene(scene: Scene) -> Document:
+    """Return the document of a scene."""
+    return of_text(scene.text, scene.path)
+
+
+def of_text(text: str, path: Path) -> Document:
+    """Return the document of a scene's text, with the mesh that it names if that can be read.
+
+    What is wrong with the scene the page says.
+    """
+    shown: Document = {"format": 1, "scene": text, "name": path.name}
+    name = _mesh(text)
+    if name is not None:
+        # A ValueError is a name that no file can have.
+        with contextlib.suppress(OSError, ValueError):
+            shown["files"] = {name: packed((path.parent / name).read_bytes())}
+    return shown
+
+
+def of_file(path: Path) -> Document:
+    """Return the document of a scene file or a netCDF file; a `SceneError` for a scene that is wrong."""
+    if path.suffix.lower() == ".nc":
+        return of_trajectory(Trajectory.read(path), path)
+    return of_scene(Scene.read(path))
+
+
+def of_trajectory(trajectory: Trajectory, path: Path = Path("motion.nc")) -> Document:
+    """Return the document of one body's motion, which was read from a path.
+
+    The mesh of a scene that came with a file is looked for beside that file.
+    """
+    trajectory._require_one("the viewer")
+    shown, origin = _live(trajectory, path)
+    if "scene" in shown and trajectory.certificate.method == "exact":
+        return shown
+    return {**shown, "recorded": recorded(trajectory, origin, "files" in shown)}
+
+
+def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem | None]:
+    """Return a document with the scene of a motion, if there is one, and what the motion came from."""
+    origin = trajectory._origin
+    if isinstance(origin, Scene):
+        return of_scene(origin), origin
+    nothing: Document = {"format": 1, "name": path.name}
+    if origin is not None:
+        try:
+            # An event may have ended it before the last time that was asked for.
+            scene = replace(origin, times=trajectory.time).scene()
+            return {"format": 1, "scene": scene, "name": "motion.toml"}, origin
+        except UnwritableError:
+            return nothing, origin
+    if not isinstance(trajectory.attributes.get("scene"), str):
+        return nothing, None
+    shown = of_text(trajectory.attributes["scene"], path)
+    try:
+        return shown, scene_of(shown)
+    except SceneError:
+        return nothing, None
+
+
+def scene_of(shown: Document) -> Scene:
+    """Return the scene of a document, with the mesh that the document brings.
+
+    A `SceneError` names the places as in the document's own file.
+    """
+    name = shown.get("name") or "scene.toml"
+    # Those with a whole path are where they were.
+    files = {file: content for file, content in shown.get("files", {}).items() if not os.path.isabs(file)}
+    # A mesh may lie above its scene: `../meshes/top.stl`.
+    above = max((Path(file).parts.count("..") for file in files), default=0)
+    with tempfile.TemporaryDirectory() as top:
+        path = Path(top, *("below",) * above, Path(name).name)
+        contents = {path: shown["scene"].encode()}
+        contents |= {Path(os.path.normpath(path.parent / file)): unpacked(x) for file, x in files.items()}
+        for target, content in contents.items():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
+        try:
+            return replace(Scene.read(path), path=Path(name))
+        except SceneError as error:
+            raise SceneError(str(error).replace(f"{path.parent}{os.sep}", "")) from None
+
+
+def title_of(shown: Document) -> str:
+    """Return what a page with this document is called."""
+    title = None
+    if "recorded" in shown:
+        title = json.loads(shown["recorded"]["about"])["title"]
+    elif "scene" in shown:
+        with contextlib.suppress(tomllib.TOMLDecodeError):
+            title = tomllib.loads(shown["scene"]).get("title")
+    return title if isinstance(title, str) else Path(shown.get("name") or "Polhode").stem
+
+
+def _mesh(text: str) -> str | None:
+    """Return the name of the mesh in a scene, which may be wrong in any way."""
+    try:
+        name = tomllib.loads(text).get("body", {}).get("mesh")
+    except (tomllib.TOMLDecodeError, AttributeError):
+        return None
+    return name if isinstance(name, str) and name else None
+
+
+# --- motions that are asked for here
+
+
+def _problem(body: Body | Inertia, state: State, torque: Torque | None, force: Any, duration: Any) -> Problem:
+    if duration is None:
+        rate = float(state.omega_body.norm()) if not state.omega_body.shape else 0.0
+        duration = 2 * np.pi * _TURNS / rate if rate else _REST
+    seconds = finite(as_float(duration, "duration"), "duration")
+    if seconds <= 0:
+        raise ValueError(f"duration is {seconds}; it must be positive")
+    start = float(state.time) if not np.ndim(state.time) else 0.0
+    return Problem(body, state, torque, force, start + np.linspace(0.0, seconds, _SAMPLES))
+
+
+def _of_problem(problem: Problem) -> Document:
+    """Return the document of a motion that was only asked for; what no scene can say is followed here."""
+    _refuse_batch(problem.state, problem.torque)
+    try:
+        return {"format": 1, "scene": problem.scene(), "name": "motion.toml"}
+    except UnwritableError:
+        motion = simulate(problem.body, problem.state, problem.times, problem.torque, problem.force)
+        return of_trajectory(motion)
+
+
+def _refuse_batch(state: State, torque: Torque | None) -> None:
+    if state.rotor.shape or state.omega_body.shape or (torque is not None and torque.shape):
+        raise ValueError("the viewer shows one body, this is a batch; pick one of them")
+
+
+def _solved(motion: FreeMotion | _ClosedForm, duration: float | None) -> Problem:
+    """Return what a motion in closed form is the answer to."""
+    if isinstance(motion, FreeMotion):
+        if motion.shape:
+            raise ValueError(f"the viewer shows one body, this is a batch of shape {motion.shape}; pick one")
+        rotors, omegas = motion._core.starts()
+        state = State(Rotor._from_rows(rotors.reshape(4)), bivector(omegas.reshape(3)))
+        return _problem(motion._inertia, state, None, None, duration)
+    inertia, rotor, omega_body, argument = motion._given
+    laws = {LagrangeTop: heavy, DampedTop: damping, LarmorSphere: larmor}
+    return _problem(inertia, State(rotor, omega_body), laws[type(motion)](argument), None, duration)

@@ -1,0 +1,241 @@
+"""A motion that was followed here, for the viewer: rows of states, and what is known besides them.
+
+Their form is that of `State` and `About` in `viewer/src/core/core.ts`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+
+from polhode._algebra.constructors import bivector, vector
+from polhode._algebra.interpolation import slerp
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.closed_forms import LagrangeTop
+from polhode._mechanics.free_motion import describe_free
+from polhode._mechanics.state import State
+from polhode._mechanics.trajectory import Trajectory, _Points
+from polhode._report.describe import kind_of, weight
+from polhode._scene.scene import Scene
+from polhode._scene.writer import Problem
+from polhode._support.arrays import Array
+from polhode._support.packing import packed, unpacked
+
+# Numbers in a row.
+_ROW = 24
+# Between rows a body turns by less than this, in rad, as long as there are no more rows than a page bears.
+_TURN = 0.2
+_MOST_ROWS = 20_000
+# As many states tell how fast it turns.
+_SOME = 101
+
+
+def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool) -> dict[str, str]:
+    """Return what a page needs to show the motion of one body without following it again.
+
+    At most 20,000 rows, evenly chosen among the output times. Where the motion is known between these, and
+    the body turns far from one to the next, there are others between them.
+
+    Parameters
+    ----------
+    trajectory
+        The motion.
+    origin
+        What was run, or asked for; None where that is not known.
+    mesh
+        Whether the document brings the mesh of its scene.
+
+    Raises
+    ------
+    ValueError
+        If the motion does not go beyond its start, or has numbers that are not finite.
+    """
+    points = _points(trajectory, origin)
+    rows = _rows(points)
+    if not (finite := np.isfinite(rows).all(axis=1)).all():
+        when = points.time[np.argmin(finite)]
+        raise ValueError(f"the viewer shows finite numbers, and this motion has others at t = {when:g} s")
+    about = _about(trajectory, origin, points)
+    about["body"]["mesh"] = mesh
+    return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows.astype("<f8").tobytes())}
+
+
+def state_at(given: dict[str, str], time: float) -> State:
+    """Return the state that a page shows of a motion that `recorded` wrote, at a time in s.
+
+    Between rows as in the page: the rotor turns evenly, all else changes evenly. Before the first row and
+    after the last their states.
+    """
+    rows = np.frombuffer(unpacked(given["rows"]), "<f8").reshape(-1, _ROW)
+    times = rows[:, 0]
+    when = min(max(time, float(times[0])), float(times[-1]))
+    k = max(int(np.searchsorted(times, when, side="right")) - 1, 0)
+    after = min(k + 1, len(rows) - 1)
+    part = (when - times[k]) / (times[after] - times[k]) if after > k else 0.0
+    row = rows[k] + part * (rows[after] - rows[k])
+    rotor = slerp(Rotor.from_components(rows[k, 1:5]), Rotor.from_components(rows[after, 1:5]), part)
+    return State(rotor, bivector(row[5:8]), vector(row[18:21]), vector(row[21:24]), time=when)
+
+
+def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
+    """Return the states that are kept: from the start on, or from the first one where no start is known."""
+    times = trajectory.time
+    first = float(origin.state.time) if origin is not None else float(times[0]) if len(times) else 0.0
+    last = float(times[-1]) if len(times) else first
+    if last <= first:
+        raise ValueError(
+            f"the viewer shows motions from their start on, here {first:g} s, and this one has no later time"
+        )
+    if trajectory._motion is not None:
+        some = _Points.of(trajectory._motion.at(np.linspace(first, last, _SOME)))
+        rate = float(np.max([some.omega_body.norm().max(), trajectory.omega_body.norm().max()]))
+        met = np.unique(np.append(times[times >= first], first))
+        met = met[_evenly(len(met))]
+        intervals = len(met) - 1
+        # Equal parts of each interval, so that the output times stay among them.
+        parts = min(math.ceil(rate * (last - first) / _TURN / intervals), (_MOST_ROWS - 1) // intervals)
+        if parts > 1 or times[0] != first:
+            parts = max(parts, 1)
+            closer = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), met)
+            return _Points.of(trajectory._motion.at(closer))
+    # Output times may stand twice, and before the start.
+    rising = np.flatnonzero((np.diff(times, prepend=-np.inf) > 0) & (times >= first))
+    if len(rising) < 2:
+        raise ValueError(f"the viewer shows motions of two output times or more from {first:g} s on")
+    kept = rising[_evenly(len(rising))]
+    return _Points(
+        times[kept],
+        *(getattr(trajectory, name)[kept] for name in ("rotor", "omega_body", "momentum_space", "energy")),
+        *(getattr(trajectory, name)[kept] for name in ("position", "velocity")),
+    )
+
+
+def _evenly(count: int) -> Any:
+    """Return which of so many to keep where there are too many, the first and the last among them."""
+    return np.linspace(0, count - 1, min(_MOST_ROWS, count)).round().astype(int)
+
+
+def _rows(points: _Points) -> Array:
+    """Return the numbers of `State`, (n, 24)."""
+    rotor = points.rotor
+    columns = [
+        points.time[:, np.newaxis],
+        rotor.components,
+        points.omega_body.components,
+        rotor(points.omega_body).components,
+        (~rotor)(points.momentum_space).components,
+        points.momentum_space.components,
+        points.energy[:, np.newaxis],
+        points.position.components,
+        points.velocity.components,
+    ]
+    return np.concatenate(columns, axis=1)
+
+
+def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any]:
+    proof, inertia = trajectory.certificate, trajectory.inertia
+    torque = None if origin is None else origin.torque
+    held = torque is not None and torque.holds
+    start = None if origin is None else origin.state
+    if start is not None and start.time != points.time[0]:
+        # Read from a file that does not hold the start.
+        start = None
+    body = _body(origin)
+    return {
+        "title": origin.title if isinstance(origin, Scene) else trajectory.attributes.get("title"),
+        "body": {
+            **body,
+            "moments": inertia.principal_moments.tolist(),
+            "frame": inertia.principal_frame.components.tolist(),
+        },
+        "held": held,
+        "heavy": weight(torque).tolist() if held else None,
+        "laws": _laws(origin),
+        "start": {
+            "rotor": (start.rotor if start else points.rotor[0]).components.tolist(),
+            "omega_body": (start.omega_body if start else points.omega_body[0]).components.tolist(),
+            "time": float(points.time[0]),
+        },
+        "duration": float(points.time[-1] - points.time[0]),
+        "samples": len(trajectory.time),
+        "method": "recorded",
+        "exact": False,
+        "horizon": None,
+        "steps": int(proof.steps),
+        "error_estimate": proof.error_estimate,
+        "conserved": [
+            {"name": name, "value": value, "drift": proof.drift[name]}
+            for name, value in proof.conserved.items()
+        ],
+        "norm_drift": proof.norm_drift,
+        "free": _free(trajectory, origin, points),
+        "top": _top(trajectory, origin),
+        "ensemble": None,
+    }
+
+
+def _body(origin: Scene | Problem | None) -> dict[str, Any]:
+    """Return mass, centre of mass and solid, as far as they are known."""
+    whole = origin.body if origin is not None and isinstance(origin.body, Body) else None
+    if whole is None:
+        return {"mass": None, "center_of_mass": [0.0] * 3, "solid": None, "solid_at": [0.0] * 3}
+    center = whole.center_of_mass.components
+    told = not isinstance(origin, Scene) or origin.tells_mass
+    return {
+        "mass": whole.mass if told else None,
+        "center_of_mass": center.tolist(),
+        "solid": origin.solid if isinstance(origin, Scene) else None,
+        "solid_at": origin.shift.tolist() if isinstance(origin, Scene) else [0.0] * 3,
+    }
+
+
+def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
+    """Return each law by the name of its field in a scene, and its formula or its numbers."""
+    laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
+    formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
+    gravity = isinstance(origin, Scene) and "gravity" in tomllib.loads(origin.text)
+    told = []
+    for k, (law, formula) in enumerate(zip(laws, formulas, strict=True)):
+        arguments = law.arguments
+        if law.name == "formula":
+            told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
+        elif law.name in ("tabulated", "function"):
+            told.append({"name": law.name, "text": ""})
+        else:
+            name = "gravity" if gravity and k == 0 else law.name
+            told.append({"name": name, "text": ", ".join(map(_number, arguments))})
+    return told
+
+
+def _number(argument: Any) -> str:
+    if isinstance(argument, tuple):
+        return f"({', '.join(map(_number, argument))})"
+    return repr(argument).removesuffix(".0")
+
+
+def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
+    """Return what the invariants of a free body tell."""
+    if origin is None or kind_of(origin) != "free":
+        return None
+    told = describe_free(trajectory.inertia, points.omega_body[0])
+    names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
+    return {name: told[name] for name in names}
+
+
+def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any] | None:
+    """Return what the invariants of a symmetric top under its weight alone tell."""
+    if origin is None or kind_of(origin) != "heavy":
+        return None
+    start = origin.state
+    try:
+        top = LagrangeTop(trajectory.inertia, start.rotor, start.omega_body, weight(origin.torque))
+    except ValueError:
+        return None
+    told = top.describe()
+    names = ("regime", "nutation_period", "precession_rate", "critical_spin", "sleeps")
+    return {"tilt": [told["tilt_min"], told["tilt_max"]], **{name: told[name] for name in names}}

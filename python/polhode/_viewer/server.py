@@ -1,0 +1,224 @@
+"""The command's faces of the viewer: pages for ``run --html``, and the server of ``view``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import threading
+import webbrowser
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+from polhode._mechanics.trajectory import Trajectory
+from polhode._scene.scene import Scene
+from polhode._support.files import check_target
+from polhode._viewer.document import Document, of_file, of_scene, of_text, of_trajectory
+from polhode._viewer.html import bundle_path, page, served_page
+
+_HOST = "127.0.0.1"
+
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; "
+        "style-src 'unsafe-inline'; img-src data: blob:; font-src data:; base-uri 'none'; "
+        "form-action 'none'; frame-ancestors 'none'"
+    ),
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+
+class UnreadableError(Exception):
+    """A file that cannot be shown; the message says why."""
+
+
+# --- run --html
+
+
+def check_page(target: Path) -> None:
+    """Raise an OSError if a page could not be written there, or not be made."""
+    bundle_path()
+    check_target(target)
+
+
+def scene_page(scene: Scene) -> bytes:
+    """Return the page of a scene, which it solves by itself."""
+    return page(of_scene(scene)).encode()
+
+
+def motion_page(trajectory: Trajectory) -> bytes:
+    """Return the page of a run."""
+    return page(of_trajectory(trajectory)).encode()
+
+
+# --- view
+
+# Shows how far a run is: takes the name of a file, gives what to call with the pass and the fraction done.
+Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | None]]
+
+
+def run(options: argparse.Namespace, bar: Bar) -> int:
+    """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt.
+
+    Raises
+    ------
+    UnreadableError, SceneError
+        If the file cannot be shown.
+    OSError, ValueError
+        If nothing can be served there, or the viewer was not built; if the motion cannot be followed.
+    """
+    path = Path(options.file)
+    script = bundle_path().read_bytes()
+    source = Source(path)
+    with bar(path.name) as report:
+        source.document(report)
+    with Server(source, script, options.port) as server:
+        try:
+            print(f"{path} is shown at {server.url}", "Ctrl-C ends it.", sep="\n", flush=True)
+            if options.browser:
+                # A browser that is a program of the terminal would keep us from serving it.
+                threading.Thread(target=webbrowser.open, args=(server.url,), daemon=True).start()
+            server.serve_forever()
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt("the viewer was closed") from None
+    return 0
+
+
+class Source:
+    """A file to be shown, as it is whenever it is asked for."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lock = threading.Lock()
+        self._scene: Document = {}
+        self._document: Document = {}
+
+    def document(self, progress: Callable[[int, float], object] | None = None) -> Document:
+        """Return the document of the file; what a scene says is followed when it is new.
+
+        An UnreadableError or a SceneError says what is wrong with the file; a ValueError, why its motion
+        cannot be followed.
+        """
+        if self.path.suffix.lower() == ".nc":
+            try:
+                return of_file(self.path)
+            except (OSError, ValueError) as error:
+                raise UnreadableError(f"polhode: error: {error}") from error
+        scene = Scene.read(self.path)
+        with self._lock:
+            if (shown := of_scene(scene)) != self._scene:
+                followed = scene.ensemble is None
+                self._document = of_trajectory(scene.run(progress)) if followed else shown
+                self._scene = shown
+            return self._document
+
+    def shown(self) -> Document:
+        """Return the document, also of a scene that is wrong or cannot be followed: the page tells why."""
+        try:
+            return self.document()
+        except UnreadableError:
+            raise
+        except ValueError as error:
+            try:
+                text = self.path.read_text(encoding="utf-8", errors="replace")
+            except OSError:
+                raise UnreadableError(str(error)) from None
+            return of_text(text, self.path)
+
+
+class Server(ThreadingHTTPServer):
+    """Serves one file to browsers on this machine, read again whenever the page is loaded."""
+
+    daemon_threads = True
+
+    def __init__(self, source: Source, script: bytes, port: int = 0) -> None:
+        self.source, self.script = source, script
+        try:
+            super().__init__((_HOST, port), _Handler)
+        except OSError as error:
+            reason = error.strerror or error
+            raise OSError(f"cannot serve at {_HOST}:{port}: {reason}; try another --port") from error
+
+    @property
+    def port(self) -> int:
+        """The port, which the system chose if 0 was asked for."""
+        return int(self.server_address[1])
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return f"http://{_HOST}:{self.port}/"
+
+    @property
+    def hosts(self) -> set[str]:
+        """The names by which a browser on this machine may call us.
+
+        Another name is that of a page elsewhere, which has its name resolved to this machine to read from it.
+        """
+        port = "" if self.port == 80 else f":{self.port}"
+        return {f"{name}{port}" for name in (_HOST, "localhost")}
+
+    def verify_request(self, request: Any, client_address: Any) -> bool:
+        """Whether the client is on this machine."""
+        return bool(client_address[0] == _HOST)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Tell in one line what went wrong; a browser that went away is no error."""
+        error = sys.exception()
+        if not isinstance(error, ConnectionError):
+            print(f"polhode: error: {type(error).__name__}: {error}", file=sys.stderr)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: Server
+    server_version, sys_version = "Polhode", ""
+    protocol_version = "HTTP/1.1"
+    timeout = 30
+
+    def do_GET(self) -> None:
+        self._answer()
+
+    def do_HEAD(self) -> None:
+        self._answer()
+
+    def _answer(self) -> None:
+        if self.headers.get_all("Host", []) not in [[host] for host in self.server.hosts]:
+            self._send(HTTPStatus.FORBIDDEN, "text/plain", b"this is no name of this server\n")
+            return
+        match self.path:
+            case "/":
+                self._send(HTTPStatus.OK, "text/html", served_page(self.server.source.path.name).encode())
+            case "/viewer.js":
+                self._send(HTTPStatus.OK, "text/javascript", self.server.script)
+            case "/document.json":
+                self._document()
+            case _:
+                self._send(HTTPStatus.NOT_FOUND, "text/plain", b"not here\n")
+
+    def _document(self) -> None:
+        try:
+            text = json.dumps(self.server.source.shown(), allow_nan=False)
+        except (OSError, UnreadableError) as error:
+            self._send(HTTPStatus.NOT_FOUND, "text/plain", f"{error}\n".encode())
+        else:
+            self._send(HTTPStatus.OK, "application/json", text.encode())
+
+    def _send(self, status: HTTPStatus, kind: str, content: bytes) -> None:
+        self.send_response(status)
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        self.send_header("Content-Type", f"{kind}; charset=utf-8")
+        self.send_header("Content-Length", str(len(content)))
+        self.end_headers()
+        if self.command != "HEAD":
+            self.wfile.write(content)
+
+    def log_message(self, *_: Any) -> None:
+        """Say nothing of requests."""

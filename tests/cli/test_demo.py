@@ -1,0 +1,151 @@
+"""`polhode demo` and `polhode examples`: what a new user types first."""
+
+import re
+import sys
+import tomllib
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from command_line import EXAMPLES, ROOT, polhode
+from polhode._cli import main
+from polhode._cli.examples import FOLDER, examples
+
+# --- demo
+
+PICTURES = {"t-handle-motion.png", "t-handle-polhode.png"}
+
+
+def names(folder):
+    return {path.name for path in folder.iterdir()}
+
+
+def test_the_demo_writes_its_page_and_pictures(bundle, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    assert main.main(["demo", "-o", str(tmp_path)]) == 0
+    assert names(tmp_path) == {"t-handle.html", *PICTURES}
+    for name in PICTURES:
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+    page = (tmp_path / "t-handle.html").read_text()
+    assert "<polhode-viewer>" in page
+    assert "<title>T-handle in free flight" in page
+    printed = capsys.readouterr().out
+    assert printed.startswith("T-handle in free flight\n\nBody\n")
+    written = [tmp_path / name for name in ("t-handle.html", *sorted(PICTURES))]
+    assert printed.endswith("\nWritten\n" + "".join(f"  {path}\n" for path in written))
+
+
+def test_the_sketch_has_the_flips(bundle, tmp_path, capsys):
+    """The stem's angular velocity is near its largest value or its negative, and changes sign 9 times."""
+    assert main.main(["demo", "-o", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    rows = [line.partition("|")[2].ljust(72) for line in printed.splitlines() if re.match(r".{10} \|", line)]
+    assert len(rows) == 9
+    assert {len(row) for row in rows} == {72}
+    signs = [1 if top == "*" else -1 for top, bottom in zip(rows[0], rows[-1], strict=True) if top != bottom]
+    assert np.count_nonzero(np.diff(signs)) == 9
+    assert "seen: 9" in printed
+
+
+def test_the_demo_needs_numpy_only(bundle, tmp_path, monkeypatch, capsys):
+    for name in ("matplotlib", "matplotlib.figure", "scipy", "xarray", "rich"):
+        monkeypatch.setitem(sys.modules, name, None)
+    assert main.main(["demo", "-o", str(tmp_path)]) == 0
+    assert names(tmp_path) == {"t-handle.html"}
+    assert "No pictures: a figure needs matplotlib: pip install 'polhode[plot]'." in capsys.readouterr().out
+
+
+def test_the_demo_without_the_viewer(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("polhode._viewer.html._BUNDLE", tmp_path / "absent.js")
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    assert main.main(["demo", "-o", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert "No page: " in printed
+    assert "make viewer" in printed
+    assert "Written" not in printed
+    assert names(tmp_path) == set()
+
+
+def test_the_demo_in_a_folder_that_is_missing(tmp_path, capsys):
+    assert main.main(["demo", "-o", str(tmp_path / "absent")]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert f"there is no directory {tmp_path / 'absent'}; make it first" in captured.err
+
+
+# --- examples
+
+
+def test_examples_are_listed_with_their_titles():
+    done = polhode("examples")
+    assert (done.returncode, done.stderr) == (0, "")
+    listed = dict(line.split(maxsplit=1) for line in done.stdout.splitlines())
+    assert listed == {path.stem: tomllib.loads(path.read_text())["title"] for path in EXAMPLES.glob("*.toml")}
+
+
+def test_examples_are_copied_with_what_they_need(tmp_path):
+    done = polhode("examples", *examples(), cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert names(tmp_path) == {path.name for path in EXAMPLES.iterdir() if path.suffix in (".toml", ".stl")}
+    for path in tmp_path.iterdir():
+        assert path.read_bytes() == (EXAMPLES / path.name).read_bytes()
+    for path in tmp_path.glob("*.toml"):
+        assert ph.Scene.read(path).title
+
+
+def test_a_copy_runs(tmp_path):
+    done = polhode("examples", "t-handle.toml", "-o", tmp_path)
+    assert done.stdout == (
+        f"Written\n  {tmp_path}/t-handle.toml\n  {tmp_path}/t-handle.stl\n"
+        f"Try `polhode run {tmp_path}/t-handle.toml` or `polhode view {tmp_path}/t-handle.toml`.\n"
+    )
+    assert polhode("run", "t-handle.toml", cwd=tmp_path).returncode == 0
+
+
+def test_no_file_is_replaced(tmp_path):
+    """And if one is there, none is copied."""
+    (tmp_path / "t-handle.stl").write_text("mine")
+    done = polhode("examples", "earth", "t-handle", cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr == (
+        "polhode: error: t-handle.stl exists and is not replaced; move it, or choose another folder with -o\n"
+    )
+    assert names(tmp_path) == {"t-handle.stl"}
+    assert (tmp_path / "t-handle.stl").read_text() == "mine"
+    # A link that leads nowhere is a file of the user's, too.
+    (tmp_path / "earth.toml").symlink_to("nowhere")
+    assert polhode("examples", "earth", cwd=tmp_path).returncode == 1
+    assert names(tmp_path) == {"t-handle.stl", "earth.toml"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (["t-handel"], 2, "no example is named 't-handel'; did you mean t-handle?"),
+        (["scenes/earth"], 2, "no example is named 'scenes/earth'"),
+        (["zzz"], 2, "no example is named 'zzz'; `polhode examples` lists them"),
+        (["earth", "-o", "absent"], 1, "there is no directory absent; make it first"),
+    ],
+)
+def test_what_cannot_be_copied(arguments, code, message, tmp_path):
+    done = polhode("examples", *arguments, cwd=tmp_path)
+    assert done.returncode == code
+    assert message in done.stderr
+    assert names(tmp_path) == set()
+
+
+def test_examples_that_are_missing(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("polhode._cli.examples.FOLDER", tmp_path)
+    assert main.main(["examples"]) == 1
+    assert f"{tmp_path} has no examples" in capsys.readouterr().err
+
+
+def test_wheels_and_source_distributions_hold_the_examples():
+    """The package has a link to them, which is packed by patterns: each file but the script fits one."""
+    assert FOLDER.resolve() == EXAMPLES
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["maturin"]["include"]
+    patterns = [entry["path"] for entry in settings if entry["format"] == ["wheel", "sdist"]]
+    assert len(patterns) == len(settings)
+    packed = {path.name for pattern in patterns for path in ROOT.glob(pattern) if path.parent == FOLDER}
+    assert {path.name for path in EXAMPLES.glob("*.*")} - packed == {"make_t_handle.py"}

@@ -1,0 +1,112 @@
+"""The scenes in the documentation are scenes."""
+
+import os
+import re
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import polhode as ph
+import processes
+from command_line import polhode
+from polhode._cli import main
+from viewers import needs_bundle
+
+ROOT = Path(__file__).parents[2]
+SCENES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/scenes.md").read_text(), flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("text", SCENES, ids=lambda text: text.splitlines()[1][:20])
+def test_scenes_run(text, tmp_path):
+    (tmp_path / "examples").mkdir()
+    shutil.copy(ROOT / "examples/t-handle.stl", tmp_path / "examples")
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    scene = ph.Scene.read(path)
+    if scene.ensemble is not None:
+        state, _, _ = scene.ensemble.draw(count=3)
+        assert state.rotor.shape == (3,)
+    trajectory = replace(scene, ensemble=None).run()
+    assert trajectory.certificate.worst < 1e-10
+
+
+@pytest.mark.parametrize(
+    "name", ["algebra", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
+)
+def test_the_pages_run_and_print_what_they_say(name, tmp_path):
+    for needed in ("jax", "sympy", "anywidget"):
+        pytest.importorskip(needed)
+    # Pages read the examples, and write what they write here.
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    blocks = blocks_of(ROOT / f"docs/{name}.md")
+    code = "\n".join(text for language, text in blocks if language == "python")
+    done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    told = []
+    for language, text in blocks:
+        if language == "python":
+            told += re.findall(r"^print\(.*\)  # (.*)$", text, flags=re.MULTILINE)
+        elif language == "text":
+            told += text.splitlines()
+    assert done.stdout.splitlines() == told
+
+
+def test_the_shell_answers_as_the_page_says():
+    text = "".join(text for language, text in blocks_of(ROOT / "docs/formulas.md") if language == "console")
+    commands = [part.split("\n", 1) for part in text.removeprefix("$ ").split("\n$ ")]
+    assert len(commands) == 4
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    for command, answer in commands:
+        done = processes.run(["bash", "-c", command], env=environment)
+        assert (done.returncode, done.stderr) == (0, "")
+        # Residuals of rounding differ between machines.
+        got, expected = (re.sub(r"residual \S+", "residual …", x.strip()) for x in (done.stdout, answer))
+        assert got == expected
+
+
+def test_the_commands_of_the_viewer_are_commands():
+    text = "".join(text for language, text in blocks_of(ROOT / "docs/viewer.md") if language == "console")
+    commands = re.findall(r"^\$ polhode (.*)$", text, flags=re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        options = main._parser().parse_args(command.split())
+        assert callable(options.command)
+
+
+def test_the_page_of_figures_runs(tmp_path):
+    pytest.importorskip("matplotlib")
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    blocks = blocks_of(ROOT / "docs/figures.md")
+    asked = (
+        "".join(text for language, text in blocks if language == "console").removeprefix("$ ").split("\n$ ")
+    )
+    assert len(asked) == 4
+    for command, answer in (part.split("\n", 1) for part in asked):
+        done = polhode(*command.split()[1:], cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout.strip() == answer.strip()
+    (code,) = (text for language, text in blocks if language == "python")
+    done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    told = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
+    assert [line.strip() for line in done.stdout.splitlines()] == told
+    written = {"polhode.svg", "scene.pdf", "turned.svg", "plate.gif", "locus.pdf"}
+    assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
+
+
+def blocks_of(page):
+    return re.findall(r"```(\w+)\n(.*?)```", page.read_text(), flags=re.DOTALL)
+
+
+def test_there_are_scenes():
+    assert len(SCENES) == 9
+
+
+@pytest.mark.parametrize(
+    "solid", ["box", "ellipsoid", "sphere", "hollow_sphere", "cylinder", "capsule", "cone"]
+)
+def test_solids_are_documented(solid):
+    assert f'"{solid}"' in (ROOT / "docs/scenes.md").read_text()

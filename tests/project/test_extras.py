@@ -1,0 +1,45 @@
+"""What needs an optional library says which extra installs it."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from polhode._cli import main
+
+EXAMPLE = Path(__file__).parents[2] / "examples/toutatis.toml"
+
+
+@pytest.fixture
+def trajectory():
+    state = ph.State(ph.Rotor.identity(), [0.1, 1, 0.2])
+    return ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3), state, np.linspace(0, 1, 5))
+
+
+@pytest.mark.parametrize(
+    ("module", "extra", "use"),
+    [
+        ("xarray", "io", lambda t, path: t.to_xarray()),
+        ("h5netcdf", "io", lambda t, path: t.save(path / "a.nc")),
+        ("matplotlib.figure", "plot", lambda t, path: t.plot()),
+        ("scipy.spatial.transform", "scipy", lambda t, path: t.rotor.to_scipy()),
+    ],
+)
+def test_the_extra_is_named(module, extra, use, trajectory, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, module, None)
+    library = module.partition(".")[0]
+    with pytest.raises(ImportError, match=rf"needs {library}: pip install 'polhode\[{extra}\]'"):
+        use(trajectory, tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("module", ["xarray", "h5netcdf", "matplotlib"])
+def test_the_command_says_so_before_the_run(module, tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, module, None)
+    assert main.main(["run", str(EXAMPLE), "-o", str(tmp_path / "a.nc")]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "pip install 'polhode[" in captured.err
+    assert not list(tmp_path.iterdir())

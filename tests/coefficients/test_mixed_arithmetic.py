@@ -192,7 +192,7 @@ def test_a_number_beyond_single_precision_is_told():
         slice(1),
         np.array([object()]),
     ],
-    ids=repr,
+    ids=lambda value: type(value).__name__,
 )
 @pytest.mark.parametrize("operate", [*OPERATORS, operator.truediv])
 def test_other_things_are_type_errors_from_either_side(bad, operate):

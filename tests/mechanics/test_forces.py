@@ -300,7 +300,6 @@ def failing(t, x, v, R):
         ("down", TypeError, ["the force"]),
         ([0, np.inf, 0], ValueError, ["the force", "inf"]),
     ],
-    ids=str,
 )
 def test_forces_that_are_none(force, kind, parts):
     with pytest.raises(kind) as error:

@@ -113,7 +113,6 @@ def test_motions_agree_with_dop853(name):
         (ph.torque.gravity_gradient(0.7, 0.1, 0.2), set()),
         (ph.torque.formula("(~R e3 R) ∧ e1"), set()),
     ],
-    ids=repr,
 )
 def test_what_is_conserved_is(law, names):
     """Roundings of 10,000 steps of 51 turns add up at random: √(51e4) of half an ulp, four times."""

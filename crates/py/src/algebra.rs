@@ -5,15 +5,16 @@ use crate::arrays::{
 };
 use crate::signature::Algebra;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
-use polhode_ga::batch::{Element, turn_threads};
-use polhode_ga::compose::compose;
-use polhode_ga::functions::Function;
+use polhode_ga::g3::functions::Function;
+use polhode_ga::g3::pauli;
 use polhode_ga::general::Calculus;
-use polhode_ga::maps;
 use polhode_ga::product::Grades;
+use polhode_ga::rows::compose::compose;
+use polhode_ga::rows::product::{Element, turn_threads};
+use polhode_ga::rows::rotor_functions;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
-use polhode_ga::threads::Threads;
-use polhode_ga::{MathError, Multivector, Rotor, Vector, pauli};
+use polhode_ga::{MathError, Multivector, Rotor, Vector};
 use pyo3::prelude::*;
 
 /// One row, or a row for each.
@@ -200,18 +201,18 @@ pub(crate) fn rotor_to_rotation_vector<'py>(py: Python<'py>, r: Rows<'py>) -> Ou
 #[pyfunction]
 pub(crate) fn rotor_exp(b: &Bound<'_, PyAny>, out: &Bound<'_, PyAny>) -> PyResult<()> {
     if is_single(out) {
-        return map_to::<f32>((3, 4), b, out, maps::exp);
+        return map_to::<f32>((3, 4), b, out, rotor_functions::exp);
     }
-    map_to::<f64>((3, 4), b, out, maps::exp)
+    map_to::<f64>((3, 4), b, out, rotor_functions::exp)
 }
 
 /// Fills `out` with the bivectors −Bθ/2 of rows of rotors; both hold float64, or float32.
 #[pyfunction]
 pub(crate) fn rotor_log(r: &Bound<'_, PyAny>, out: &Bound<'_, PyAny>) -> PyResult<()> {
     if is_single(out) {
-        return map_to::<f32>((4, 3), r, out, maps::log);
+        return map_to::<f32>((4, 3), r, out, rotor_functions::log);
     }
-    map_to::<f64>((4, 3), r, out, maps::log)
+    map_to::<f64>((4, 3), r, out, rotor_functions::log)
 }
 
 /// Fills `out` with `exp(n log R)` of rows of rotors and of one number n each; all hold float64, or float32.
@@ -224,11 +225,11 @@ pub(crate) fn rotor_power<'py>(
     if is_single(out) {
         let n: Rows<'_, f32> = n.extract()?;
         let n = numbers(&n)?;
-        return map_to::<f32>((4, 4), r, out, |t, r, out| maps::power(t, r, n, out));
+        return map_to::<f32>((4, 4), r, out, |t, r, out| rotor_functions::power(t, r, n, out));
     }
     let n: Rows<'_> = n.extract()?;
     let n = numbers(&n)?;
-    map_to::<f64>((4, 4), r, out, |t, r, out| maps::power(t, r, n, out))
+    map_to::<f64>((4, 4), r, out, |t, r, out| rotor_functions::power(t, r, n, out))
 }
 
 /// Fills an array from the rows of another of the same batch shape; an error names the batch index of the first

@@ -9,7 +9,7 @@ use crate::pool;
 use crate::simulation::{Limits, method_of, run};
 use crate::torque::Law;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::ensemble::{self, Ensemble, Outputs, Start, Summary};

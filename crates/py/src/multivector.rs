@@ -4,7 +4,7 @@ use crate::operators::{equal, function, infix, infix_right, named, sum, turned};
 use crate::signature::{Algebra, g3};
 use crate::value::{Held, Multivector, Object, Rotor, held, number, one, row, unit_rotor, wrap};
 use numpy::PyArray1;
-use polhode_ga::functions::Function;
+use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::{Graded, Multivector as FullMultivector};
 use pyo3::exceptions::PyTypeError;

@@ -5,7 +5,7 @@ use crate::value::{
     Held, Multivector, Object, Operand, Rotor, number, one, one_rotor, operand, scalar, unit_rotor, wrap,
 };
 use numpy::{PyArray1, PyArrayMethods};
-use polhode_ga::functions::Function;
+use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
 use polhode_ga::{Graded, Multivector as FullMultivector};
 use pyo3::intern;

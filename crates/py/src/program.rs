@@ -4,8 +4,8 @@ use crate::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, thre
 use crate::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
-use polhode_ga::batch::Element;
 use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type};
+use polhode_ga::rows::product::Element;
 use polhode_ga::table::G3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -3,8 +3,8 @@
 //! `adaptive`.
 
 use polhode_ga::formula::Names;
-use polhode_ga::lanes::{Work, fastest};
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::lanes::{Work, fastest};
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};

@@ -16,7 +16,7 @@ use crate::phase::{Gyrostat, Phase};
 use crate::runge_kutta::Carried;
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
-use polhode_ga::lanes::{Lanes, One};
+use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 

@@ -25,7 +25,7 @@ use crate::torque::Torque;
 use block::Crew;
 pub(crate) use output::Own;
 pub use output::{Outputs, Summary};
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 
 /// One value for all bodies, or one for each.

@@ -4,7 +4,7 @@ use crate::force::{Center, Translation};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use crate::torque::{Torque, TorqueError, exerted};
-use polhode_ga::lanes::{Lanes, One};
+use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// Where bodies are, side by side.

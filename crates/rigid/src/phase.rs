@@ -1,7 +1,7 @@
 //! A body in its principal axes, and a point of its motion.
 
 use crate::torque::lanes::vertical;
-use polhode_ga::lanes::One;
+use polhode_ga::simd::lanes::One;
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// A body in its principal axes, with a wheel inside whose momentum relative to the body is constant (a gyrostat;

@@ -31,7 +31,7 @@ use crate::torque::Torque;
 use exponential::exponential;
 pub(crate) use points::Points;
 use polhode_ga::Bivector;
-use polhode_ga::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
+use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
 pub use tableau::{DOP853, Tableau};
 
 /// Beyond this angle in rad of one step the exponential's differential comes near its pole at 2π.

@@ -36,7 +36,7 @@ use crate::kicks::fixed_momentum;
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
-use polhode_ga::lanes::One;
+use polhode_ga::simd::lanes::One;
 use polhode_ga::{Bivector, Rotor};
 pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
 use turns::{Spin, Turns};

@@ -21,7 +21,7 @@ pub use table::{Kind, Table};
 use crate::phase::{Gyrostat, Phase};
 use crate::simulate_error::SimulateError;
 use lanes::{gradient, quadratic, seen};
-use polhode_ga::lanes::One;
+use polhode_ga::simd::lanes::One;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::fmt;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! The cosine and sine of the many small turns of steps.
 
-use polhode_ga::lanes::Lanes;
+use polhode_ga::simd::lanes::Lanes;
 
 /// `cos x` and `sin x/x` of `x² = square`, to a rounding or two.
 ///

@@ -1,6 +1,6 @@
 //! Many bodies at once are as each alone.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::ensemble::{Ensemble, Failure, Outputs, Rows, Start, Summary};
 use polhode_rigid::force::Center;

@@ -1,6 +1,6 @@
 //! Bodies side by side, each by steps of its own.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start, Summary};
 use polhode_rigid::force::{Center, Force};

@@ -2,7 +2,7 @@
 
 use polhode_ga::formula::{Given, Input, Meaning, Names, Type};
 use polhode_ga::product::Grades;
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start, Summary};

@@ -1,6 +1,6 @@
 //! The free top: against states computed by other formulas to 34 digits, and against its own laws.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::free::{FreeMotion, TILE, Tile, Times, at_each};
 use polhode_rigid::regime::Regime;

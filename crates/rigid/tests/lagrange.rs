@@ -1,6 +1,6 @@
 //! Lagrange's top: against states computed by other formulas to 34 digits, and against its own laws.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::lagrange::{LagrangeRegime, LagrangeTop};

@@ -14,7 +14,7 @@ use crate::runge_kutta::{Carried, DOP853, Points, step};
 use crate::simulate::Progress;
 use crate::simulate_error::SimulateError;
 use crate::torque::Torque;
-use polhode_ga::lanes::{Lanes, Work};
+use polhode_ga::simd::lanes::{Lanes, Work};
 use std::{array, mem};
 
 /// So many lanes hold the last bodies: one register of the widest machines.

@@ -6,7 +6,7 @@ use crate::closed_form::{Since, check_kept};
 use crate::free::FreeMotion;
 use crate::phase::Phase;
 use crate::simulate::check_horizons_from;
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use std::borrow::Cow;
 

@@ -18,7 +18,7 @@ use crate::splitting::turns::Turns;
 use crate::stops::{aliasing, is_aliased};
 use crate::torque::Torque;
 use crate::walk::is_finite;
-use polhode_ga::lanes::Work;
+use polhode_ga::simd::lanes::Work;
 use std::array;
 
 /// Steps between looks at whether all is finite, and whether to go on.

@@ -8,7 +8,7 @@ use crate::formula::{Formula, Formulas};
 use crate::phase::{Gyrostat, Phase};
 use crate::torque::lanes::{Three, gradient, quadratic, seen, turn_from, vertical};
 use crate::torque::{Axes, Gains, Orbit, Table, Torque};
-use polhode_ga::lanes::{Lanes, Work, cross, fastest, mapped};
+use polhode_ga::simd::lanes::{Lanes, Work, cross, fastest, mapped};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 use std::sync::Arc;

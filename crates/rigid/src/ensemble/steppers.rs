@@ -7,7 +7,7 @@ use crate::classical::{self, Bodies, State};
 use crate::exert::Exert;
 use crate::phase::{Gyrostat, Phase};
 use crate::splitting::turns::{Spin, Turns};
-use polhode_ga::lanes::{Lanes, fastest};
+use polhode_ga::simd::lanes::{Lanes, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::array;
 use std::ops::Range;

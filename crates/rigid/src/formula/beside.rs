@@ -7,7 +7,7 @@ use crate::torque::Axes;
 use crate::torque::lanes::{Three, reversed, seen, turned};
 use polhode_ga::Rotor;
 use polhode_ga::formula::{Beside, Given};
-use polhode_ga::lanes::{Lanes, composed};
+use polhode_ga::simd::lanes::{Lanes, composed};
 use std::sync::Arc;
 
 /// A torque for each body.

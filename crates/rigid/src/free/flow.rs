@@ -7,7 +7,7 @@ use super::lanes::{Phase, in_lane, sin_cos_turns};
 use super::series::{Circular, Hyperbolic, Series, State};
 use crate::double_double::DoubleDouble;
 use polhode_ga::Rotor;
-use polhode_ga::curve::Curve;
+use polhode_ga::rows::curve::Curve;
 
 /// Rotor and angular velocity as functions of time.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Arithmetic in lanes: phases reduced, exponentials, sine and cosine. No branches.
 
 use crate::double_double::DoubleDouble;
-use polhode_ga::lanes_math::{sin_cos, two_product, two_sum};
+use polhode_ga::simd::double::{sin_cos, two_product, two_sum};
 use std::f64::consts::FRAC_PI_2;
 
 /// Adding 1.5·2⁵² leaves the nearest integer in the last bits; for numbers beyond 2⁵¹ one near enough.

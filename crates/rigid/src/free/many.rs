@@ -8,8 +8,8 @@
 use super::FreeMotion;
 use super::flow::{AnyFlow, Flow};
 use super::series::{Circular, Hyperbolic, Series};
-use polhode_ga::curve::{TOGETHER, expect, sample, together};
-use polhode_ga::threads::{Threads, for_each};
+use polhode_ga::rows::curve::{TOGETHER, expect, sample, together};
+use polhode_ga::simd::threads::{Threads, for_each};
 use std::ops::Range;
 
 /// Motions in a tile: enough to fill the blocks of both forms, few enough for their states to stay near.

@@ -2,7 +2,7 @@
 
 use super::series::{Series, State};
 use crate::free::lanes::{Phase, sin_cos_turns};
-use polhode_ga::curve::Curve;
+use polhode_ga::rows::curve::Curve;
 
 /// Rotor and angular velocity as functions of time.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The exponential of a step's turn and the inverse of its differential.
 
-use polhode_ga::lanes::Lanes;
+use polhode_ga::simd::lanes::Lanes;
 
 /// `exp(−½σ)` and `c(θ)` for `θ² = square`, to a few roundings up to the longest turn.
 ///
@@ -58,7 +58,7 @@ fn series<const W: usize, const F: bool>(c: &[f64; 12], z: Lanes<W, F>) -> Lanes
 #[cfg(test)]
 mod tests {
     use super::*;
-    use polhode_ga::lanes::One;
+    use polhode_ga::simd::lanes::One;
 
     #[test]
     fn exponentials_are_those_of_the_library() {

@@ -4,7 +4,7 @@ use super::Carried;
 use crate::classical::Bodies;
 use crate::force::Center;
 use crate::phase::Phase;
-use polhode_ga::lanes::{Lanes, dot, mapped_back, matrix};
+use polhode_ga::simd::lanes::{Lanes, dot, mapped_back, matrix};
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// Where bodies are, side by side.

@@ -4,7 +4,7 @@ use crate::classical::renormalize;
 use crate::exert::{Exert, Place};
 use crate::phase::Gyrostat;
 use crate::turn::cosine_and_sinc;
-use polhode_ga::lanes::{Lanes, composed, cross, dot, mapped, mapped_back, matrix};
+use polhode_ga::simd::lanes::{Lanes, composed, cross, dot, mapped, mapped_back, matrix};
 
 /// Rotors and momenta in principal axes.
 #[derive(Clone, Copy, Debug)]

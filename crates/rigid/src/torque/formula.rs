@@ -7,7 +7,7 @@ use crate::formula::{Formula, Motion, Purpose, given};
 use crate::phase::{Gyrostat, Phase};
 use crate::point::Point;
 use polhode_ga::formula::{Error, Given, Input, Names};
-use polhode_ga::lanes::One;
+use polhode_ga::simd::lanes::One;
 use polhode_ga::{Bivector, Rotor};
 
 /// A law that is a formula.

@@ -3,7 +3,7 @@
 //! Between the stages of a step a rotor is not quite of norm 1, so that another formula for the same turn would be another
 //! law there: whatever steps a body uses these.
 
-use polhode_ga::lanes::{Lanes, composed, cross, dot};
+use polhode_ga::simd::lanes::{Lanes, composed, cross, dot};
 
 /// Three numbers for each body: a vector, a bivector, or a diagonal.
 pub(crate) type Three<const W: usize, const F: bool> = [Lanes<W, F>; 3];

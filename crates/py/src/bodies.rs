@@ -2,7 +2,8 @@
 
 use crate::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, table};
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::{Amount, Solid, TriangleMesh, body, inertia};
+use polhode_rigid::body::inertia;
+use polhode_rigid::{Amount, Solid, TriangleMesh, body};
 use pyo3::prelude::*;
 use std::convert::Infallible;
 use std::path::PathBuf;

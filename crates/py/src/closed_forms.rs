@@ -6,9 +6,9 @@ use crate::pool;
 use numpy::PyArrayMethods;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
-use polhode_rigid::damped;
-use polhode_rigid::lagrange::{self, LagrangeDescription};
-use polhode_rigid::larmor;
+use polhode_rigid::exact::damped;
+use polhode_rigid::exact::lagrange::{self, LagrangeDescription};
+use polhode_rigid::exact::larmor;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -6,7 +6,7 @@ use crate::value::{self, Operand};
 use numpy::PyUntypedArrayMethods;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Vector};
-use polhode_rigid::torque::Torque;
+use polhode_rigid::laws::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};

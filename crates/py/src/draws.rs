@@ -4,7 +4,7 @@ use crate::arrays::{Array, bad, line, table};
 use crate::bodies::Inertia;
 use crate::scene::named;
 use numpy::{PyArray1, PyArrayMethods};
-use polhode_rigid::torque::{Argument, Torque};
+use polhode_rigid::laws::torque::{Argument, Torque};
 use polhode_rigid::{body, scene};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;

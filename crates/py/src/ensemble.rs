@@ -13,8 +13,8 @@ use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::ensemble::{self, Ensemble, Outputs, Start, Summary};
-use polhode_rigid::force::Center;
-use polhode_rigid::simulate::Options;
+use polhode_rigid::run::Options;
+use polhode_rigid::state::center::Center;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -6,7 +6,7 @@ use crate::arrays::{Array, Rows, bad, numbers, table};
 use crate::free::{flat, pieces};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use polhode_rigid::free::{FlowDerivatives, FreeMotion};
+use polhode_rigid::exact::free::{FlowDerivatives, FreeMotion};
 use pyo3::prelude::*;
 
 /// From so many times on lanes pay.

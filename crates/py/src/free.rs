@@ -8,10 +8,10 @@ use crate::value::{Multivector, number, one, one_rotor};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor};
-use polhode_rigid::free::{self, FlowDerivatives, TILE, Tile, Times, at_each};
-use polhode_rigid::inertia;
-use polhode_rigid::regime::FreeDescription;
-use polhode_rigid::simulate::check_horizons;
+use polhode_rigid::body::inertia;
+use polhode_rigid::exact::free::{self, FlowDerivatives, TILE, Tile, Times, at_each};
+use polhode_rigid::exact::regime::FreeDescription;
+use polhode_rigid::state::checks::check_horizons;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 

@@ -5,10 +5,10 @@ use crate::made::{
     Asked, Known, Made, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector, vector_of,
 };
 use polhode_ga::{Bivector, Vector};
-use polhode_rigid::event::{self, Direction, Quantity};
-use polhode_rigid::force;
-use polhode_rigid::formula::{Formula, Purpose};
-use polhode_rigid::point::Function;
+use polhode_rigid::laws::event::{self, Direction, Quantity};
+use polhode_rigid::laws::force;
+use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::state::point::Function;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 

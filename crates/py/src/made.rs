@@ -8,7 +8,7 @@ use crate::value::{self, Operand};
 use polhode_ga::formula::{Error, Given, Input, InputKind, Names};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
-use polhode_rigid::torque::TorqueError;
+use polhode_rigid::error::TorqueError;
 use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;

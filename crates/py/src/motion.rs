@@ -3,7 +3,7 @@
 use crate::arrays::{Array, Rows, bad, numbers, one, table};
 use crate::bodies::{Inertia, rotor};
 use polhode_ga::{Bivector, Rotor};
-use polhode_rigid::symmetric_top::SymmetricTop;
+use polhode_rigid::exact::symmetric::SymmetricTop;
 use pyo3::prelude::*;
 
 pub(crate) fn check_times(times: &[f64]) -> PyResult<()> {

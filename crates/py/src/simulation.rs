@@ -8,10 +8,10 @@ use crate::motion::check_times;
 use crate::torque::Law;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::SimulateError;
-use polhode_rigid::event::Direction;
-use polhode_rigid::force::Center;
-use polhode_rigid::method::Method;
-use polhode_rigid::simulate::{self as rigid, Options, Problem, Progress, States};
+use polhode_rigid::laws::event::Direction;
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::{self as rigid, Options, Problem, Progress, States};
+use polhode_rigid::state::center::Center;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::time::{Duration, Instant};
@@ -22,7 +22,7 @@ const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 /// Names of the methods, by rising order.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {
-    polhode_rigid::method::methods().map(Method::name).collect()
+    polhode_rigid::methods::methods().map(Method::name).collect()
 }
 
 /// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.

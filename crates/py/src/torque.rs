@@ -9,10 +9,10 @@ use crate::made::{
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::weight_moment;
-use polhode_rigid::phase::{Gyrostat, Phase};
-use polhode_rigid::torque::{
+use polhode_rigid::laws::torque::{
     Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque, total, wheel,
 };
+use polhode_rigid::state::phase::{Gyrostat, Phase};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;

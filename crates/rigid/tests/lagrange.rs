@@ -3,7 +3,7 @@
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
-use polhode_rigid::lagrange::{LagrangeRegime, LagrangeTop};
+use polhode_rigid::exact::lagrange::{LagrangeRegime, LagrangeTop};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -5,8 +5,8 @@ use crate::recorded::between;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::ensemble::{Ensemble, Rows, Start};
-use polhode_rigid::force::Center;
-use polhode_rigid::simulate::Motion;
+use polhode_rigid::run::Motion;
+use polhode_rigid::state::center::Center;
 
 /// Frames that are kept of bodies that have to be stepped.
 const FRAMES: usize = 241;

@@ -3,9 +3,9 @@
 use crate::crowd::Crowd;
 use crate::rows::{ROW, rows};
 use polhode_ga::Vector;
-use polhode_rigid::mesh::{MeshError, MeshFormat, MeshProblem};
+use polhode_rigid::body::mesh::{MeshError, MeshFormat, MeshProblem};
+use polhode_rigid::run::{Motion, Problem, Progress};
 use polhode_rigid::scene::Law;
-use polhode_rigid::simulate::{Motion, Problem, Progress};
 use polhode_rigid::{Body, Diagnostic, Scene, SimulateError, TriangleMesh};
 use std::cell::OnceCell;
 use std::collections::HashMap;

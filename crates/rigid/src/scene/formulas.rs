@@ -11,7 +11,7 @@
 //! ```
 
 use super::reader::{Reader, Table, Value};
-use crate::torque::{Axes, FormulaTorque, given_names};
+use crate::laws::torque::{Axes, FormulaTorque, given_names};
 use crate::units::{Quantity, Source};
 use polhode_ga::formula::{
     Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading,

@@ -78,7 +78,7 @@ mod spread;
 mod tests;
 mod torques;
 
-use crate::force::Center;
+use crate::state::center::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;

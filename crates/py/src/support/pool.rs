@@ -4,13 +4,18 @@
 //! This module holds all the unsafe code of the crate: a buffer lends out its memory.
 #![allow(unsafe_code)]
 
-use crate::arrays::{Array, Out};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyBufferError;
 use pyo3::ffi;
 use pyo3::prelude::*;
 use std::ffi::{c_int, c_void};
 use std::sync::Mutex;
+
+/// A new array of float64.
+pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// A new array, or a Python exception.
+pub(crate) type Out<'py> = PyResult<Array<'py>>;
 
 type Memory = Py<PyArray1<u8>>;
 

@@ -1,9 +1,9 @@
 //! The algebra over arrays: rows of components in, rows out.
 
-use crate::arrays::{
+use super::signature::Algebra;
+use crate::support::arrays::{
     Out, Rows, RowsToFill, bad, map_long_rows, map_rows, numbers, numbers_to_fill, place, threads,
 };
-use crate::signature::Algebra;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::g3::pauli;

@@ -1,9 +1,9 @@
 //! Between NumPy arrays and fixed-size rows.
 
-use crate::pool;
+use super::pool;
+pub(crate) use super::pool::{Array, Out};
 use numpy::{
-    Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
-    PyUntypedArrayMethods,
+    Element, PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use polhode_ga::simd::threads::Threads;
 use pyo3::exceptions::PyValueError;
@@ -15,12 +15,6 @@ pub(crate) type Rows<'py, T = f64> = PyReadonlyArrayDyn<'py, T>;
 
 /// An array to write to.
 pub(crate) type RowsToFill<'py, T = f64> = PyReadwriteArrayDyn<'py, T>;
-
-/// A new array of float64.
-pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
-
-/// A new array, or a Python exception.
-pub(crate) type Out<'py> = PyResult<Array<'py>>;
 
 /// Any Rust error as a ValueError.
 pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {

@@ -1,8 +1,8 @@
 //! The type of all values in Python: the methods of its native half.
 
-use crate::operators::{equal, function, infix, infix_right, named, sum, turned};
-use crate::signature::{Algebra, g3};
-use crate::value::{Held, Multivector, Object, Rotor, held, number, one, row, unit_rotor, wrap};
+use super::operators::{equal, function, infix, infix_right, named, sum, turned};
+use super::signature::{Algebra, g3};
+use super::value::{Held, Multivector, Object, Rotor, held, number, one, row, unit_rotor, wrap};
 use numpy::PyArray1;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};

@@ -1,11 +1,11 @@
 //! Calls of a formula on batches of float64 of 3-d space that are all of one shape, beside single values: without
 //! a detour through Python, which costs more than a thousand rows.
 
-use crate::arrays::numbers;
-use crate::formula::Formula;
-use crate::pool;
-use crate::signature::g3;
-use crate::value::{Held, Multivector, held, number, scalar, wrap};
+use super::Formula;
+use crate::algebra::signature::g3;
+use crate::algebra::value::{Held, Multivector, held, number, scalar, wrap};
+use crate::support::arrays::numbers;
+use crate::support::pool;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
 use polhode_ga::product::Grades;

@@ -1,10 +1,12 @@
 //! Scene files.
 
-use crate::arrays::{Array, bad, line, table};
-use crate::bodies::Body;
-use crate::draws::Draws;
-use crate::torque::Law;
-use crate::value;
+pub(crate) mod draws;
+
+use crate::algebra::value;
+use crate::mechanics::bodies::Body;
+use crate::mechanics::torque::Law;
+use crate::support::arrays::{Array, bad, line, table};
+use draws::Draws;
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Vector};

@@ -2,8 +2,8 @@
 //! known by the addresses of its names, which Python keeps once, so that little is added to the arithmetic.
 //! Linear maps are known by their addresses, too, and their matrices are at hand.
 
-use crate::program::Program;
-use crate::value::{Held, Operand, operand, scalar, wrap};
+use super::program::Program;
+use crate::algebra::value::{Held, Operand, operand, scalar, wrap};
 use polhode_ga::Graded;
 use polhode_ga::formula::{Given, InputKind, Type};
 use pyo3::intern;

@@ -2,8 +2,8 @@
 //!
 //! A row without a motion is NaN, and no error: who differentiates may look where there is none.
 
-use crate::arrays::{Array, Rows, bad, numbers, table};
-use crate::free::{flat, pieces};
+use super::free::{flat, pieces};
+use crate::support::arrays::{Array, Rows, bad, numbers, table};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::exact::free::{FlowDerivatives, FreeMotion};

@@ -1,8 +1,8 @@
 //! The bodies of a scene's ensemble.
 
-use crate::arrays::{Array, bad, line, table};
-use crate::bodies::Inertia;
-use crate::scene::named;
+use super::named;
+use crate::mechanics::bodies::Inertia;
+use crate::support::arrays::{Array, bad, line, table};
 use numpy::{PyArray1, PyArrayMethods};
 use polhode_rigid::laws::torque::{Argument, Torque};
 use polhode_rigid::{body, scene};

@@ -1,13 +1,13 @@
 //! Simulation of many bodies at once.
 
-use crate::arrays::{Array, Rows, all_threads, bad, line, numbers, place};
-use crate::bodies::Inertia;
-use crate::columns::spread;
-use crate::laws::Force;
-use crate::made::{Made, interrupted};
-use crate::pool;
-use crate::simulation::{Limits, method_of, run};
-use crate::torque::Law;
+use super::bodies::Inertia;
+use super::columns::spread;
+use super::laws::Force;
+use super::made::{Made, interrupted};
+use super::simulation::{Limits, method_of, run};
+use super::torque::Law;
+use crate::support::arrays::{Array, Rows, all_threads, bad, line, numbers, place};
+use crate::support::pool;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};

@@ -1,6 +1,6 @@
 //! The algebra of a signature: its basis, its products over arrays.
 
-use crate::arrays::bad;
+use crate::support::arrays::bad;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::general::Calculus;
 use polhode_ga::product::{Grades, Plan, Product};

@@ -1,10 +1,10 @@
 //! The free top: one motion, or a batch of them, whose solutions stay in Rust.
 
-use crate::arrays::{Array, Rows, bad, line, numbers, place, table, threads};
-use crate::bodies::Inertia;
-use crate::motion::{angular_velocity, check_times};
-use crate::pool;
-use crate::value::{Multivector, number, one, one_rotor};
+use super::bodies::Inertia;
+use super::motion::{angular_velocity, check_times};
+use crate::algebra::value::{Multivector, number, one, one_rotor};
+use crate::support::arrays::{Array, Rows, bad, line, numbers, place, table, threads};
+use crate::support::pool;
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor};

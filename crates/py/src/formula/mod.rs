@@ -1,16 +1,19 @@
 //! Formulas in Python: texts, what they mean for values of given kinds, and calls on single values.
 
-use crate::arrays::bad;
-use crate::batches;
-use crate::calls::{Argument, Calls};
-use crate::program::{Program, characters, error};
-use crate::signature::{Algebra, g3, largest};
-use crate::value::Object;
+pub(crate) mod batches;
+pub(crate) mod calls;
+pub(crate) mod program;
+
+use crate::algebra::signature::{Algebra, g3, largest};
+use crate::algebra::value::Object;
+use crate::support::arrays::bad;
+use calls::{Argument, Calls};
 use polhode_ga::formula::{
     Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
     types,
 };
 use polhode_ga::product::Grades;
+use program::{Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;

@@ -1,8 +1,8 @@
 //! Torqued motion in closed form: Lagrange's top, the damped body, the sphere in a field.
 
-use crate::arrays::{Array, Rows, bad, numbers, one, threads};
-use crate::bodies::{Inertia, rotor};
-use crate::pool;
+use super::bodies::{Inertia, rotor};
+use crate::support::arrays::{Array, Rows, bad, numbers, one, threads};
+use crate::support::pool;
 use numpy::PyArrayMethods;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;

@@ -1,8 +1,8 @@
 //! What a value in Python holds. A single value of 3-d space over float64 lies inline; everything else is an
 //! array, of any coefficients and any algebra.
 
-use crate::arrays::bad;
-use crate::signature::{Algebra, g3};
+use super::signature::{Algebra, g3};
+use crate::support::arrays::bad;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Rotor as UnitRotor};

@@ -1,9 +1,9 @@
 //! Operators of single values. Where an operand is none, the Python half of the type does the work.
 
-use crate::arrays::bad;
-use crate::value::{
+use super::value::{
     Held, Multivector, Object, Operand, Rotor, number, one, one_rotor, operand, scalar, unit_rotor, wrap,
 };
+use crate::support::arrays::bad;
 use numpy::{PyArray1, PyArrayMethods};
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};

@@ -1,7 +1,7 @@
 //! Programs of formulas in Python: what they are given, and their steps for those who walk them.
 
-use crate::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
-use crate::text::byte;
+use crate::support::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
+use crate::support::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
 use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type};

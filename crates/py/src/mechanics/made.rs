@@ -1,10 +1,10 @@
 //! Laws and events are values made of a name and arguments, which may be formulas and Python functions.
 
-use crate::arrays::{Rows, bad, one};
-use crate::calls::{Argument, of_map};
+use crate::algebra::value::{self, Operand};
+use crate::formula::calls::{Argument, of_map};
+use crate::formula::program::error;
 use crate::formula::{Said, names};
-use crate::program::error;
-use crate::value::{self, Operand};
+use crate::support::arrays::{Rows, bad, one};
 use polhode_ga::formula::{Error, Given, Input, InputKind, Names};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};

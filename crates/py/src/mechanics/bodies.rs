@@ -1,6 +1,6 @@
 //! Inertia and bodies.
 
-use crate::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, table};
+use crate::support::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, table};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::inertia;
 use polhode_rigid::{Amount, Solid, TriangleMesh, body};

@@ -1,11 +1,11 @@
 //! Torque laws: values made of a name and arguments, and their torques.
 
-use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
-use crate::bodies::{Inertia, rotor};
-use crate::columns::{Arguments, Batch};
-use crate::made::{
+use super::bodies::{Inertia, rotor};
+use super::columns::{Arguments, Batch};
+use super::made::{
     Asked, Known, Made, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
 };
+use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::weight_moment;

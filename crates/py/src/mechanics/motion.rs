@@ -1,7 +1,7 @@
 //! The symmetric top in closed form.
 
-use crate::arrays::{Array, Rows, bad, numbers, one, table};
-use crate::bodies::{Inertia, rotor};
+use super::bodies::{Inertia, rotor};
+use crate::support::arrays::{Array, Rows, bad, numbers, one, table};
 use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::exact::symmetric::SymmetricTop;
 use pyo3::prelude::*;

@@ -1,11 +1,11 @@
 //! Simulation.
 
-use crate::arrays::{Array, Rows, bad, line, numbers, one, table};
-use crate::bodies::{Inertia, rotor};
-use crate::laws::{Event, Force};
-use crate::made::{Made, failed};
-use crate::motion::check_times;
-use crate::torque::Law;
+use super::bodies::{Inertia, rotor};
+use super::laws::{Event, Force};
+use super::made::{Made, failed};
+use super::motion::check_times;
+use super::torque::Law;
+use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::laws::event::Direction;

@@ -1,9 +1,9 @@
 //! Forces, and events to look for, as values.
 
-use crate::arrays::bad;
-use crate::made::{
+use super::made::{
     Asked, Known, Made, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector, vector_of,
 };
+use crate::support::arrays::bad;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::laws::event::{self, Direction, Quantity};
 use polhode_rigid::laws::force;

@@ -1,8 +1,8 @@
 //! Arguments of laws: numbers for all bodies, or for each body of a batch its own.
 
-use crate::arrays::{Rows, bad, numbers, place};
-use crate::made::Values;
-use crate::value::{self, Operand};
+use super::made::Values;
+use crate::algebra::value::{self, Operand};
+use crate::support::arrays::{Rows, bad, numbers, place};
 use numpy::PyUntypedArrayMethods;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Vector};

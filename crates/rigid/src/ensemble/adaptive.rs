@@ -5,8 +5,8 @@
 //! one, so that a hard one does not hold up the others. The last few go on in fewer lanes, to the same bits.
 
 use super::body_run::Seat;
+use super::crew::{Crew, Member, SIDE_BY_SIDE};
 use super::laws::{Laws, Nothing};
-use super::scheduler::{Crew, Member, SIDE_BY_SIDE};
 use crate::error::SimulateError;
 use crate::laws::forcing::Exert;
 use crate::laws::torque::Torque;

@@ -1,11 +1,11 @@
 //! A body on its way through its passes, by the rules of a single one.
 
-use super::scheduler::{Crew, Member, Told};
+use super::crew::{Crew, METHOD, Member, Told};
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
 use crate::methods::runge_kutta::{DOP853, Points, RungeKutta};
 use crate::methods::step_control::{Limit, Stride, next_stop};
-use crate::methods::{Method, ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
+use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
 use crate::run::certificate::{Certificate, Watch, off_unit};
 use crate::run::limits::{Course, span};
 use crate::run::noise::Noise;
@@ -14,9 +14,6 @@ use crate::run::sweep::{Pace, Pass};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use std::mem;
-
-/// The method that the bodies are stepped by.
-pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
 
 /// A body in a lane, on its way through its passes.
 pub(super) struct Seat<'a> {

@@ -1,6 +1,6 @@
 //! Free bodies, whose motion is known at all times.
 
-use super::scheduler::{Crew, Member, Told};
+use super::crew::{Crew, Member, Told};
 use crate::exact::closed_form::{Since, check_kept};
 use crate::exact::free::FreeMotion;
 use crate::run::certificate::{Certificate, Watch, off_unit};

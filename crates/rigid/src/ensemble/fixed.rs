@@ -1,8 +1,8 @@
 //! Equal steps of bodies side by side.
 
 use super::advance::Stretch;
+use super::crew::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
 use super::laws::{Acting, Laws};
-use super::scheduler::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
 use super::steppers::{Components, Kicks, Stepper, of};
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;

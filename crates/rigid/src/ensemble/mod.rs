@@ -9,6 +9,7 @@
 mod adaptive;
 mod advance;
 mod body_run;
+mod crew;
 mod exact;
 mod fixed;
 mod laws;
@@ -24,11 +25,11 @@ use crate::run::limits::span;
 use crate::run::{NO_CLOSED_FORM, Options, Problem, Progress, check_start_time};
 use crate::state::center::Center;
 use crate::state::checks::check_moments;
+use crew::Crew;
 pub(crate) use output::Own;
 pub use output::{Outputs, Summary};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use scheduler::Crew;
 
 /// One value for all bodies, or one for each.
 #[derive(Clone, Debug)]

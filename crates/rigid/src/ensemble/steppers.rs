@@ -1,8 +1,8 @@
 //! Methods of equal steps over bodies side by side.
 
 use super::advance::{Advance, Steps, Stretch};
+use super::crew::{Member, SIDE_BY_SIDE as W};
 use super::laws::{Acting, Laws, Nothing};
-use super::scheduler::{Member, SIDE_BY_SIDE as W};
 use crate::laws::forcing::Exert;
 use crate::methods::classical::{self, Bodies, State};
 use crate::methods::splitting::turns::{Spin, Turns};

@@ -62,6 +62,7 @@
 
 mod body;
 mod build;
+mod definitions;
 mod draws;
 mod ensemble;
 #[cfg(test)]

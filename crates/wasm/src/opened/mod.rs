@@ -1,7 +1,9 @@
 //! A scene and its motion.
 
-use crate::crowd::Crowd;
+pub mod crowd;
+
 use crate::rows::{ROW, rows};
+use crowd::Crowd;
 use polhode_ga::Vector;
 use polhode_rigid::body::mesh::{MeshError, MeshFormat, MeshProblem};
 use polhode_rigid::run::{Motion, Problem, Progress};

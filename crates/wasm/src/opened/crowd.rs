@@ -1,6 +1,6 @@
 //! The bodies of an ensemble, for looking at.
 
-use crate::opened::{GoOn, Opened};
+use super::{GoOn, Opened};
 use crate::recorded::between;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;

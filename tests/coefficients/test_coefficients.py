@@ -12,10 +12,11 @@ import naive
 import polhode as ph
 import processes
 from polhode._generic import exact as elements
-from polhode._generic import layout, pytrees
+from polhode._generic import layout
 from polhode._generic.exact import Exact
 from polhode._generic.numeric import Numeric
 from polhode._generic.products import product
+from polhode._support.extras import register_pytree
 from worlds import MASKS, exact, floating, fractions, geometric_terms, of, signature_terms
 
 __all__ = ["floating"]
@@ -252,7 +253,7 @@ def test_pytrees_are_registered_once_and_take_any_leaves():
             self.data, self.mask = data, mask
 
     def register():
-        pytrees.register(Held, lambda v: ((v.data,), v.mask), lambda mask, leaves: Held(*leaves, mask))
+        register_pytree(Held, lambda v: ((v.data,), v.mask), lambda mask, leaves: Held(*leaves, mask))
 
     register()
     register()
@@ -268,4 +269,4 @@ def test_pytrees_are_registered_once_and_take_any_leaves():
 
 def test_nothing_is_registered_without_jax(monkeypatch):
     monkeypatch.setitem(sys.modules, "jax", None)
-    pytrees.register(type("Other", (), {}), None, None)
+    register_pytree(type("Other", (), {}), None, None)

@@ -108,7 +108,7 @@ def test_the_nearest_rotation_is_taken(floating):
 @pytest.mark.parametrize(
     ("make", "bad", "message"),
     [
-        (rotors.from_components, np.zeros(4), "no rotor"),
+        (rotors.from_components, np.zeros(4), "not a rotor"),
         (rotors.from_components, np.full(4, np.nan), "NaN or infinite"),
         (lambda d, x: rotors.from_plane_angle(d, x, x[..., 0]), np.zeros(3), "spans no plane"),
         (lambda d, x: rotors.from_vectors(d, x, x), np.zeros(3), "no direction"),

@@ -1,4 +1,4 @@
-"""The geometric algebra of any signature: its basis and the constructors of its values."""
+"""Geometric algebras of any signature: basis, constructors and tables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from polhode._algebra.native import joins
 class Algebra(_native.Algebra):
     """The geometric algebra Cl(p, q, r): p generators square to +1, q to −1, r to 0, in this order.
 
-    Made by `algebra`. The basis is ordered by grade, then by rising generators (``e1e2, e1e3, …``); with
+    Created by `algebra`. The basis is ordered by grade, then by rising generators (``e1e2, e1e3, …``); with
     three generators the bivectors are ``e2e3, e3e1, e1e2``. `I` is the product of all generators.
     """
 
@@ -116,7 +116,7 @@ class Algebra(_native.Algebra):
             data = data.view()
         return Multivector._of(data, mask, self)
 
-    # --- what values ask
+    # --- tables that values use
 
     @property
     def _all(self) -> int:
@@ -124,24 +124,46 @@ class Algebra(_native.Algebra):
         return (1 << self.dimension + 1) - 1
 
     @property
+    @functools.cache  # noqa: B019  # algebras live as long as the process
     def _grade_of(self) -> np.ndarray[Any, np.dtype[np.int64]]:
         """The grade of each basis element."""
-        return _grade_of(self)
+        return np.array([bits.bit_count() for bits, _ in self._blades()])
 
+    @functools.cache  # noqa: B019
     def _names(self, mask: int) -> tuple[str, ...]:
         """Return the names of the basis elements of some grades; that of the scalar is empty."""
-        return _names(self, mask)
+        blades = self._blades()
+        return tuple(_name(*blades[i], self.dimension) for i in self._indices(mask))
 
+    @functools.cache  # noqa: B019
     def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
-        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0; small, so float32 stays so."""
-        return _reverse_squares(self, mask)
+        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0, as int8 so that float32 stays."""
+        signs = np.zeros(len(self._indices(mask)), dtype=np.int8)
+        terms, _ = self._terms("scalar", mask, mask)
+        grades = self._grade_of[self._indices(mask)]
+        for a, _b, _out, sign in terms:
+            signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
+        return signs
 
+    @functools.cache  # noqa: B019
     def _complement(self, right: bool) -> list[tuple[int, float]]:
-        """Return where each basis element goes by the right or left complement, and with which sign."""
-        return _complement(self, right)
+        """Return the place and sign of each basis element's right or left complement."""
+        images = self._right_complement()
+        if right:
+            return images
+        inverse = [(0, 0.0)] * len(images)
+        for i, (place, sign) in enumerate(images):
+            inverse[place] = (i, sign)
+        return inverse
 
+    @functools.cache  # noqa: B019
     def _inverse_of_I(self) -> Multivector:
-        return _inverse_of_pseudoscalar(self)
+        square = float((self.I * self.I).grade(0))
+        if not square:
+            raise TypeError(
+                f"I has no inverse in {self}, whose metric is degenerate; use right_complement for dual"
+            )
+        return self.I / square
 
 
 def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
@@ -168,51 +190,9 @@ def _algebra(p: int, q: int, r: int) -> Algebra:
     return _native.Algebra(p, q, r)  # type: ignore[return-value]
 
 
-@functools.cache
-def _grade_of(algebra: Algebra) -> np.ndarray[Any, np.dtype[np.int64]]:
-    return np.array([bits.bit_count() for bits, _ in algebra._blades()])
-
-
-@functools.cache
-def _names(algebra: Algebra, mask: int) -> tuple[str, ...]:
-    blades = algebra._blades()
-    return tuple(_name(*blades[i], algebra.dimension) for i in algebra._indices(mask))
-
-
 def _name(bits: int, sign: int, dimension: int) -> str:
     if bits.bit_count() == dimension and dimension > 1:
         return "I"
     generators = [f"e{i + 1}" for i in range(dimension) if bits >> i & 1]
-    # The only basis element against the rising order is e3∧e1.
+    # e3∧e1 is the only basis element not in rising order.
     return "∧".join(generators if sign > 0 else reversed(generators))
-
-
-@functools.cache
-def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
-    signs = np.zeros(len(algebra._indices(mask)), dtype=np.int8)
-    terms, _ = algebra._terms("scalar", mask, mask)
-    grades = _grade_of(algebra)[algebra._indices(mask)]
-    for a, _b, _out, sign in terms:
-        signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
-    return signs
-
-
-@functools.cache
-def _complement(algebra: Algebra, right: bool) -> list[tuple[int, float]]:
-    images = algebra._right_complement()
-    if right:
-        return images
-    inverse = [(0, 0.0)] * len(images)
-    for i, (place, sign) in enumerate(images):
-        inverse[place] = (i, sign)
-    return inverse
-
-
-@functools.cache
-def _inverse_of_pseudoscalar(algebra: Algebra) -> Multivector:
-    square = float((algebra.I * algebra.I).grade(0))
-    if not square:
-        raise TypeError(
-            f"I has no inverse in {algebra}, whose metric is degenerate; use right_complement for dual"
-        )
-    return algebra.I / square

@@ -11,6 +11,7 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._support.arrays import as_floats, is_float
+from polhode._support.extras import register_pytree
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 
@@ -81,12 +82,12 @@ def taken(array: Any, places: list[int]) -> Any:
 
 def tell_jax() -> None:
     """Make values pytrees of JAX, if JAX has been imported: they then pass through jit, grad and vmap."""
-    _generic.pytrees.register(
+    register_pytree(
         _native.Multivector,
         lambda value: ((value._data,), (value._mask, value.algebra)),
         lambda kind, leaves: _native.Multivector._of(next(iter(leaves)), *kind),
     )
-    _generic.pytrees.register(
+    register_pytree(
         _native.Rotor,
         lambda rotor: ((rotor._data,), None),
         lambda _, leaves: _native.Rotor._from_rows(next(iter(leaves))),

@@ -60,6 +60,33 @@ def cross(a: Multivector, b: Multivector) -> Multivector:
     return one_grade(a, 1, "the left factor").wedge(one_grade(b, 1, "the right factor")).dual()
 
 
+def axial(B: Any) -> Multivector:
+    """Return the axial vectors ``B I⁻¹`` of bivectors, which are values or an array (..., 3).
+
+    ``axial(e1∧e2) = e3``, ``axial(a∧b) = a x b`` (handout eq. 1.20, 1.24). The components are the same.
+    """
+    return one_grade(B, 2, "the plane").dual() if isinstance(B, Multivector) else vector(B)
+
+
+def from_axial(v: Any) -> Multivector:
+    """Return the bivectors ``I v`` of axial vectors, which are values or an array (..., 3).
+
+    The plane perpendicular to v, in its right-handed sense, as ``Ω = I ω`` (handout eq. 4.4).
+    """
+    return one_grade(v, 1, "the axial vector").undual() if isinstance(v, Multivector) else bivector(v)
+
+
+def split(x: Multivector, blade: Multivector) -> tuple[Multivector, Multivector]:
+    """Return the parts of x in the subspace of `blade` and perpendicular to it: a∥ and a⊥ of eq. 1.7.
+
+    ``(x.project(blade), x.reject(blade))``; the two add to x, to its rounding.
+    """
+    if not isinstance(x, Multivector):
+        raise TypeError(f"split needs a multivector, got {type(x).__name__}; wrap arrays with ph.vector")
+    parallel = x.project(blade)
+    return parallel, x - parallel
+
+
 def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
     """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
     value = coerced(M)

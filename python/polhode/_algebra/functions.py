@@ -42,7 +42,7 @@ def divided(value: Multivector, other: Any) -> Multivector:
 
 
 def power(value: Multivector, n: Any) -> Multivector:
-    """Return an integer power, by squaring."""
+    """Return an integer power; negative ones through the inverse."""
     try:
         exponent = operator.index(n)
     except TypeError:
@@ -73,7 +73,7 @@ def as_precise(value: Multivector, like: Multivector) -> Multivector:
 
 
 def norm_squared(value: Multivector) -> Any:
-    """``⟨A ~A⟩``, of the batch shape."""
+    """Return ``⟨A ~A⟩``, of the batch shape; in 3-d space the sum of the squared components."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data):
         with np.errstate(over="ignore"):
@@ -84,7 +84,11 @@ def norm_squared(value: Multivector) -> Any:
 
 
 def norm(value: Multivector) -> Any:
-    """``√abs⟨A ~A⟩``, of the batch shape."""
+    """Return ``√⟨A ~A⟩`` without intermediate overflow: a float, or an array of the batch shape.
+
+    Where squares may be negative, ``√abs⟨A ~A⟩``. The norm has no derivative at zero; JAX gives 0 there. Use
+    `norm_squared` to differentiate the square.
+    """
     if value._is_one:
         return np.float64(value._norm_of_one())
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
@@ -116,7 +120,7 @@ def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
 
 
 def normalized(value: Multivector) -> Multivector:
-    """``A/|A|``, with an error for the first value that has no direction."""
+    """Return ``A/|A|``; a ValueError for zero and non-finite values."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
         if min(signs) > 0:
@@ -189,11 +193,3 @@ def exp(value: Multivector) -> Multivector:
     if result._mask == _EVEN and in_space and not value._held() & ~_BIVECTOR:
         return _native.Rotor._from_rows(result._data)
     return result
-
-
-def projected(value: Multivector, blade: Multivector) -> Multivector:
-    """``(A⌋B) B⁻¹``, over the grades of A."""
-    if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
-        raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
-    unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
-    return (value.left_contraction(unit) * unit.inverse())._part(value._mask)

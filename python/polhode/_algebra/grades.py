@@ -79,7 +79,10 @@ def with_signs(data: Any, signs: Sequence[float]) -> Any:
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
-    """Return the value with f of each component; object components one by one, others as one array."""
+    """Return the value with each component changed by f, such as ``sympy.simplify``; never a rotor.
+
+    Components of dtype object are passed one by one, others as one array.
+    """
     data = value._data
     changed = np.frompyfunc(f, 1, 1)(data) if data.dtype == object else f(data)
     if getattr(changed, "shape", None) != data.shape:
@@ -95,8 +98,8 @@ def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
         np.broadcast_to(np.int8(0), shape)[index]
 
 
-def reshaped(value: V, shape: tuple[Any, ...]) -> V:
-    """Return a batch of another shape."""
+def reshaped(value: V, *shape: Any) -> V:
+    """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
     if len(shape) == 1 and not hasattr(shape[0], "__index__"):
         shape = tuple(shape[0])
     lengths = [operator.index(length) for length in shape]
@@ -124,8 +127,8 @@ def stack(values: Iterable[V], axis: int = 0) -> V:
     return build(namespace(parts[0]).stack(parts, axis=axis))  # type: ignore[return-value]
 
 
-def summed(value: Multivector, axis: int | tuple[int, ...] | None) -> Multivector:
-    """Return the sum over batch axes; over all for None."""
+def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
+    """Return the sum of a batch over some of its axes, or all; a sum of rotors is not a rotor."""
     count = len(value.shape)
     chosen = tuple(range(count)) if axis is None else axis if isinstance(axis, tuple) else (axis,)
     axes = tuple(_batch_axis(k, count) for k in chosen)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from polhode import _generic
 from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of, namespace
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
@@ -91,8 +90,33 @@ def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
         weighted = w[:, None] * rows
     else:
         weighted = rows
-    best = _generic.eigen.largest(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows), _NO_MEAN)
+    best = _largest_eigenvector(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows))
     return Rotor.from_components(kind.where(best[0] < 0, -best, best))
+
+
+def _largest_eigenvector(d: Any, matrix: Any) -> Any:
+    """Return the unit eigenvector (n,) of the matrix (n, n); a ValueError where two eigenvalues are largest.
+
+    A library's own derivatives of eigenvectors need all eigenvalues to differ. Newton's method for
+    ``K v = λ v, vᵀv = 1``, from a solution that counts as constant, needs it of the largest only. After k
+    steps the derivatives are right up to the order 2^k − 1.
+    """
+    xp = d.xp
+    values, vectors = xp.linalg.eigh(d.constant(matrix))
+    n = int(values.shape[0])
+    d.require(values[-1] - values[-2] > 2 * n * d.eps * values[-1], _NO_MEAN)
+    v, value = vectors[:, -1], values[-1]
+    identity = xp.eye(n, dtype=matrix.dtype, **d.placed)
+    zero = xp.reshape(value * 0.0, (1, 1))
+    for _ in range(2):
+        image = xp.sum(matrix * v[None, :], axis=1)
+        column = xp.reshape(v, (n, 1))
+        upper = xp.concat([matrix - value * identity, -column], axis=1)
+        lower = xp.concat([xp.reshape(v, (1, n)), zero], axis=1)
+        error = xp.concat([value * v - image, xp.reshape(0.5 * (1.0 - xp.sum(v * v)), (1,))])
+        step = xp.linalg.solve(xp.concat([upper, lower], axis=0), xp.reshape(error, (n + 1, 1)))[:, 0]
+        v, value = v + step[:n], value + step[n]
+    return v
 
 
 class RotorSpline:

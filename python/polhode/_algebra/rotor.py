@@ -137,14 +137,33 @@ class Rotor(_native.Rotor, Multivector):
     def from_euler(seq: str, angles: Any, degrees: bool = False) -> Rotor:
         """From Euler angles (..., n) about n = 1 to 3 axes, in radians; named as SciPy names them.
 
-        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
+        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes of the body,
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
         For one axis a single angle needs no array. Angles are numbers, SymPy expressions, or arrays of any
         library, which stay theirs.
         """
         from polhode._algebra import euler
 
-        return euler.from_euler(seq, angles, degrees)
+        axes = euler.axes_of(seq, (1, 2, 3))
+        theta = as_coefficients(angles, "angles")
+        if not theta.shape:
+            theta = theta[None]
+        if theta.shape[-1] != len(axes):
+            raise ValueError(
+                f"sequence {seq!r} needs {len(axes)} angles in the last axis, got shape {tuple(theta.shape)}"
+            )
+        if degrees:
+            theta = euler.to_radians(theta)
+        planes = np.eye(3)[axes]
+        turns = [
+            Rotor.from_plane_angle(Multivector._of(plane, _BIVECTOR), theta[..., k])
+            for k, plane in enumerate(planes)
+        ]
+        # Turns about axes of the body are the same turns about fixed axes in the opposite order.
+        total, *others = turns[::-1] if seq.isupper() else turns
+        for turn in others:
+            total = turn * total
+        return total.astype(theta.dtype) if is_float(theta) else total
 
     @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
@@ -183,12 +202,13 @@ class Rotor(_native.Rotor, Multivector):
 
         The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same
         ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
-        difference of the others is determined: the third angle is then 0, and the three angles give the
-        attitude as ever, so nothing is lost and nothing is warned of.
+        difference of the others is determined: the third angle is then 0. The three angles still give the
+        attitude, so there is no warning.
         """
         from polhode._algebra import euler
 
-        return euler.to_euler(self, seq, degrees)
+        angles = euler.angles_of(self.to_quaternion(order="wxyz"), seq)
+        return euler.to_degrees(angles) if degrees else angles
 
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
@@ -201,12 +221,21 @@ class Rotor(_native.Rotor, Multivector):
     def distance(self, other: Rotor) -> Any:
         """Return the angle in [0, π] of the turn from this attitude to the other, whatever their signs.
 
-        A float, or an array of the batch shape; accurate however close the attitudes are. Derivatives at 0,
-        where there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.
+        A float, or an array of the batch shape; accurate for close attitudes, too. Derivatives at 0, where
+        there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.
         """
-        from polhode._algebra import geometry
-
-        return geometry.distance(self, other)
+        # Half the angle has the cosine |⟨~R S⟩| and the sine |⟨~R S⟩₂| = |⟨~R (S ∓ R)⟩₂|, since ~R R is a
+        # scalar; between close attitudes that difference has no rounding.
+        if not isinstance(other, Rotor):
+            raise TypeError(f"distance needs another rotor, got {type(other).__name__}")
+        R, S, kind = self, other, kind_of(self._data, other._data)
+        if kind.native or kind.exact:  # arrays of another library stay theirs, with their derivatives
+            R, S, kind = R.astype(float), S.astype(float), kind_of()
+        cosine = (~R).scalar_product(S).components[..., 0]
+        nearer = S * kind.where(cosine < 0, kind.zeros_like(cosine) - 1.0, 1.0)
+        sine = (~R * (nearer - R)).grade(2).norm()
+        angle = 2 * kind.atan2(sine, kind.abs(cosine))
+        return angle[()] if kind.native else angle
 
     def astype(self, dtype: Any) -> Rotor:
         """Return it with components of another type, of norm 1 in the precision of that."""

@@ -6,19 +6,19 @@ which the first is the scalar 1. Data are arrays (..., 2ⁿ).
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from polhode._generic.closed_forms import free_root
 from polhode._generic.coefficients import Coefficients
-from polhode._generic.exact import call, divide, is_symbolic, is_zero
-from polhode._generic.functions import by_rows, components, require_in_range
-from polhode._generic.numeric import Numeric
+from polhode._generic.exact import by_rows, call, divide, is_symbolic, is_zero
+from polhode._generic.g3_exact import free_root
+from polhode._generic.g3_smooth import COSH, SINHC, horner
+from polhode._generic.numeric import Numeric, components, require_in_range
 from polhode._generic.products import Term, product
-from polhode._generic.smooth import COSH, SINHC, horner
 
 Array = Any
 
@@ -51,7 +51,8 @@ def inverse(
     if isinstance(d, Numeric):
         with np.errstate(all="ignore"):
             regular = [data[..., i] for i in range(data.shape[-1]) if not null or null[i] == 0]
-            factors = _null_factors(d, null, data, _largest(d, regular))
+            largest = d.largest(regular)
+            factors = _null_factors(d, null, data, d.where(largest > 0, largest, 1.0))
             result = _refined_inverse(d, terms, generators, data * factors) / factors
             require_in_range(d, result)
             return result
@@ -94,14 +95,6 @@ def _number(d: Coefficients, like: Array, value: int) -> Array:
     return d.stack([zero + value] + [zero] * (like.shape[-1] - 1))
 
 
-def _largest(d: Numeric, parts: list[Array]) -> Array:
-    """Return the largest magnitude, as a constant; 1 where all are 0."""
-    largest = d.xp.abs(d.constant(parts[0]))
-    for x in parts[1:]:
-        largest = d.xp.maximum(largest, d.xp.abs(d.constant(x)))
-    return d.where(largest > 0, largest, 1.0)
-
-
 def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Array:
     """Return factors of the components (..., 2ⁿ) that bring those with generators of square 0 down to a size.
 
@@ -142,8 +135,7 @@ def exp(
     Components with generators of square 0 may have any size.
     """
     if not isinstance(d, Numeric):
-        rows = range(data.shape[-1])
-        return by_rows(lambda m: _exp_row(terms, m), data, list(rows))
+        return by_rows(functools.partial(_exp_row, terms), data)
     with np.errstate(all="ignore"):
         d.require_finite(components(data))
         simple = _anticommute(terms, [i for i in held if i != 0])

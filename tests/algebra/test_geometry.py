@@ -199,5 +199,5 @@ def test_distances_over_batches():
     # Rounding of four components, each to half of 2⁻²³.
     assert np.all(single.distance(R) <= 4 * 2.0**-23)
     assert single.distance(R).dtype == np.float64
-    with pytest.raises(TypeError, match="distance goes between rotors, got float"):
+    with pytest.raises(TypeError, match="distance needs another rotor, got float"):
         R.distance(1.0)

@@ -327,7 +327,7 @@ def test_maps_compare_copy_and_stay():
     assert same(G.matrix, np.eye(3))
     assert np.all(F.is_close(ph.LinearMap.from_matrix(F.matrix * (1 + 1e-12))))
     assert not np.any(F.is_close(ph.LinearMap.from_matrix(F.matrix * (1 + 1e-6))))
-    with pytest.raises(TypeError, match="compares with another"):
+    with pytest.raises(TypeError, match="needs another map"):
         F.is_close(e1)
     assert repr(G) == "LinearMap of vectors, matrix\n" + repr(np.eye(3))
     assert "of bivectors, shape (2,)" in repr(random_map((2,), grade=2))

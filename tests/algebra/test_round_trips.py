@@ -158,7 +158,7 @@ def fields(**changed):
         (fields(components=[{}, 2, 3, 4]), None),
         (fields(components=5), "do not fit 1 components"),
         (fields(rotor=True, components=[0, 0, 0, 0]), None),
-        (fields(rotor=True, grades=[1, 3]), r"rotor is of Cl\(3\) with grades \[0, 2\]"),
+        (fields(rotor=True, grades=[1, 3]), r"rotor must have algebra Cl\(3\) and grades \[0, 2\]"),
         (fields(rotor=True, algebra=[2, 0, 0], components=[1, 0]), "a rotor is of"),
         (fields(algebra="300"), None),
         (fields(algebra=None), None),

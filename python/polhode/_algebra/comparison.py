@@ -28,7 +28,7 @@ def equal(a: Multivector, b: Multivector) -> Any:
 
 
 def negated(same: Any) -> Any:
-    """Return the opposite truth of each."""
+    """Return the negation of a bool or of an array of them."""
     return not same if isinstance(same, bool) else ~same
 
 

@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from polhode._support.arrays import at_index, first_index
+
 Array = Any
 
 _WHOLE = 2.0**53  # larger floats are whole because they are rounded
@@ -48,9 +50,8 @@ def checked(x: Any, index: tuple[int, ...] = ()) -> Any:
         return divide(int(x.numerator), int(x.denominator))
     elif isinstance(x, float | np.floating):
         return float(x)
-    place = f" at index {index}" if index else ""
     raise TypeError(
-        f"the coefficient{place} is {x!r} ({type(x).__name__}); "
+        f"the coefficient{at_index(index)} is {x!r} ({type(x).__name__}); "
         "coefficients are int, float, Fraction, SymPy expressions or mpmath.mpf"
     )
 
@@ -233,7 +234,7 @@ class Exact:
         """Raise a ValueError, with the first index where `ok` is false."""
         if np.all(ok):
             return
-        index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
+        index = first_index(~np.asarray(ok))
         raise ValueError(f"at index {index}: {message}" if index else message)
 
 

@@ -86,7 +86,7 @@ def test_mirrors_by_hand():
     # The plane e1∧e2 as a mirror.
     assert same((e1 + 2 * e3).reflect((e1 ^ e2).dual()), e1 - 2 * e3)
     assert e1.reflect(ph.vector(np.eye(3))).shape == (3,)
-    with pytest.raises(TypeError, match=r"a vector; of a plane B it is B\.dual\(\); got e1∧e2"):
+    with pytest.raises(TypeError, match=r"a vector; for a plane B use B\.dual\(\); got e1∧e2"):
         e1.reflect(e1 ^ e2)
     with pytest.raises(ValueError, match=r"index \(1,\)"):
         e1.reflect(ph.vector([[1, 0, 0], [0, 0, 0]]))

@@ -64,29 +64,29 @@ class Algebra(_native.Algebra):
     # --- constructors
 
     def scalar(self, x: Any, *, dtype: Any = None) -> Multivector:
-        """Scalars from numbers; an array of shape S is a batch of shape S."""
+        """Create scalars from numbers; an array of shape S is a batch of shape S."""
         return self._single(x, "scalar", 0, dtype)
 
     def vector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Vectors from an array (..., n) over the generators."""
+        """Create vectors from an array (..., n) over the generators."""
         return self._of_grade(components, "vector", 1, dtype, copy)
 
     def bivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order."""
+        """Create bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order."""
         return self._of_grade(components, "bivector", 2, dtype, copy)
 
     def k_vector(self, k: int, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Values of grade k from an array (..., n over k)."""
+        """Create values of grade k from an array (..., n over k)."""
         if operator.index(k) not in range(self.dimension + 1):
             raise ValueError(f"{self} has grades 0 to {self.dimension}, got {k}")
         return self._of_grade(components, f"{k}-vector", k, dtype, copy)
 
     def pseudoscalar(self, x: Any, *, dtype: Any = None) -> Multivector:
-        """Multiples of I from numbers; an array of shape S is a batch of shape S."""
+        """Create multiples of I from numbers; an array of shape S is a batch of shape S."""
         return self._single(x, "pseudoscalar", self.dimension, dtype)
 
     def multivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Multivectors from an array (..., 2**n) over the whole basis."""
+        """Create multivectors from an array (..., 2**n) over the whole basis."""
         return self._wrapped(components, "multivector", self.size, self._all, dtype, copy)
 
     def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:
@@ -95,7 +95,7 @@ class Algebra(_native.Algebra):
 
     def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
         if k > self.dimension:
-            raise ValueError(f"{self} has grades 0 to {self.dimension}, no {what}")
+            raise ValueError(f"{self} has grades 0 to {self.dimension}; it has no {what}")
         return self._wrapped(components, what, math.comb(self.dimension, k), 1 << k, dtype, copy)
 
     def _wrapped(
@@ -169,9 +169,9 @@ class Algebra(_native.Algebra):
 def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     """Return the algebra Cl(p, q, r) of at most 8 generators: the same object for the same signature.
 
-    ``algebra(3)`` is that of 3-d space, to which `vector`, `e1` and the rest belong. ``algebra(3, 0, 1)``
-    is the plane-based one of Euclidean space, whose null generator comes last, ``e4``;
-    ``algebra(4, 1)`` the conformal one; ``algebra(1, 3)`` that of space-time.
+    ``algebra(3)`` is the algebra of 3-d space, to which `vector`, `e1` and the others belong;
+    ``algebra(3, 0, 1)`` the plane-based algebra of Euclidean space, with the null generator ``e4`` last;
+    ``algebra(4, 1)`` the conformal algebra; ``algebra(1, 3)`` the algebra of space-time.
     """
     for count in (p, q, r):
         if not hasattr(count, "__index__"):

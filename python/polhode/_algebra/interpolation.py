@@ -241,8 +241,8 @@ def _spline_slopes(x: Array, y: Array) -> Array:
     """Return the slopes (n, m) at x (n,) of the not-a-knot cubic spline through y (n, m).
 
     With steps h and slopes of chords c, the second derivative is continuous if the slopes d satisfy
-    ``h_k d_{k-1} + 2 (h_{k-1} + h_k) d_k + h_{k-1} d_{k+1} = 3 (h_k c_{k-1} + h_{k-1} c_k)``, the third one at
-    x_1 if ``h_1 d_0 + (h_0 + h_1) d_1`` has the value of `_edge`. This eliminates d_0 from the first
+    ``h_k d_{k-1} + 2 (h_{k-1} + h_k) d_k + h_{k-1} d_{k+1} = 3 (h_k c_{k-1} + h_{k-1} c_k)``, the third one
+    at x_1 if ``h_1 d_0 + (h_0 + h_1) d_1`` has the value of `_edge`. This eliminates d_0 from the first
     equation, which remains diagonally dominant; likewise at the other end.
     """
     h = np.diff(x)[:, np.newaxis]

@@ -208,8 +208,8 @@ class LinearMap:
         if asymmetric.any():
             index = first_index(asymmetric)
             raise ValueError(
-                f"the map{at_index(index)} is not symmetric: F - F.adjoint() has entries of {skew[index]:.3g}; "
-                "take its symmetric_part(), or for a rotation Rotor.from_matrix(F.matrix).plane_angle()"
+                f"the map{at_index(index)} is not symmetric: it differs from adjoint() by {skew[index]:.3g}; "
+                "take symmetric_part(), or for a rotation Rotor.from_matrix(F.matrix).plane_angle()"
             )
         factors, columns = np.linalg.eigh(0.5 * self.matrix + 0.5 * transposed)
         columns[..., 2] *= np.sign(np.linalg.det(columns))[..., np.newaxis]

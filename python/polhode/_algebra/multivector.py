@@ -1,4 +1,4 @@
-"""The type of all values of the algebra: multivectors with leading batch axes."""
+"""`Multivector`, the type of all values: multivectors with leading batch axes."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 class Multivector(_native.Multivector):
     """An element of a geometric algebra, or an array of them. Immutable.
 
-    The basis of 3-d space is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``; that of
-    other algebras see `algebra`. Only the grades present are stored: a vector has 3 components, a product
+    The basis of 3-d space is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``; for other
+    algebras see `algebra`. Only the grades present are stored: a vector has 3 components, a product
     of two vectors 4 (scalar and bivector). Batch axes lead, components are the last axis, and batches
     broadcast as in NumPy.
 
@@ -43,12 +43,12 @@ class Multivector(_native.Multivector):
     and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than the product. Put
     brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
 
-    Made by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
+    Created by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
     """
 
     __slots__ = ()
-    __array_ufunc__ = None  # NumPy arrays leave mixed operations to this class
-    __sympy__ = False  # and so do expressions of SymPy, which are not to convert it
+    __array_ufunc__ = None  # NumPy arrays defer to this class in mixed operations
+    __sympy__ = False  # and so do SymPy expressions, without converting it
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -64,19 +64,19 @@ class Multivector(_native.Multivector):
     def __deepcopy__(self, _memo: object) -> Multivector:
         return self
 
-    # --- what it holds
+    # --- contents
 
     @property
     def grades(self) -> tuple[int, ...]:
-        """The grades it may hold, e.g. ``(0, 2)``."""
+        """The grades present, e.g. ``(0, 2)``."""
         return tuple(k for k in range(self._mask.bit_length()) if self._mask >> k & 1)
 
     @property
     def components(self) -> NDArray[Any]:
         """Components of the grades present, in basis order: shape ``(*shape, K)``.
 
-        A new array each time, which may be changed: the value stays. In a loop over a large batch keep it in
-        a variable. Arrays of other libraries are handed out as they are.
+        A copy at each access: changing it does not change the value. In a loop over a large batch keep it in
+        a variable. Arrays of other libraries are not copied.
         """
         data: NDArray[Any] = self._data
         return data if self._is_one else copied(data)
@@ -88,11 +88,11 @@ class Multivector(_native.Multivector):
 
     @property
     def dtype(self) -> Any:
-        """The components' type: float64, float32, object (exact or symbolic), or that of another library."""
+        """The dtype of the components: float64, float32, object (exact or symbolic), or another library's."""
         return self._data.dtype
 
     def _grade(self, k: int) -> Multivector:
-        """Return the part of grade k, where it is not native."""
+        """Return the part of grade k, for values that the native method does not cover."""
         n = self.algebra.dimension
         if operator.index(k) not in range(n + 1):
             space = "3-d space" if self.algebra.signature == (3, 0, 0) else str(self.algebra)
@@ -106,7 +106,7 @@ class Multivector(_native.Multivector):
     map = _grades.mapped
 
     def __bool__(self) -> bool:
-        raise TypeError("a multivector is neither true nor false; compare it with == or is_close")
+        raise TypeError("a multivector has no truth value; compare it with == or is_close")
 
     def __len__(self) -> int:
         if not self.shape:
@@ -122,7 +122,7 @@ class Multivector(_native.Multivector):
                 _grades.check_index(self.shape, parts)
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
-            remedy = "" if self.shape else "; the numbers of a single value are its .components"
+            remedy = "" if self.shape else "; for the numbers of a single value use .components"
             raise IndexError(f"{error} (batch shape {self.shape}){remedy}") from None
         return self._like(picked)
 
@@ -135,18 +135,18 @@ class Multivector(_native.Multivector):
     def __float__(self) -> float:
         if self._mask != 1 or self.shape:
             raise TypeError(
-                f"only a single scalar becomes a float; this has grades {self.grades} and shape "
-                f"{self.shape}; take .grade(0) or .components"
+                f"only a single scalar converts to float, got grades {self.grades} and shape {self.shape}; "
+                "use .grade(0) or .components"
             )
         return float(self._data[0])
 
     def __array__(self, *_: Any, **__: Any) -> Any:
-        raise TypeError("a multivector does not become an array by itself; take its .components")
+        raise TypeError("a multivector does not convert to an array; use its .components")
 
     def __array_function__(self, function: Any, *_: object) -> Any:
-        # np.array_equal would otherwise be False, and others name no remedy.
+        # Otherwise np.array_equal is False, and the errors of other functions do not help.
         raise TypeError(
-            f"np.{function.__name__} does not take multivectors; use their own methods, or their .components"
+            f"np.{function.__name__} does not accept multivectors; use their methods or their .components"
         )
 
     def __repr__(self) -> str:
@@ -159,7 +159,7 @@ class Multivector(_native.Multivector):
 
         return _format.latex(type(self).__name__, self._data, self.algebra._names(self._mask))
 
-    # --- the values behind the methods
+    # --- helpers of methods
 
     def _like(self, data: Any) -> Self:
         """Return a value of the same kind and grades."""
@@ -175,7 +175,7 @@ class Multivector(_native.Multivector):
     _with_grades = _grades.with_grades
     _held = _grades.held
 
-    # --- sums and scaling, where they are not native
+    # --- sums and scaling, called by native operators
 
     def _add(self, other: Any) -> Multivector:
         return _grades.linear(self, other, operator.add)  # type: ignore[no-any-return]
@@ -198,9 +198,9 @@ class Multivector(_native.Multivector):
         dividend = coerced(other, self)
         return NotImplemented if dividend is None else dividend * self.inverse()
 
-    # --- products, where they are not native
+    # --- products, called by native operators
 
-    # An operator of a native type has no docstring of its own; a method in its place does, and warns.
+    # These methods have docstrings, with a warning, which operators of a native type cannot have.
     __xor__ = _native.Multivector._xor
     __or__ = _native.Multivector._or
 
@@ -230,17 +230,17 @@ class Multivector(_native.Multivector):
         return _grades.signed(self, lambda k: k % 4 in (2, 3))
 
     def grade_involution(self) -> Multivector:
-        """Odd grades change sign."""
+        """Reverse the sign of odd grades."""
         return _grades.signed(self, lambda k: k % 2 == 1)
 
     def clifford_conjugate(self) -> Multivector:
-        """Reverse and grade involution: grades 1 and 2, 5 and 6 change sign."""
+        """Reverse and grade involution: the sign of grades 1, 2, 5, 6 is reversed."""
         return _grades.signed(self, lambda k: k % 4 in (1, 2))
 
     def dual(self) -> Multivector:
         """``A I⁻¹``: the dual of a bivector of 3-d space is its axial vector, ``dual(e1∧e2) = e3``.
 
-        A TypeError where I has no inverse, as in Cl(3,0,1); `right_complement` takes its place there.
+        A TypeError where I has no inverse, as in Cl(3,0,1); use `right_complement` there.
         """
         return self * _functions.as_precise(self.algebra._inverse_of_I(), self)
 
@@ -266,12 +266,12 @@ class Multivector(_native.Multivector):
     norm = _functions.norm
     normalized = _functions.normalized
 
-    # --- functions, where they are not native
+    # --- functions, called by native methods
 
     def _function(self, name: str) -> Multivector:
         return _functions.exp(self) if name == "exp" else _functions.function(name, self)
 
-    # --- comparison, where it is not native
+    # --- comparison, called by native operators
 
     def _equals(self, other: object) -> Any:
         right = coerced(other, self)

@@ -32,7 +32,7 @@ def _components(values: Any, size: int, what: str) -> Any:
 
 
 def _computed(name: str, *operands: Any) -> Any:
-    """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
+    """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
     if all(map(is_float, operands)):
         return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
     kind = kind_of(*operands)
@@ -44,12 +44,12 @@ class Rotor(_native.Rotor, Multivector):
     """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
 
     Active: ``R(X) = R X ~R`` for X of any grade; ``S*R`` turns by R first. Components
-    ``(1, e2e3, e3e1, e1e2)``, always of norm 1. R and −R turn alike; both are kept apart, so that
+    ``(1, e2e3, e3e1, e1e2)``, always of norm 1. R and −R are the same rotation but different rotors, so that
     a motion's rotor is continuous. The quaternion ``w + xi + yj + zk`` has the rotor
     ``w − x e2e3 − y e3e1 − z e1e2``.
 
-    What JAX gives as a derivative by a rotor comes as a Rotor too, but is none: only its `components` mean
-    something. Take derivatives by a bivector, a rotation vector or components instead.
+    A derivative with respect to a rotor by JAX has the type Rotor, but is not a rotor: only its `components`
+    are meaningful. Differentiate with respect to a bivector, a rotation vector or components instead.
     """
 
     __slots__ = ()
@@ -65,7 +65,7 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def identity(shape: int | Shape = ()) -> Rotor:
-        """Return the rotor 1, which turns nothing."""
+        """Return the rotor 1, the identity rotation."""
         return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
 
     @staticmethod
@@ -75,7 +75,7 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
+        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored."""
         plane = one_grade(B, 2, "the plane")._data
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
@@ -86,8 +86,8 @@ class Rotor(_native.Rotor, Multivector):
     def from_vectors(a: Multivector, b: Multivector) -> Rotor:
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
-        For opposite directions the plane is not determined: one through a and the basis vector farthest
-        from it is taken.
+        For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
+        from a.
         """
         first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
         return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
@@ -139,8 +139,8 @@ class Rotor(_native.Rotor, Multivector):
 
         ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes of the body,
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
-        For one axis a single angle needs no array. Angles are numbers, SymPy expressions, or arrays of any
-        library, which stay theirs.
+        For one axis a single angle need not be an array. Angles are numbers, SymPy expressions, or arrays of
+        any library.
         """
         from polhode._algebra import euler
 
@@ -173,17 +173,17 @@ class Rotor(_native.Rotor, Multivector):
     # --- converters
 
     def to_matrix(self) -> Any:
-        """Rotation matrices (..., 3, 3) acting on columns."""
+        """Return rotation matrices (..., 3, 3) acting on columns."""
         return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
-        """Quaternions (..., 4), Hamilton's and active; the order must be said."""
+        """Return quaternions (..., 4), Hamilton's and active; `order` is required."""
         wxyz_first = _to_wxyz(order)[0] == 0
         wxyz = _computed("to_quaternion", self._data)
         return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
-        """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
+        """Return vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
         return _computed("to_rotation_vector", self._data)
 
     def to_scipy(self) -> Rotation:
@@ -198,7 +198,7 @@ class Rotor(_native.Rotor, Multivector):
         return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
 
     def to_euler(self, seq: str, degrees: bool = False) -> Any:
-        """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
+        """Return Euler angles (..., 3) in radians about the three axes `seq`, named as in `from_euler`.
 
         The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same
         ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
@@ -238,15 +238,17 @@ class Rotor(_native.Rotor, Multivector):
         return angle[()] if kind.native else angle
 
     def astype(self, dtype: Any) -> Rotor:
-        """Return it with components of another type, of norm 1 in the precision of that."""
+        """Return the rotor with components of another type, of norm 1 in its precision."""
         return Rotor.from_components(Multivector.astype(self, dtype)._data)
 
     # --- action and algebra
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:
-        """``R X ~R``, where it is not native."""
-        if not isinstance(X, Multivector):  # an array would be a batch of scalars, which stay as they are
-            raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
+        """``R X ~R``, for values that the native method does not cover."""
+        if not isinstance(X, Multivector):  # an array would be a batch of scalars, which do not turn
+            raise TypeError(
+                f"a rotor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector"
+            )
         common_algebra(self, X)
         a, b = self._data, X._data
         if not (is_float(a) and is_float(b)):
@@ -260,7 +262,7 @@ class Rotor(_native.Rotor, Multivector):
         return X._like(result)
 
     def _log(self) -> Multivector:
-        """Return the logarithm, where it is not native."""
+        """Return the logarithm, for values that the native method does not cover."""
         data = self._data
         if not is_float(data):
             return Multivector._of(_generic.rotors.log(kind_of(data), data), _BIVECTOR)
@@ -273,15 +275,15 @@ class Rotor(_native.Rotor, Multivector):
         return ~self
 
     def sqrt(self) -> Rotor:
-        """Return the half-way rotor, whose square is R."""
+        """Return the rotor of half the angle, whose square is R."""
         return self**0.5
 
     def normalized(self) -> Rotor:
-        """Return itself: a rotor has norm 1."""
+        """Return the rotor itself, which has norm 1."""
         return self
 
     def grade_involution(self) -> Rotor:
-        """Return itself: a rotor is even."""
+        """Return the rotor itself, which is even."""
         return self
 
     def __pow__(self, n: Any) -> Rotor:
@@ -307,7 +309,7 @@ def _powers(R: Rotor, n: Array) -> Rotor:
 
 
 def _to_wxyz(order: str) -> list[int]:
-    """Return where w, x, y, z stand in a quaternion of this order."""
+    """Return the places of w, x, y, z in a quaternion of this order."""
     if order == "wxyz":
         return [0, 1, 2, 3]
     if order == "xyzw":

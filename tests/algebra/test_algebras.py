@@ -265,8 +265,8 @@ def test_algebras_do_not_mix():
         (lambda: CGA.k_vector(6, np.ones(5)), r"Cl\(4,1\) has grades 0 to 5, got 6"),
         (lambda: CGA.k_vector(-1, np.ones(5)), r"got -1"),
         (lambda: CGA.scalar(1.0).grade(6), r"Cl\(4,1\) has grades 0 to 5, got 6"),
-        (lambda: ph.algebra(1).bivector([1.0]), r"Cl\(1\) has grades 0 to 1, no bivector"),
-        (lambda: ph.algebra(0).vector([]), r"Cl\(0\) has grades 0 to 0, no vector"),
+        (lambda: ph.algebra(1).bivector([1.0]), r"Cl\(1\) has grades 0 to 1; it has no bivector"),
+        (lambda: ph.algebra(0).vector([]), r"Cl\(0\) has grades 0 to 0; it has no vector"),
     ],
 )
 def test_wrong_components_are_errors(make, message):

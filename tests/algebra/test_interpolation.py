@@ -38,7 +38,7 @@ def test_slerp_broadcasts():
     assert path.shape == (5,)
     assert path[0] == start
     assert path[4].is_close(end, rtol=4 * EPS)
-    with pytest.raises(TypeError, match="between rotors"):
+    with pytest.raises(TypeError, match="slerp needs rotors"):
         ph.slerp(start, e1, 0.5)
 
 

@@ -155,7 +155,7 @@ def test_invalid_times_and_rotors_raise():
     spline = ph.RotorSpline([0, 1, 2], three)
     with pytest.raises(ValueError, match=r"the time at index \(1,\) is 2\.1; the spline goes from 0 to 2"):
         spline([1, 2.1])
-    with pytest.raises(ValueError, match="the time is -1, outside"):
+    with pytest.raises(ValueError, match="the time is -1; the spline goes from 0 to 2"):
         spline(-1)
     with pytest.raises(ValueError, match="the time is nan"):
         spline.omega_body(np.nan)

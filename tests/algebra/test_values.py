@@ -181,7 +181,7 @@ def test_items_of_rotors_are_rotors():
 def test_float_of_a_scalar():
     assert float(ph.scalar(2.5)) == 2.5
     for value in (e1, ph.scalar([1.0, 2.0]), 1 + e1, ph.multivector([1.0, 0, 0, 0, 0, 0, 0, 0])):
-        with pytest.raises(TypeError, match="only a single scalar becomes a float"):
+        with pytest.raises(TypeError, match="only a single scalar converts to float"):
             float(value)
 
 
@@ -248,7 +248,7 @@ def test_numpy_functions_reject_values():
         (np.stack, [e1, e2]),
         (np.linalg.norm, A),
     ):
-        with pytest.raises(TypeError, match=rf"np\.{f.__name__} does not take multivectors.*components"):
+        with pytest.raises(TypeError, match=rf"np\.{f.__name__} does not accept multivectors.*components"):
             f(*given)
 
 

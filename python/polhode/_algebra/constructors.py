@@ -145,7 +145,7 @@ def as_point(value: Any, what: str) -> Array:
     if components.shape != (3,):
         raise ValueError(f"{what} must be a single vector, got shape {components.shape}")
     if not np.isfinite(components).all():
-        raise ValueError(f"{what} must be finite, got {components.tolist()}")
+        raise ValueError(f"{what} is {components.tolist()}; it must be finite")
     return components
 
 

@@ -107,7 +107,7 @@ def scalars(value: Any, like: Any) -> Any:
         number = as_floats(value, "scalar")[np.newaxis]
         return number.astype(like.dtype) if is_float(like) else number  # float32 stays float32
     if type(value) is int and like is not None and like.dtype == object:
-        return _whole(value)[np.newaxis]
+        return np.array([value], dtype=object)  # exact, even if a float could hold it, such as 2**60
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
@@ -123,13 +123,8 @@ def number_like(value: Any, what: str, like: Any) -> Any:
     if is_float(like) and type(value) in (int, float):
         return as_floats(value, what).astype(like.dtype)
     if type(value) is int and isinstance(like, np.ndarray) and like.dtype == object:
-        return _whole(value)
+        return np.array(value, dtype=object)
     return as_coefficients(value, what)
-
-
-def _whole(value: int) -> Any:
-    """Convert an integer beside exact numbers, exactly even if a float could hold it, such as 2**60."""
-    return np.array(value, dtype=object)
 
 
 def foreign_kind(value: Any) -> Any:

@@ -27,11 +27,6 @@ def equal(a: Multivector, b: Multivector) -> Any:
     return namespace(left).all(same, axis=-1)
 
 
-def negated(same: Any) -> Any:
-    """Return the negation of a bool or of an array of them."""
-    return not same if isinstance(same, bool) else ~same
-
-
 def is_close(a: Multivector, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
     """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape.
 

@@ -278,8 +278,10 @@ class Multivector(_native.Multivector):
         return NotImplemented if right is None else _comparison.equal(self, right)
 
     def _differs(self, other: object) -> Any:
-        right = coerced(other, self)
-        return NotImplemented if right is None else _comparison.negated(_comparison.equal(self, right))
+        same = self._equals(other)
+        if same is NotImplemented:
+            return same
+        return not same if isinstance(same, bool) else ~same
 
     is_close = _comparison.is_close
 

@@ -153,9 +153,7 @@ def log(d: Numeric, m: Components, mask: int) -> Components:
     d.require(smallest > (singular(d) ** 2) * size, "no logarithm: the multivector is singular to rounding")
 
     # Near w = 0, on one side of the cut: ½ log λ+λ− = log ζ + ½ log(1 − u), and 2 artanh(√w/ζ)/2√w.
-    safe = choose(d, near, zeta, 1.0)
-    reciprocal = Complex(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe)
-    u = choose(d, near, w, 0.0) * reciprocal * reciprocal
+    safe, reciprocal, u = _near_quotients(d, near, zeta, w)
     rest = complex_log(d, Complex(1.0 - u.re, -u.im)).times(0.5)
     mean_near = complex_log(d, choose(d, turned, -safe, safe)) + rest
     quotient_near = series(d, _ARTANHC, u) * reciprocal
@@ -209,9 +207,7 @@ def sqrt(d: Numeric, m: Components, mask: int) -> Components:
     near, root = _near_and_root(d, zeta, w)
 
     # Near w = 0, on one side of the cut: √λ+ + √λ− = 2 √ζ √((1 + √(1 − u))/2), analytic in u = w/ζ².
-    safe = choose(d, near, zeta, 1.0)
-    reciprocal = Complex(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe)
-    u = choose(d, near, w, 0.0) * reciprocal * reciprocal
+    safe, _, u = _near_quotients(d, near, zeta, w)
     inner = complex_sqrt(d, Complex(1.0 - u.re, -u.im))
     sum_near = complex_sqrt(d, safe) * complex_sqrt(d, Complex(2.0 + 2.0 * inner.re, 2.0 * inner.im))
     sum_far = complex_sqrt(d, choose(d, near, 1.0, zeta + root)) + complex_sqrt(
@@ -253,12 +249,19 @@ def _sqrt_even(d: Numeric, m: Components) -> Components:
 
 
 def _near_and_root(d: Numeric, zeta: Complex, w: Complex) -> tuple[Any, Complex]:
-    """Whether ``|w| < |ζ|²/16`` with λ± on one side of the cut along the negative axis; and √w."""
+    """Return whether ``|w| < |ζ|²/16`` with λ± on one side of the cut along the negative axis, and √w."""
     root = complex_sqrt(d, w)
     plus, minus = zeta + root, zeta - root
     turn = d.atan2(plus.im, plus.re) - d.atan2(minus.im, minus.re)
     small = w.square() < (_NEAR * zeta.square()) * (_NEAR * zeta.square())
     return small & ((d.abs(turn) < math.pi) | (w.square() == 0)), root
+
+
+def _near_quotients(d: Numeric, near: Any, zeta: Complex, w: Complex) -> tuple[Complex, Complex, Complex]:
+    """Return ζ, 1/ζ and ``u = w/ζ²`` where the series hold, 1, 1 and 0 elsewhere."""
+    safe = choose(d, near, zeta, 1.0)
+    reciprocal = Complex(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe)
+    return safe, reciprocal, choose(d, near, w, 0.0) * reciprocal * reciprocal
 
 
 def _is_negative(d: Numeric, m: Components) -> Any:

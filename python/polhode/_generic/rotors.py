@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import math
 import operator
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from polhode._generic import functions, g3_exact
 from polhode._generic.coefficients import Coefficients
-from polhode._generic.exact import atan2, by_rows, call, divide, is_symbolic, is_zero, sqrt
+from polhode._generic.exact import atan2, by_rows, call, divide, is_rounding, is_symbolic, is_zero, sqrt
 from polhode._generic.layout import BIVECTOR, EVEN, eight, indices
 from polhode._generic.numeric import Numeric, components, squares
 
@@ -151,9 +150,9 @@ def _exact_from_matrix(nine: Parts) -> Parts:
     m = [nine[:3], nine[3:6], nine[6:]]
     for i, x in enumerate(m):
         for j, y in enumerate(m):
-            if not _is_one_or_zero(_dot(x, y), int(i == j)):
+            if not is_rounding(_dot(x, y) - int(i == j), _MATRIX_TOLERANCE):
                 raise ValueError(_NOT_A_ROTATION.format(""))
-    if not _is_one_or_zero(_dot(m[0], _cross(m[1], m[2])), 1):
+    if not is_rounding(_dot(m[0], _cross(m[1], m[2])) - 1, _MATRIX_TOLERANCE):
         raise ValueError(_REFLECTION)
     squared, candidates = _shepperd(m)
     if any(map(is_symbolic, squared)):
@@ -161,13 +160,6 @@ def _exact_from_matrix(nine: Parts) -> Parts:
         return g3_exact.unit(best)
     best = max(zip(squared, candidates, strict=True), key=lambda pair: pair[0])[1]
     return g3_exact.unit([-x for x in best] if best[0] < 0 else best)
-
-
-def _is_one_or_zero(x: Any, target: int) -> bool:
-    """Whether x is a number, exactly; within the tolerance if x is rounded."""
-    if is_symbolic(x) or isinstance(x, int | Fraction):
-        return is_zero(x - target)
-    return bool(abs(x - target) <= _MATRIX_TOLERANCE)
 
 
 def _shepperd(m: list[Parts]) -> tuple[Parts, list[Parts]]:

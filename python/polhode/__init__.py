@@ -6,14 +6,17 @@ from typing import TYPE_CHECKING, Any
 from polhode._algebra.algebra import Algebra as Algebra
 from polhode._algebra.algebra import algebra as algebra
 from polhode._algebra.constructors import I as I
+from polhode._algebra.constructors import axial as axial
 from polhode._algebra.constructors import bivector as bivector
 from polhode._algebra.constructors import cross as cross
 from polhode._algebra.constructors import e1 as e1
 from polhode._algebra.constructors import e2 as e2
 from polhode._algebra.constructors import e3 as e3
+from polhode._algebra.constructors import from_axial as from_axial
 from polhode._algebra.constructors import from_pauli as from_pauli
 from polhode._algebra.constructors import multivector as multivector
 from polhode._algebra.constructors import scalar as scalar
+from polhode._algebra.constructors import split as split
 from polhode._algebra.constructors import to_pauli as to_pauli
 from polhode._algebra.constructors import trivector as trivector
 from polhode._algebra.constructors import vector as vector
@@ -29,9 +32,6 @@ if TYPE_CHECKING:
     from polhode import force as force
     from polhode import jax as jax
     from polhode import torque as torque
-    from polhode._algebra.geometry import axial as axial
-    from polhode._algebra.geometry import from_axial as from_axial
-    from polhode._algebra.geometry import split as split
     from polhode._algebra.interpolation import RotorSpline as RotorSpline
     from polhode._algebra.interpolation import mean as mean
     from polhode._algebra.interpolation import slerp as slerp
@@ -63,100 +63,41 @@ if TYPE_CHECKING:
     from polhode._scene.scene import Scene as Scene
     from polhode._viewer.notebook import view as view
 
-# Without `jax`, which needs JAX.
+# Without `jax`, which needs JAX to be installed.
+# fmt: off
 __all__ = [
-    "Agreement",
-    "Algebra",
-    "Body",
-    "Certificate",
-    "Crossings",
-    "DampedTop",
-    "Failure",
-    "FlowDerivatives",
-    "Formula",
-    "FormulaError",
-    "FreeMotion",
-    "I",
-    "Inertia",
-    "LagrangeTop",
-    "LarmorSphere",
-    "LinearMap",
-    "Moments",
-    "Multivector",
-    "Rotor",
-    "RotorSpline",
-    "Scene",
-    "SceneError",
-    "State",
-    "SymmetricTop",
-    "Trajectory",
-    "algebra",
-    "axial",
-    "bivector",
-    "concatenate",
-    "cross",
-    "describe_free",
-    "e1",
-    "e2",
-    "e3",
-    "evaluate",
-    "event",
-    "force",
-    "formula",
-    "from_axial",
-    "from_dict",
-    "from_pauli",
-    "mean",
-    "multivector",
-    "scalar",
-    "simulate",
-    "simulate_blocks",
-    "slerp",
-    "split",
-    "stack",
-    "to_dict",
-    "to_pauli",
-    "torque",
-    "trivector",
-    "vector",
-    "view",
+    "Agreement", "Algebra", "Body", "Certificate", "Crossings", "DampedTop", "Failure", "FlowDerivatives",
+    "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop", "LarmorSphere", "LinearMap",
+    "Moments", "Multivector", "Rotor", "RotorSpline", "Scene", "SceneError", "State", "SymmetricTop",
+    "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross", "describe_free", "e1", "e2",
+    "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli", "mean",
+    "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split", "stack", "to_dict",
+    "to_pauli", "torque", "trivector", "vector", "view",
 ]
+# fmt: on
 
-# Imported when they are first asked for: those who only multiply need not wait for mechanics.
+# Imported on first access, so that `import polhode` stays fast.
 _LATER = {
-    "Agreement": "_formula.agreement",
-    "Body": "_mechanics.bodies",
-    "Inertia": "_mechanics.bodies",
-    "DampedTop": "_mechanics.closed_forms",
-    "LagrangeTop": "_mechanics.closed_forms",
-    "LarmorSphere": "_mechanics.closed_forms",
-    "Formula": "_formula.formula",
-    "evaluate": "_formula.formula",
-    "formula": "_formula.formula",
-    "FormulaError": "_formula.errors",
-    "FlowDerivatives": "_mechanics.free_motion",
-    "FreeMotion": "_mechanics.free_motion",
-    "SymmetricTop": "_mechanics.free_motion",
-    "describe_free": "_mechanics.free_motion",
-    "axial": "_algebra.geometry",
-    "from_axial": "_algebra.geometry",
-    "split": "_algebra.geometry",
-    "from_dict": "_algebra.serialize",
-    "to_dict": "_algebra.serialize",
-    "RotorSpline": "_algebra.interpolation",
-    "mean": "_algebra.interpolation",
-    "slerp": "_algebra.interpolation",
-    "LinearMap": "_algebra.linear_map",
-    "Certificate": "_mechanics.result",
-    "Crossings": "_mechanics.result",
-    "Failure": "_mechanics.result",
-    "Trajectory": "_mechanics.trajectory",
-    "Moments": "_mechanics.statistics",
-    "view": "_viewer.notebook",
-    "simulate": "_mechanics.simulate",
-    "simulate_blocks": "_mechanics.simulate",
-    "Scene": "_scene.scene",
-    "State": "_mechanics.state",
+    name: module
+    for module, names in {
+        "_algebra.interpolation": "RotorSpline mean slerp",
+        "_algebra.linear_map": "LinearMap",
+        "_algebra.serialize": "from_dict to_dict",
+        "_formula.agreement": "Agreement",
+        "_formula.errors": "FormulaError",
+        "_formula.formula": "Formula evaluate formula",
+        "_mechanics.bodies": "Body Inertia",
+        "_mechanics.closed_forms": "DampedTop LagrangeTop LarmorSphere",
+        "_mechanics.free_motion": "FlowDerivatives FreeMotion SymmetricTop describe_free",
+        "_mechanics.result": "Certificate Crossings Failure",
+        "_mechanics.simulate": "simulate simulate_blocks",
+        "_mechanics.state": "State",
+        "_mechanics.statistics": "Moments",
+        "_mechanics.trajectory": "Trajectory",
+        "_scene.scene": "Scene",
+        "_viewer.notebook": "view",
+    }.items()
+    for name in names.split()
 }
 _MODULES = ("event", "force", "jax", "torque")
 

@@ -6,9 +6,9 @@
 ... def test_turning_keeps_lengths(R, a):
 ...     assert abs(R(a).norm() - a.norm()) <= 8e-16 * a.norm()
 
-Examples shrink to few nonzero components, to small whole numbers, and rotors to turns of simple angles in
-coordinate planes. Components come from `floats`, a strategy of finite floats; by default of moderate size, so
-that products neither overflow nor vanish. The batch `shape` is fixed, or drawn from a strategy such as
+Examples shrink to few nonzero components and small whole numbers, rotors to simple angles in coordinate
+planes. Components come from `floats`, a strategy of finite floats; by default of moderate size, so that
+products neither overflow nor underflow. The batch `shape` is fixed, or drawn from a strategy such as
 `batch_shapes`.
 """
 
@@ -41,7 +41,7 @@ __all__ = [
     "vectors",
 ]
 
-# A strategy: what hypothesis.strategies makes, of values of the type in brackets in the docstrings.
+# A strategy of Hypothesis; docstrings give the type of its values in brackets.
 Strategy = Any
 
 _SIZE = 1e6
@@ -50,19 +50,19 @@ _SIZE = 1e6
 def components(bound: float = _SIZE) -> Strategy:
     """Floats [float] of size at most `bound`; 0, or of size at least 1/bound; whole numbers often."""
     if not 1 <= bound < math.inf:
-        raise ValueError(f"the bound of components must be finite and >= 1, got {bound}")
+        raise ValueError(f"bound must be finite and >= 1, got {bound}")
     whole = st.integers(-min(9, int(bound)), min(9, int(bound))).map(float)
     return st.one_of(whole, st.floats(1 / bound, bound), st.floats(-bound, -1 / bound))
 
 
 def angles() -> Strategy:
-    """Angles [float] in [−2π, 2π]: 0 first, then simple parts of a turn, near those, and any."""
+    """Angles [float] in [−2π, 2π]: 0 first, then multiples of π/2, near multiples of π, and any."""
     simple = st.sampled_from([0.0, *(sign * k * math.pi / 2 for k in range(1, 5) for sign in (1, -1))])
     return st.one_of(simple, _near_singular(), st.floats(-2 * math.pi, 2 * math.pi))
 
 
 def _near_singular() -> Strategy:
-    """Angles [float] at all distances from 0, π and 2π, where logarithms and axes are hard to tell."""
+    """Angles [float] at distances of 1e-18 to 0.1 from 0, ±π and 2π, where logarithms are singular."""
     around = st.sampled_from([0.0, math.pi, 2 * math.pi, -math.pi])
     distance = st.builds(lambda sign, k: sign * 10.0**-k, st.sampled_from([1, -1]), st.integers(1, 18))
     return st.builds(
@@ -81,7 +81,7 @@ def multivectors(
     shape: Any = (),
     floats: Strategy | None = None,
 ) -> Strategy:
-    """Values [Multivector] that hold the grades given; of grades drawn anew where none are given."""
+    """Values [Multivector] of the given grades; by default the grades are drawn, too."""
     space = _space(algebra)
     everything = range(space.dimension + 1)
     if grades is None:
@@ -122,7 +122,7 @@ def trivectors(algebra: Algebra | None = None, shape: Any = (), floats: Strategy
 
 
 def rotors(shape: Any = (), near_singular: bool = False) -> Strategy:
-    """Rotors [Rotor], the identity first; with `near_singular` only by angles at or close to 0, π or 2π."""
+    """Rotors [Rotor], the identity first; with `near_singular` only angles at or near 0, π or 2π."""
     turns = _near_singular() if near_singular else angles()
 
     def of(lengths: Shape) -> Strategy:
@@ -137,7 +137,7 @@ def _turned(plane: Array, angle: Array) -> Rotor:
 
 
 def _directions(planes: Array) -> Array:
-    """Return the planes, e1e2 for those of no size."""
+    """Return the planes, e1e2 instead of zero."""
     return np.where(np.any(planes != 0, axis=-1, keepdims=True), planes, [0.0, 0.0, 1.0])
 
 

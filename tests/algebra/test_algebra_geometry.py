@@ -1,4 +1,4 @@
-"""What algebras of other signatures are for: motions, circles, space-time, quaternions, exterior calculus."""
+"""Uses of other signatures: motions, circles, space-time, quaternions, exterior calculus."""
 
 import numpy as np
 import pytest
@@ -50,14 +50,14 @@ def test_a_rotor_turns_points_about_the_origin():
         assert near(R * point([1, 2, 3]) * ~R, point([c - 2 * s, s + 2 * c, 3]), 32, 4)
 
 
-def test_a_motion_is_a_screw_and_its_logarithm_gives_it_back():
+def test_log_of_a_motor_is_its_screw():
     rng = np.random.default_rng(1)
     for scale in (1e-12, 1e-4, 1.0):
         B = PGA.bivector(scale * rng.standard_normal((50, 6)) / 2)
         M = B.exp()
         assert M.grades == (0, 2, 4)
         assert near(M * ~M, 1, 32)
-        # log divides by the angle; the pitch loses what that leaves of the digits.
+        # log divides by the angle; the pitch loses as many digits as the angle is small.
         assert near(M.log(), B, 64, scale)
         assert near(M.log().exp(), M, 64)
 
@@ -104,7 +104,7 @@ def conformal(x):
     return CGA.vector([*x, 0, 0]) + (np.dot(x, x) / 2) * infinity + origin
 
 
-def test_conformal_points_tell_distances():
+def test_inner_products_of_conformal_points_are_distances():
     rng = np.random.default_rng(3)
     infinity = CGA.vector([0, 0, 0, 1, 1])
     for x, y in rng.integers(-9, 10, (20, 2, 3)).astype(float):
@@ -163,7 +163,7 @@ def test_boosts_add_rapidities(rapidity):
     assert near(boost * g0 * ~boost, c * g0 + s * g1, 32, c)
     again = ((g0 * g1) * (-0.3)).exp()
     assert near(boost * again, ((g0 * g1) * (-rapidity / 2 - 0.3)).exp(), 32, 2 * c)
-    # Digits of the rapidity are lost as cosh and sinh approach each other.
+    # The rapidity loses digits as cosh and sinh approach each other.
     assert near(boost.log(), (g0 * g1).grade(2) * (-rapidity / 2), 32, 2 * c)
 
 
@@ -177,7 +177,7 @@ def test_lorentz_rotors_keep_intervals():
     assert np.all(np.linalg.norm(y.grade(3).components, axis=-1) <= 64 * EPS * size)
 
 
-# --- small ones
+# --- small algebras
 
 
 def test_quaternions_and_complex_numbers():
@@ -224,7 +224,7 @@ def test_singular_values_have_no_inverse(A):
         1 / (1 + e1)
 
 
-def test_null_values_have_no_inverse_and_no_size():
+def test_null_values_have_neither_inverse_nor_norm():
     e4 = PGA.basis_vectors[3]
     assert e4.norm() == 0
     with pytest.raises(ValueError, match="no inverse"):
@@ -237,7 +237,7 @@ def test_null_values_have_no_inverse_and_no_size():
         light.inverse()
 
 
-def test_null_directions_do_not_count_in_sizes():
+def test_null_directions_do_not_count_in_norms():
     for far in (1e200, 1e-200, np.inf):
         assert PGA.vector([3, 4, 0, far]).norm() == 5
         assert PGA.vector([3, 4, 0, far]).norm_squared() == 25
@@ -252,6 +252,6 @@ def test_null_directions_do_not_count_in_sizes():
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("name", ["inverse", "exp", "log"])
-def test_functions_of_the_non_finite_are_errors(bad, name):
+def test_functions_of_non_finite_values_raise(bad, name):
     with pytest.raises(ValueError, match="NaN or infinite"):
         getattr(CGA.scalar(1.0) + CGA.bivector([bad] + [0.0] * 9), name)()

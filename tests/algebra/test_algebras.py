@@ -60,7 +60,7 @@ def test_sparse_products_of_many_generators_equal_the_oracle(signature, grades):
 
 
 def by_bits(metric, row, column):
-    """The geometric product by bits, each sign counted from swaps: quicker for hundreds of blades."""
+    """The geometric product by bits, each sign counted from swaps: faster for hundreds of blades."""
     n = len(metric)
     blades = [sum(1 << g - 1 for g in blade) for blade in basis(n)]
     place = {bits: k for k, bits in enumerate(blades)}
@@ -94,7 +94,7 @@ def test_single_values_and_batches_and_single_precision_agree(signature):
 
 @every
 @pytest.mark.parametrize("kind", ["exact", "jax"])
-def test_other_coefficients_give_the_same(signature, kind):
+def test_all_coefficients_give_equal_results(signature, kind):
     A = ph.algebra(*signature)
     a, b = numbers((2, A.size), 7), numbers((A.size,), 8)
     if kind == "exact":
@@ -173,7 +173,7 @@ def test_the_basis_and_its_names(signature):
         assert A.k_vector(k, np.ones(size)).grades == (k,)
 
 
-# --- the object
+# --- algebras as objects
 
 
 def test_the_algebra_of_space_is_that_of_the_package():
@@ -198,7 +198,7 @@ def test_the_same_signature_is_the_same_object_also_pickled(signature):
         assert np.all(A.multivector(numbers((2, A.size), 13)) == M)
 
 
-def test_text():
+def test_repr():
     assert [repr(A) for A in (ph.algebra(3), CGA, PGA, ph.algebra(0, 2))] == [
         "Cl(3)",
         "Cl(4,1)",
@@ -224,7 +224,7 @@ def test_text():
         ((None,), TypeError, "whole numbers.*got None"),
     ],
 )
-def test_signatures_that_are_none(arguments, error, message):
+def test_invalid_signatures_raise(arguments, error, message):
     with pytest.raises(error, match=message):
         ph.algebra(*arguments)
 
@@ -265,8 +265,8 @@ def test_algebras_do_not_mix():
         (lambda: CGA.k_vector(6, np.ones(5)), r"Cl\(4,1\) has grades 0 to 5, got 6"),
         (lambda: CGA.k_vector(-1, np.ones(5)), r"got -1"),
         (lambda: CGA.scalar(1.0).grade(6), r"Cl\(4,1\) has grades 0 to 5, got 6"),
-        (lambda: ph.algebra(1).bivector([1.0]), r"Cl\(1\) has grades 0 to 1, no bivector"),
-        (lambda: ph.algebra(0).vector([]), r"Cl\(0\) has grades 0 to 0, no vector"),
+        (lambda: ph.algebra(1).bivector([1.0]), r"Cl\(1\) has grades 0 to 1; it has no bivector"),
+        (lambda: ph.algebra(0).vector([]), r"Cl\(0\) has grades 0 to 0; it has no vector"),
     ],
 )
 def test_wrong_components_are_errors(make, message):

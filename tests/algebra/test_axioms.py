@@ -1,4 +1,4 @@
-"""The laws of the algebra, over all kinds of values: exact, for components are whole."""
+"""Laws of the algebra over all kinds of values, exact because the components are whole."""
 
 import numpy as np
 import pytest
@@ -123,7 +123,7 @@ def test_duality_exchanges_wedge_and_contraction(A, B):
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("grades", GRADE_SETS)
-def test_grades_hold_what_the_full_computation_gives(grades, shape):
+def test_grades_of_products_lose_no_component(grades, shape):
     rng = np.random.default_rng(1)
     eight = rng.integers(-9, 10, (*shape, 8)).astype(float)
     A = ph_value(eight, grades)

@@ -1,4 +1,4 @@
-"""Batches: their shapes, results written to given arrays, shared memory, precision, threads and the pool."""
+"""Batches: shapes, output arrays, shared memory, precision, threads and the memory pool."""
 
 import itertools
 import math
@@ -30,7 +30,7 @@ def batch(shape, seed=1, grades=(0, 1, 2, 3), dtype=np.float64):
 
 
 @pytest.mark.parametrize("grades", GRADE_SETS, ids=str)
-def test_reshape_stack_and_concatenate_do_as_numpy_does(grades):
+def test_reshape_stack_and_concatenate_match_numpy(grades):
     A, B = batch((2, 3), 1, grades), batch((2, 3), 2, grades)
     a, b = eight_of(A), eight_of(B)
     assert np.array_equal(eight_of(A.reshape(3, 2)), a.reshape(3, 2, 8))
@@ -52,7 +52,7 @@ def test_values_of_different_grades_and_precision_join():
     assert ph.concatenate([joined.astype(np.float32)] * 2).dtype == np.float32
 
 
-def test_rotors_join_to_rotors_only():
+def test_stacks_of_rotors_are_rotors():
     R = ph.Rotor.random((3,), 1)
     assert type(ph.stack([R, R])) is ph.Rotor
     assert type(ph.concatenate([R, R])) is ph.Rotor
@@ -76,20 +76,20 @@ def test_rotors_join_to_rotors_only():
         (lambda A: ph.stack([A, 1]), TypeError, "item 1 is int"),
         (lambda A: ph.stack([A, A], axis=3), ValueError, "axis 3 is out of range for 3"),
         (lambda A: ph.stack([A, A], axis=-4), ValueError, "axis -4 is out of range"),
-        (lambda A: ph.concatenate([e1, e1]), ValueError, "as many axes"),
-        (lambda A: ph.concatenate([A, A[0]]), ValueError, "as many axes"),
+        (lambda A: ph.concatenate([e1, e1]), ValueError, "equal numbers of batch axes"),
+        (lambda A: ph.concatenate([A, A[0]]), ValueError, "equal numbers of batch axes"),
         (lambda A: ph.concatenate([A, A], axis=2), ValueError, "axis 2 is out of range for 2"),
-        (lambda A: ph.concatenate([A, A[:, :2]]), ValueError, "differ elsewhere than in axis 0"),
+        (lambda A: ph.concatenate([A, A[:, :2]]), ValueError, "must agree except in axis 0"),
         (lambda A: A[0, 0, 0], IndexError, r"batch shape \(2, 3\)"),
         (lambda A: A * batch((4,)), ValueError, "broadcast"),
     ],
 )
-def test_shapes_that_do_not_fit(operate, error, message):
+def test_incompatible_shapes_raise(operate, error, message):
     with pytest.raises(error, match=message or None):
         operate(batch((2, 3)))
 
 
-def test_masks_select_and_empty_selections_compute():
+def test_masks_and_empty_selections():
     A = batch((2, 3))
     mask = np.array([[True, False, True], [False, False, True]])
     assert np.array_equal(eight_of(A[mask]), eight_of(A)[mask])
@@ -123,7 +123,7 @@ def test_results_are_written_to_out(name, grades, dtype):
     assert np.shares_memory(result._data, out)
     assert not result._data.flags.writeable
     assert out.flags.writeable
-    out[...] = 7  # the caller's array stays his own
+    out[...] = 7  # the caller's array is not frozen
     assert np.all(result.components == 7)
 
 
@@ -134,12 +134,12 @@ def test_out_of_single_values(name):
     result = getattr(e1 + I, name)(e2 + 2, out=out)
     assert np.array_equal(out, expected.components)
     assert result == expected
-    with pytest.raises(ValueError, match="out is"):
+    with pytest.raises(ValueError, match="out must be"):
         getattr(e1, name)(e2, out=np.empty((1, *out.shape)))
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
-def test_turned_values_are_written_to_out(dtype):
+def test_rotor_apply_writes_to_out(dtype):
     R, X = ph.Rotor.random((2, 1), 1).astype(dtype), batch((3,), 2, dtype=dtype)
     out = np.empty((2, 3, 8), dtype)
     result = R.apply(X, out=out)
@@ -149,7 +149,7 @@ def test_turned_values_are_written_to_out(dtype):
     composed = R.geometric_product(S, out=np.empty((2, 3, 4), dtype))
     assert type(composed) is ph.Rotor
     assert np.all(composed == R * S)
-    with pytest.raises(ValueError, match="out is"):
+    with pytest.raises(ValueError, match="out must be"):
         R.apply(X, out=np.empty((2, 3, 3), dtype))
 
 
@@ -162,13 +162,13 @@ def read_only():
 @pytest.mark.parametrize(
     ("out", "error", "message"),
     [
-        (lambda a: np.empty((2, 8)), ValueError, r"out is float64 of shape \(2, 8\), the result float64"),
-        (lambda a: np.empty((3, 4)), ValueError, r"of shape \(3, 4\), the result float64 of shape \(3, 8\)"),
-        (lambda a: np.empty((1, 3, 8)), ValueError, "out is"),
-        (lambda a: np.empty((3, 8), np.float32), ValueError, "out is float32 .* the result float64"),
-        (lambda a: np.empty((3, 8), np.int64), ValueError, "out is int64"),
-        (lambda a: np.empty((3, 8), object), ValueError, "out is object"),
-        (lambda a: np.empty((3, 8), ">f8"), ValueError, "out is >f8"),
+        (lambda a: np.empty((2, 8)), ValueError, r"out must be float64 .*, got float64 of shape \(2, 8\)"),
+        (lambda a: np.empty((3, 4)), ValueError, r"of shape \(3, 8\), got float64 of shape \(3, 4\)"),
+        (lambda a: np.empty((1, 3, 8)), ValueError, "out must be"),
+        (lambda a: np.empty((3, 8), np.float32), ValueError, "out must be float64 .* got float32"),
+        (lambda a: np.empty((3, 8), np.int64), ValueError, "got int64"),
+        (lambda a: np.empty((3, 8), object), ValueError, "got object"),
+        (lambda a: np.empty((3, 8), ">f8"), ValueError, "got >f8"),
         (lambda a: np.empty((3, 8), order="F"), ValueError, "C order"),
         (lambda a: np.empty((3, 16))[:, ::2], ValueError, "C order"),
         (lambda a: read_only(), ValueError, "writable"),
@@ -177,7 +177,7 @@ def read_only():
         (lambda a: e1, TypeError, "must be a NumPy array, got Multivector"),
     ],
 )
-def test_arrays_that_cannot_take_the_result(out, error, message):
+def test_invalid_out_arrays_raise(out, error, message):
     a = numbers((3, 8), 1)
     A = ph.multivector(a, copy=False)
     kept = a.copy()
@@ -188,7 +188,7 @@ def test_arrays_that_cannot_take_the_result(out, error, message):
     assert np.array_equal(a, kept)
 
 
-def test_out_that_overlaps_in_part():
+def test_out_that_overlaps_an_operand_raises():
     memory = np.zeros((5, 8))
     A = ph.multivector(memory[:3], copy=False)
     with pytest.raises(ValueError, match="overlaps"):
@@ -224,7 +224,7 @@ def test_views_share_the_callers_array_and_are_read_only(make, size):
     assert np.all(copy.components == 1)
 
 
-def test_results_never_share_memory_that_the_caller_may_write_to():
+def test_results_do_not_share_the_callers_memory():
     array = numbers((4, 8), 3)
     A = ph.multivector(array)
     makers = [
@@ -250,7 +250,7 @@ def test_results_never_share_memory_that_the_caller_may_write_to():
     assert not np.any(A.norm() == 0)
 
 
-def test_a_function_that_returns_its_own_array_does_not_let_it_be_written_to():
+def test_map_copies_the_array_that_the_function_returns():
     own = numbers((2, 3), 4)
     kept = own.copy()
     A = ph.vector(np.zeros((2, 3))).map(lambda _: own)
@@ -273,7 +273,7 @@ def test_single_precision_is_double_precision_rounded(name, grades):
 
 @pytest.mark.parametrize("name", ["exp", "log", "inverse", "sqrt", "normalized", "norm", "norm_squared"])
 def test_functions_in_single_precision_are_those_of_doubles_rounded(name):
-    """They are computed in double precision, but for sums of squares."""
+    """They are computed in double precision, except sums of squares."""
     rng = np.random.default_rng(7)
     A = ph.multivector((rng.standard_normal((50, 8)) + 4 * np.eye(8)[0]).astype(np.float32))
     single, double = getattr(A, name)(), getattr(A.astype(float), name)()
@@ -298,10 +298,10 @@ def test_astype():
         A.astype("quaternion")
 
 
-# --- threads: POLHODE_NUM_THREADS says how many share the rows
+# --- threads: POLHODE_NUM_THREADS sets how many share the rows
 
 
-ROWS = 210_001  # beyond the size from which rows are shared, and not a multiple of any block
+ROWS = 210_001  # more rows than one thread takes, and not a multiple of any block
 
 
 def work():
@@ -332,7 +332,7 @@ def test_results_do_not_depend_on_the_number_of_threads(monkeypatch):
 
 
 @pytest.mark.parametrize("bad", ["0", "-1", "two", "1.5", "", "99999999999999999999999"])
-def test_numbers_of_threads_that_are_none(monkeypatch, bad):
+def test_invalid_numbers_of_threads_raise(monkeypatch, bad):
     monkeypatch.setenv("POLHODE_NUM_THREADS", bad)
     A = ph.multivector(np.ones((ROWS, 8)))
     with pytest.raises(
@@ -341,14 +341,14 @@ def test_numbers_of_threads_that_are_none(monkeypatch, bad):
         A * A
 
 
-# --- the pool: memory of large results is used again when they are gone, not before
+# --- the pool: memory of large results is reused after they are freed, not before
 
 
 def large(seed):
     return ph.multivector(np.full((40_000, 8), float(seed)))
 
 
-def test_a_result_stays_when_others_are_made_and_dropped():
+def test_results_outlive_later_results():
     A, one = large(1), ph.scalar(1.0)
     held = A * one
     kept = [held[10:20], held.components[5], held.grade(2), (A * 3)[7:9], (A * 5).components[::1000]]
@@ -367,7 +367,7 @@ def test_a_result_stays_when_others_are_made_and_dropped():
         assert np.array_equal(getattr(value, "components", value), copy)
 
 
-def test_results_held_together_have_memory_of_their_own():
+def test_live_results_have_separate_memory():
     one = ph.scalar(1.0)
     values = [large(k) * one for k in range(12)]
     for (i, a), (j, b) in itertools.combinations(enumerate(values), 2):

@@ -1,4 +1,4 @@
-"""Euler angles as SciPy names and numbers them, gimbal lock included; and quaternions of numpy-quaternion."""
+"""Euler angles in SciPy's notation, gimbal lock included; quaternions of numpy-quaternion."""
 
 import itertools
 import sys
@@ -24,7 +24,7 @@ def some_angles(seq, shape=(), seed=1):
 
 
 @pytest.mark.parametrize("seq", SEQUENCES + SHORT)
-def test_scipy_turns_alike(seq):
+def test_from_euler_agrees_with_scipy(seq):
     theta = some_angles(seq, (50,))
     scipys = Rotation.from_euler(seq, theta)
     # Three products of rotors and four roundings of each turn, on either side.
@@ -34,7 +34,7 @@ def test_scipy_turns_alike(seq):
 
 
 @pytest.mark.parametrize("seq", SEQUENCES)
-def test_scipy_gives_the_same_angles(seq):
+def test_to_euler_agrees_with_scipy(seq):
     scipys = Rotation.random(50, rng=2)
     ours, theirs = ph.Rotor.from_scipy(scipys).to_euler(seq), scipys.as_euler(seq)
     # The outer angles are directions in planes whose radius is the cosine or sine of half the middle one.
@@ -46,7 +46,7 @@ def test_scipy_gives_the_same_angles(seq):
 
 
 @given(rotors, sequences)
-def test_angles_give_the_attitude(R, seq):
+def test_angles_restore_the_attitude(R, seq):
     theta = R.to_euler(seq)
     assert R.distance(ph.Rotor.from_euler(seq, theta)) <= 32 * EPS
     assert np.all(abs(theta) <= np.pi)
@@ -57,8 +57,8 @@ def test_angles_give_the_attitude(R, seq):
 
 
 @given(st.tuples(angles, angles, angles), sequences)
-def test_angles_near_gimbal_lock_give_the_attitude(theta, seq):
-    # `angles` crowd around 0, π and 2π; a quarter turn more makes locks for the other sequences.
+def test_angles_near_gimbal_lock_restore_the_attitude(theta, seq):
+    # `angles` crowd around 0, π and 2π; a quarter turn more gives gimbal lock for the other sequences.
     for quarter in (0, np.pi / 2):
         R = ph.Rotor.from_euler(seq, np.add(theta, [0, quarter, 0]))
         assert R.distance(ph.Rotor.from_euler(seq, R.to_euler(seq))) <= 48 * EPS
@@ -80,10 +80,10 @@ def test_in_gimbal_lock_the_third_angle_is_zero(seq, end):
     assert np.all(abs(np.remainder(found[:, 0] - theirs[:, 0] + 1, 2 * np.pi) - 1) <= 32 * EPS)
 
 
-def test_the_sense_and_the_order():
+def test_sense_and_order_of_turns():
     quarter = np.pi / 2
     assert close(ph.Rotor.from_euler("z", quarter)(e1), e2, 4)
-    # About e1, then about e2: e2 -> e3 -> e1. About axes that turn along, the other way round.
+    # About e1, then about e2: e2 -> e3 -> e1. About axes of the body, the opposite order.
     assert close(ph.Rotor.from_euler("xy", [quarter, quarter])(e2), e1, 8)
     assert close(ph.Rotor.from_euler("XY", [quarter, quarter])(e2), e3, 8)
     theta = some_angles("xyz", (5,), 4)
@@ -106,7 +106,7 @@ def test_batches(shape):
 @pytest.mark.parametrize(
     "seq", ["", "xyzx", "abc", "xYz", "xx", "xzz", "XYZ ", None, 3, ["x", "y", "z"], "1"]
 )
-def test_bad_sequences_are_named(seq):
+def test_invalid_sequences_raise(seq):
     with pytest.raises(ValueError, match="one to three of x, y, z") as caught:
         ph.Rotor.from_euler(seq, [0, 0, 0])
     assert repr(seq) in str(caught.value)
@@ -139,7 +139,7 @@ def test_quaternions_of_the_package_numpy_quaternion():
     assert q.dtype == np.dtype(quaternion.quaternion)
     assert close(ph.Rotor.from_numpy_quaternion(q), R, 4)
     assert close(ph.Rotor.from_numpy_quaternion(3 * q), R, 8)
-    # The same sense: what they turn, we turn.
+    # The same sense of rotation.
     turned = quaternion.rotate_vectors(q[2, 1], [1.0, 2.0, 3.0])
     assert np.all(abs(R[2, 1](e1 + 2 * e2 + 3 * e3).components - turned) <= 32 * EPS * 4)
     one = ph.Rotor.from_numpy_quaternion(quaternion.quaternion(1, 0, 0, 1))
@@ -151,7 +151,7 @@ def test_quaternions_of_the_package_numpy_quaternion():
         ph.Rotor.from_numpy_quaternion(np.array([quaternion.one, quaternion.zero]))
 
 
-def test_numpy_quaternion_is_asked_for_by_name(monkeypatch):
+def test_a_missing_numpy_quaternion_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "quaternion", None)
     for use in (ph.Rotor.identity().to_numpy_quaternion, lambda: ph.Rotor.from_numpy_quaternion([1])):
         with pytest.raises(ImportError, match=r"needs quaternion: pip install 'polhode\[quaternion\]'"):
@@ -160,7 +160,7 @@ def test_numpy_quaternion_is_asked_for_by_name(monkeypatch):
 
 @pytest.mark.parametrize("name", ["jax.numpy", "array_api_strict"])
 @pytest.mark.parametrize("seq", SEQUENCES)
-def test_angles_stay_in_the_arrays_given(name, seq):
+def test_angles_keep_the_array_type(name, seq):
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
         module = pytest.importorskip(name)

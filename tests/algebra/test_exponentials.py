@@ -1,4 +1,4 @@
-"""exp, log, sqrt: against 60 digits, each other's inverses, near-singular and at the ends of the range."""
+"""exp, log, sqrt: against 60 digits, as inverses of each other, near-singular and extreme values."""
 
 import mpmath
 import numpy as np
@@ -36,7 +36,7 @@ def mp_exp(M):
 
 
 def distance(M, reference):
-    """|M − reference| where the reference has many digits."""
+    """|M − reference| for a multiprecision reference."""
     with mpmath.workdps(60):
         return mpmath.sqrt(
             sum((mpmath.mpf(float(x)) - y) ** 2 for x, y in zip(eight_of(M), reference, strict=True))
@@ -77,7 +77,7 @@ def test_exp_of_a_bivector_against_mpmath(size):
 
 
 @pytest.mark.parametrize("exponent", range(-300, 301, 20))
-def test_exp_of_a_bivector_is_a_unit_rotor_at_any_size(exponent):
+def test_exp_of_a_bivector_of_any_norm_is_a_unit_rotor(exponent):
     R = ph.bivector(10.0**exponent * np.array([0.48, -0.6, 0.64])).exp()
     assert isinstance(R, ph.Rotor)
     assert abs(magnitude(R) - 1) <= 4 * EPS
@@ -106,7 +106,7 @@ def test_exp_at_the_ends_of_the_range():
     assert ph.scalar(-800.0).exp() == 0
     # λ± = 0 and −1600: ½(1 + e1), though cosh 800 alone is beyond the range.
     assert close((-800 + 800 * e1).exp(), (1 + e1) / 2, 4)
-    # A large angle is no large result.
+    # A large angle does not give a large result.
     assert close((1e160 * e12 + I).exp(), (1e160 * e12).exp() * I.exp(), 16)
 
 
@@ -117,7 +117,7 @@ def test_log_undoes_exp_for_small_values(eight, grades, scale):
     if size >= 2:
         return
     # Inside the principal strip (|M| < π). exp rounds by 32 eps (1 + |M|)² e^|M| as above, log's
-    # condition is at most |exp(−M)|·cond(V), and its own roundings are as many again.
+    # condition is at most |exp(−M)|·cond(V), and its own rounding is of the same size.
     assert close(M.exp().log(), M, 64 * (1 + size) ** 2 * np.exp(2 * size))
 
 

@@ -1,4 +1,4 @@
-"""Involutions, sizes, inverses, powers, projections and Pauli matrices of multivectors."""
+"""Involutions, norms, inverses, powers, projections and Pauli matrices of multivectors."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def test_grades_beyond_3_are_an_error(k):
         e1.grade(k)
 
 
-# --- sizes
+# --- norms
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -85,7 +85,7 @@ def test_norm_neither_overflows_nor_underflows(scale):
     assert ph.multivector([scale * x for x in (1, 1, 1, 1, 2, 2, 2, 0)]).norm() == 4 * scale
 
 
-def test_norm_of_the_non_finite():
+def test_norm_of_non_finite_values():
     assert ph.vector([np.inf, 1, 1]).norm() == np.inf
     assert np.isnan(ph.vector([np.nan, 1, 1]).norm())
 
@@ -105,7 +105,7 @@ def test_normalized(scale, shape):
 
 
 @pytest.mark.parametrize("bad", [0.0, np.nan, np.inf])
-def test_normalizing_what_has_no_direction(bad):
+def test_normalizing_zero_and_non_finite_values_raises(bad):
     with pytest.raises(ValueError, match="has no direction"):
         ph.vector([bad, 0, 0]).normalized()
     values = np.ones((2, 3, 3))
@@ -120,7 +120,7 @@ def test_normalizing_what_has_no_direction(bad):
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("grades", GRADE_SETS)
 def test_inverse(grades, shape):
-    # A large first component keeps away from null elements.
+    # A large first component avoids null elements.
     eight = numbers((*shape, 8), 7)
     lead = {0: 0, 1: 1, 2: 4, 3: 7}[grades[0]]
     eight[..., lead] += 40
@@ -166,7 +166,7 @@ def test_the_error_of_a_singular_inverse_names_the_index(A):
 @pytest.mark.parametrize("name", ["inverse", "exp", "log", "sqrt"])
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("grades", GRADE_SETS)
-def test_functions_of_the_non_finite_are_errors_with_the_index(name, bad, grades):
+def test_functions_of_non_finite_values_name_the_index(name, bad, grades):
     eight = np.ones((4, 8))
     eight[:, 0] = 20
     lead = {0: 0, 1: 1, 2: 4, 3: 7}[grades[0]]
@@ -195,7 +195,7 @@ def test_powers_of_batches():
     assert np.all(A**0 == 1)
 
 
-def test_negative_powers_go_through_the_inverse():
+def test_negative_powers_use_the_inverse():
     A = 2 + e1  # inverse (2 − e1)/3
     assert (A**-2).is_close((5 - 4 * e1) / 9, rtol=16 * EPS)
     assert (2 * e1) ** -1 == e1 / 2
@@ -259,7 +259,7 @@ def test_projection_onto_a_tilted_plane():
     assert np.all(magnitude(a.project(n.undual()) - ph.vector(expected)) <= 16 * EPS * magnitude(a))
 
 
-def test_projection_onto_nothing_is_an_error():
+def test_projection_onto_zero_raises():
     with pytest.raises(ValueError, match="no direction"):
         e1.project(0 * e2)
 
@@ -298,6 +298,6 @@ def test_from_pauli_of_any_matrix():
 @pytest.mark.parametrize(
     "bad", [np.ones((3, 3)), np.ones(4), 1.0, [["a", "b"], ["c", "d"]], np.eye(2, dtype=bool)]
 )
-def test_from_pauli_refuses_other_things(bad):
+def test_from_pauli_rejects_other_arguments(bad):
     with pytest.raises(ValueError, match="from_pauli needs numeric matrices"):
         ph.from_pauli(bad)

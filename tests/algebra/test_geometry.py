@@ -1,4 +1,4 @@
-"""Parts, mirrors, axial vectors and distances between attitudes."""
+"""Projections, reflections, axial vectors and distances between attitudes."""
 
 from fractions import Fraction
 
@@ -47,11 +47,11 @@ def test_split_over_batches():
         ph.split(e1, 1 + e1)
 
 
-# --- mirrors
+# --- reflections
 
 
 @given(vectors, unit_vectors)
-def test_a_mirror_turns_what_is_across_and_keeps_what_is_along(a, n):
+def test_reflection_reverses_the_normal_and_keeps_the_plane(a, n):
     reflected = a.reflect(n)
     assert close(reflected, -n * a * n.inverse(), 32, a.norm())
     parallel, perpendicular = ph.split(a, n)
@@ -60,7 +60,7 @@ def test_a_mirror_turns_what_is_across_and_keeps_what_is_along(a, n):
 
 
 @given(values, unit_vectors)
-def test_a_mirror_of_anything(X, n):
+def test_reflection_of_any_multivector(X, n):
     assert close(X.reflect(n), n * X.grade_involution() * n.inverse(), 32, X.norm())
     assert close(X.reflect(n).reflect(n), X, 32, X.norm())
     assert X.reflect(n).grades == X.grades
@@ -68,17 +68,17 @@ def test_a_mirror_of_anything(X, n):
 
 
 @given(values, values, unit_vectors)
-def test_mirrors_respect_the_wedge(A, B, n):
+def test_reflections_respect_the_wedge(A, B, n):
     assert close(A.wedge(B).reflect(n), A.reflect(n).wedge(B.reflect(n)), 64, A.norm() * B.norm())
 
 
 @given(values, unit_vectors, unit_vectors)
-def test_two_mirrors_are_a_turn_by_twice_the_angle(X, m, n):
+def test_two_reflections_turn_by_twice_the_angle(X, m, n):
     R = ph.Rotor.from_components((n * m).components)
     assert close(X.reflect(m).reflect(n), R(X), 64, X.norm())
 
 
-def test_mirrors_by_hand():
+def test_reflections_of_basis_elements():
     assert same((e1 + e2 + e3).reflect(2 * e3), e1 + e2 - e3)
     assert same(I.reflect(e1), -I)
     assert same((e1 ^ e2).reflect(e3), e1 ^ e2)
@@ -86,13 +86,13 @@ def test_mirrors_by_hand():
     # The plane e1∧e2 as a mirror.
     assert same((e1 + 2 * e3).reflect((e1 ^ e2).dual()), e1 - 2 * e3)
     assert e1.reflect(ph.vector(np.eye(3))).shape == (3,)
-    with pytest.raises(TypeError, match=r"a vector; of a plane B it is B\.dual\(\); got e1∧e2"):
+    with pytest.raises(TypeError, match=r"a vector; for a plane B use B\.dual\(\); got e1∧e2"):
         e1.reflect(e1 ^ e2)
     with pytest.raises(ValueError, match=r"index \(1,\)"):
         e1.reflect(ph.vector([[1, 0, 0], [0, 0, 0]]))
 
 
-def test_mirrors_of_other_numbers_and_spaces():
+def test_reflections_with_other_coefficients_and_algebras():
     n, a = (ph.vector([Fraction(x, 7) for x in c]) for c in ([1, 2, 2], [3, 0, -1]))
     assert a.reflect(n).dtype == object
     assert same(a.reflect(n), a - 2 * a.dot(n) / n.norm_squared() * n)
@@ -142,7 +142,7 @@ def test_axial_vectors_of_arrays(shape):
 
 
 def exact_distance(R, S):
-    """The angle between the attitudes of these very components, to 60 digits."""
+    """The angle between the attitudes of these components, to 60 digits."""
     with mpmath.workdps(60):
         r, s = ([mpmath.mpf(float(x)) for x in X.components] for X in (R, S))
         dot = sum(x * y for x, y in zip(r, s, strict=True))
@@ -155,14 +155,14 @@ def exact_distance(R, S):
 def test_distances_are_accurate_near_0_and_pi(R, plane, angle):
     S = R * ph.Rotor.from_plane_angle(ph.bivector(plane), angle)
     found, exact = R.distance(S), exact_distance(R, S)
-    # Near 0 the difference S ∓ R is exact, and has at worst the rounding of the norms beside the angle.
+    # Near 0 the difference S ∓ R is exact; the error is at most the rounding of the norms.
     assert abs(found - exact) <= 8 * EPS * (exact + EPS)
     assert isinstance(found, float)
     assert 0 <= found <= np.pi
 
 
 @given(rotors, rotors, rotors)
-def test_distances_are_distances(Q, R, S):
+def test_distance_is_an_invariant_metric(Q, R, S):
     assert R.distance(R) == 0
     assert R.distance(-R) == 0
     assert abs(R.distance(S) - S.distance(R)) <= 16 * EPS
@@ -199,5 +199,5 @@ def test_distances_over_batches():
     # Rounding of four components, each to half of 2⁻²³.
     assert np.all(single.distance(R) <= 4 * 2.0**-23)
     assert single.distance(R).dtype == np.float64
-    with pytest.raises(TypeError, match="distance goes between rotors, got float"):
+    with pytest.raises(TypeError, match="distance needs another rotor, got float"):
         R.distance(1.0)

@@ -1,4 +1,4 @@
-"""Section 1 of the handout, the algebra: every numbered equation by its number."""
+"""Section 1 of the handout, the algebra: each numbered equation."""
 
 from itertools import permutations, product
 

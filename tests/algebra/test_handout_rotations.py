@@ -1,4 +1,4 @@
-"""Section 2 of the handout, rotations: every numbered equation by its number."""
+"""Section 2 of the handout, rotations: each numbered equation."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ ANGLES = [0.0, 1e-9, 0.3, np.pi / 2, 2.5, np.pi, 4.0, 2 * np.pi, -1.7, 9.0]
 
 
 def rotor(plane, angle):
-    """e^(−Bθ/2) straight from the exponential."""
+    """e^(−Bθ/2) by the exponential."""
     return (plane * (-angle / 2)).grade(2).exp()
 
 
@@ -48,7 +48,7 @@ def test_eq_2_3_only_the_two_sided_form_keeps_the_normal(angle):
 
 
 def rodrigues(axis, angle, v):
-    """The axis–angle formula of the textbooks, right-handed about a unit axis."""
+    """The axis–angle (Rodrigues) formula, right-handed about a unit axis."""
     along = np.sum(axis * v, axis=-1, keepdims=True) * axis
     return along + (v - along) * np.cos(angle) + np.cross(axis, v) * np.sin(angle)
 

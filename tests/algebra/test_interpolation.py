@@ -1,4 +1,4 @@
-"""Between rotors: slerp and the mean attitude."""
+"""Slerp and the mean attitude."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def test_slerp_goes_the_shorter_way_whatever_the_signs():
         for sign_b in (1, -1):
             turned = ph.slerp(a if sign_a > 0 else -a, b if sign_b > 0 else -b, 0.5)
             assert (turned(e1) - half(e1)).norm().max() <= 32 * EPS
-    # Half way is as far from both, and no farther than a quarter turn.
+    # The middle is equally far from both, at most a quarter turn.
     for other in (a, b):
         angle = (~half * other).plane_angle()[1]
         assert np.minimum(angle, 2 * np.pi - angle).max() <= np.pi / 2 + 8 * EPS
@@ -38,7 +38,7 @@ def test_slerp_broadcasts():
     assert path.shape == (5,)
     assert path[0] == start
     assert path[4].is_close(end, rtol=4 * EPS)
-    with pytest.raises(TypeError, match="between rotors"):
+    with pytest.raises(TypeError, match="slerp needs rotors"):
         ph.slerp(start, e1, 0.5)
 
 
@@ -64,7 +64,7 @@ def test_weights_pull_the_mean():
     assert ph.mean(pair, [1, 3])(e1).dot(b(e1)).components > ph.mean(pair)(e1).dot(b(e1)).components
 
 
-def test_there_may_be_no_mean():
+def test_rotors_without_a_unique_mean_raise():
     half_turns = ph.Rotor.from_components(np.eye(4))
     with pytest.raises(ValueError, match="no mean"):
         ph.mean(half_turns)
@@ -75,7 +75,7 @@ def test_there_may_be_no_mean():
 
 
 def half_turns(count, seed):
-    """Rotors, and turns by π in any planes to follow them."""
+    """Rotors, and turns by π in any planes."""
     planes = np.random.default_rng(seed).standard_normal((count, 3))
     return ph.Rotor.random(count, rng=seed), ph.Rotor.from_components(np.insert(planes, 0, 0.0, axis=-1))
 
@@ -90,7 +90,7 @@ def test_slerp_over_half_a_turn_keeps_the_sign(dtype):
     assert np.all(middle.distance(start * quarter) <= 32 * np.finfo(dtype).eps)
     back = ph.slerp(start, -(start * half), 0.5)
     assert np.all(back.distance(start * ~quarter) <= 32 * np.finfo(dtype).eps)
-    # Beyond half a turn by more than rounding the other way is shorter.
+    # Beyond half a turn, by more than rounding, the other way is shorter.
     beyond = ph.Rotor.from_plane_angle(e1 ^ e2, np.pi + 1e-6)
     assert ph.slerp(start[0], start[0] * beyond, 0.5).distance(start[0]) <= np.pi / 2
 
@@ -110,7 +110,7 @@ def foreign(name):
 
 
 @pytest.mark.parametrize("name", ["jax.numpy", "array_api_strict"])
-def test_means_stay_in_the_arrays_given(name):
+def test_means_keep_the_array_type(name):
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
         asarray = foreign(name)
@@ -119,7 +119,7 @@ def test_means_stay_in_the_arrays_given(name):
         for weights in (None, w):
             mean = ph.mean(theirs, None if weights is None else asarray(weights))
             assert type(mean.components) is type(asarray(w))
-            # Eigenvectors are known to the rounding over the gap, here a tenth of the largest value.
+            # The error of eigenvectors is the rounding over the gap, here a tenth of the largest eigenvalue.
             assert np.allclose(np.asarray(mean.components), ph.mean(rotors, weights).components, 0, 64 * EPS)
         assert type(ph.mean(rotors, asarray(w)).components) is type(asarray(w))
         with pytest.raises(ValueError, match="no mean"):
@@ -162,7 +162,7 @@ def test_derivatives_of_the_mean():
         assert np.all(np.isfinite(jax.jit(jax.jacfwd(mean))(same)))
 
 
-def test_exact_rotors_have_no_mean():
+def test_means_of_exact_rotors_raise():
     from fractions import Fraction
 
     R = ph.Rotor.from_components(np.array([[Fraction(3, 5), Fraction(4, 5), 0, 0]], dtype=object))

@@ -1,4 +1,4 @@
-"""How values are written on paper: in LaTeX for notebooks, and in a text that formulas read."""
+"""Text of values, which formulas parse, and LaTeX for notebooks."""
 
 import pydoc
 import sys
@@ -113,7 +113,7 @@ def test_linear_maps_in_latex_are_their_matrices():
     )
 
 
-def test_what_has_no_numbers_has_no_latex():
+def test_values_without_known_numbers_have_no_latex():
     jax = pytest.importorskip("jax")
     seen = []
 
@@ -126,7 +126,7 @@ def test_what_has_no_numbers_has_no_latex():
     assert ph.vector(jax.numpy.asarray([1, 0, 2]))._repr_latex_() == r"$e_{1} + 2 e_{3}$"
 
 
-def test_printing_imports_no_library():
+def test_printing_does_not_import_libraries():
     program = (
         "import sys, polhode as ph; (2 * ph.e1)._repr_latex_(), repr(ph.e1); "
         "assert not {'sympy', 'IPython', 'matplotlib'} & set(sys.modules)"
@@ -138,7 +138,7 @@ def test_printing_imports_no_library():
 @pytest.mark.parametrize(
     ("name", "tight", "method"), [("__xor__", "(a + b) ^ c", "wedge"), ("__or__", "(a + b) | c", "dot")]
 )
-def test_help_warns_of_how_python_binds_the_operators(kind, name, tight, method):
+def test_help_warns_of_operator_precedence(kind, name, tight, method):
     shown = pydoc.plain(pydoc.render_doc(getattr(kind, name)))
     assert "Python binds" in shown
     assert "looser" in shown
@@ -146,8 +146,8 @@ def test_help_warns_of_how_python_binds_the_operators(kind, name, tight, method)
     assert f"A.{method}(B)" in shown
 
 
-def test_the_warning_is_true():
-    """What the docstrings of ``^`` and ``|`` say of Python."""
+def test_operator_precedence_is_as_documented():
+    """The examples in the docstrings of ``^`` and ``|``."""
     a, b, c, B = e1 + 2 * e2, e2 - e3, 3 * e1 + e3, 2 * e2 * e3
     assert (a + b ^ c) == (a + b) ^ c != a + (b ^ c)
     assert (I * a ^ b) == (I * a) ^ b != I * (a ^ b)
@@ -155,7 +155,7 @@ def test_the_warning_is_true():
     assert (a | B * c) == a | (B * c) != (a | B) * c
 
 
-def test_operators_with_docstrings_leave_other_types_their_turn():
+def test_operators_defer_to_other_types():
     class Other:
         def __rxor__(self, left):
             return "mine"

@@ -1,4 +1,4 @@
-"""Rotors at the ends: turns near 0, π and 2π, sizes at the ends of the range, and what makes no rotor."""
+"""Limits of rotors: turns near 0, π and 2π, extreme norms, invalid arguments."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def test_plane_and_angle_over_the_double_cover(n, angle):
     assert abs(magnitude(plane) - 1) <= 4 * EPS
     assert close(ph.Rotor.from_plane_angle(plane, theta), R, 8)
     if 1e-15 < angle < 2 * np.pi - 1e-14:
-        # sin(θ/2) is what holds the plane; its rounding relative to it.
+        # The plane is scaled by sin(θ/2): rounding relative to it.
         assert abs(theta - angle) <= 8 * EPS
         assert close(plane, ph.bivector(n), 16)
 
@@ -78,7 +78,7 @@ def test_rotation_vectors(n, angle):
 
 
 @given(directions, angles)
-def test_from_matrix_also_near_half_turns(n, angle):
+def test_from_matrix_near_half_turns(n, angle):
     R = ph.Rotor.from_plane_angle(ph.bivector(n), angle)
     back = ph.Rotor.from_matrix(R.to_matrix())
     assert back.components[0] >= 0
@@ -110,7 +110,7 @@ def test_from_matrix_takes_the_nearest_rotation():
         (np.full((3, 3), 1e200), "not a rotation matrix"),
     ],
 )
-def test_from_matrix_refuses_what_is_no_rotation(bad, message):
+def test_from_matrix_rejects_other_matrices(bad, message):
     with pytest.raises(ValueError, match=message):
         ph.Rotor.from_matrix(bad)
     batch = np.broadcast_to(np.eye(3), (2, 2, 3, 3)).copy()
@@ -120,7 +120,7 @@ def test_from_matrix_refuses_what_is_no_rotation(bad, message):
 
 
 @pytest.mark.parametrize("shape", [(3,), (9,), (2, 2), (3, 4), (4, 3), ()])
-def test_from_matrix_refuses_other_shapes(shape):
+def test_from_matrix_rejects_other_shapes(shape):
     with pytest.raises(ValueError, match=r"shape \(\.\.\., 3, 3\)"):
         ph.Rotor.from_matrix(np.ones(shape))
 
@@ -138,7 +138,7 @@ def test_from_vectors(a, b, length):
 
 @given(directions, directions, st.integers(-17, -1))
 def test_from_vectors_nearly_opposite(a, other, exponent):
-    # b is −a, moved a little towards another direction.
+    # b is close to −a.
     b = unit(-a + 10.0**exponent * other)
     R = ph.Rotor.from_vectors(ph.vector(a), ph.vector(b))
     assert abs(magnitude(R) - 1) <= 4 * EPS
@@ -153,7 +153,7 @@ def test_from_vectors_exactly_opposite_and_equal(a):
 
 
 @pytest.mark.parametrize("scale", [5e-324, 1e-310, 1e-200, 1e200, 1e308])
-def test_constructors_ignore_size_at_the_ends_of_the_range(scale):
+def test_constructors_ignore_extreme_norms(scale):
     assert close(ph.Rotor.from_vectors(scale * e1, scale * e2), ph.Rotor.from_vectors(e1, e2), 4)
     assert close(
         ph.Rotor.from_plane_angle(ph.bivector([0, 0, scale]), 1.0), ph.Rotor.from_plane_angle(e12, 1.0), 4
@@ -163,7 +163,7 @@ def test_constructors_ignore_size_at_the_ends_of_the_range(scale):
 
 
 @pytest.mark.parametrize("bad", [0.0, np.nan, np.inf])
-def test_constructors_refuse_what_has_no_direction(bad):
+def test_constructors_reject_zero_and_non_finite_values(bad):
     four, three = np.ones((2, 4)), np.ones((2, 3))
     four[1], three[1] = bad, bad
     ones = ph.vector(np.ones((2, 3)))

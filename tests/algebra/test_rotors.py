@@ -1,4 +1,4 @@
-"""Rotors: unit, acting and composing over batches, converted to and fro, in the right sense; their powers."""
+"""Rotors: norm, action, composition, conversions and their sense, powers; over batches."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def test_a_long_product_of_rotors_drifts_by_its_roundings():
     assert abs(magnitude(R) - 1) <= 4 * count * EPS
     exact = ph.Rotor.from_plane_angle(ph.bivector([1.0, 2.0, -2.0]), 0.1 * count)
     assert close(R, exact, 4 * count)
-    # What acts on others acts as a unit rotor all the same.
+    # Its action is still that of a unit rotor.
     assert abs(magnitude(R(e1)) - 1) <= 16 * EPS
 
 
@@ -64,7 +64,7 @@ def test_rotor_acts_on_any_grade_as_R_X_reverse_R(grades, left, right):
 
 
 @pytest.mark.parametrize(("left", "right"), PAIRS_OF_SHAPES)
-def test_composition_turns_by_the_right_one_first(left, right):
+def test_composition_applies_the_right_rotor_first(left, right):
     S, R, X = random_rotors(left), random_rotors(right, 6), random_values((0, 1, 2, 3), ())
     SR = S * R
     assert isinstance(SR, ph.Rotor)
@@ -110,7 +110,7 @@ def test_scipy_agrees(shape):
     flat = ph.Rotor.from_components(R.components.reshape(-1, 4))
     scipys = flat.to_scipy()
     assert np.all(abs(scipys.as_matrix() - flat.to_matrix()) <= 16 * EPS)
-    turned = scipys.apply(np.array(x.components))  # SciPy takes no read-only arrays
+    turned = scipys.apply(np.array(x.components))  # SciPy rejects read-only arrays
     assert np.all(abs(turned - flat(x).components) <= 32 * EPS * magnitude(x))
     assert np.all(abs(scipys.as_rotvec() - flat.to_rotation_vector()) <= 32 * EPS * np.pi)
     assert close(ph.Rotor.from_scipy(scipys), flat, 4)
@@ -119,7 +119,7 @@ def test_scipy_agrees(shape):
     assert np.all(abs((second * first).to_matrix() - composed) <= 32 * EPS)
 
 
-# A quarter turn about z takes x to y: the sense, not just the round trip.
+# A quarter turn about z takes x to y: checks the sense, which a round trip does not.
 QUARTER = np.sqrt(0.5)
 QUARTER_TURNS = {
     "plane and angle": lambda: ph.Rotor.from_plane_angle(e12, np.pi / 2),
@@ -164,14 +164,14 @@ def test_turns_about_the_other_axes_and_their_order():
 
 
 @pytest.mark.parametrize("order", ["wzyx", "WXYZ", "", None, 4, ("w", "x", "y", "z"), "hamilton"])
-def test_bad_quaternion_orders_are_errors(order):
+def test_invalid_quaternion_orders_raise(order):
     with pytest.raises(ValueError, match="order must be"):
         ph.Rotor.from_quaternion([1, 0, 0, 0], order=order)
     with pytest.raises(ValueError, match="order must be"):
         ph.Rotor.identity().to_quaternion(order=order)
 
 
-def test_the_quaternion_order_must_be_said():
+def test_the_quaternion_order_is_required():
     with pytest.raises(TypeError, match="order"):
         ph.Rotor.from_quaternion([1, 0, 0, 0])
     with pytest.raises(TypeError, match="order"):
@@ -206,7 +206,7 @@ def test_powers_over_batches():
     assert same(one**2, one)
 
 
-def test_what_stays_a_rotor_and_what_does_not():
+def test_operations_that_return_rotors():
     R, S = random_rotors((), 17), random_rotors((), 18)
     for value in (R * S, ~R, -R, R.inverse(), R**2, R.sqrt(), R.normalized(), R.grade_involution(), R / S):
         assert isinstance(value, ph.Rotor)
@@ -217,8 +217,8 @@ def test_what_stays_a_rotor_and_what_does_not():
 
 @pytest.mark.parametrize("points", [np.ones(3), np.ones((2, 3)), [1, 2, 3], 2.0], ids=repr)
 @pytest.mark.parametrize("shape", [(), (2,)])
-def test_what_is_no_multivector_is_not_turned(points, shape):
-    # Of an array of points each number would be a scalar, which no rotation changes.
+def test_rotors_reject_other_types(points, shape):
+    # The numbers of an array of points would be scalars, which rotations do not change.
     for turn in (random_rotors(shape), random_rotors(shape).apply):
         with pytest.raises(TypeError, match=r"turns multivectors, got .*wrap arrays with ph\.vector"):
             turn(points)

@@ -1,4 +1,4 @@
-"""A smooth path through rotors: what it meets, how smooth and how accurate it is."""
+"""Splines of rotors: interpolation, smoothness and accuracy."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ lengths = st.integers(2, 40)
 seeds = st.integers(0, 2**32 - 1)
 
 
-def a_walk(n, seed, step=0.5):
+def random_walk(n, seed, step=0.5):
     """Rotors whose neighbours are about `step` radians apart, with signs at random, at uneven times."""
     rng = np.random.default_rng(seed)
     turns = ph.Rotor.from_rotation_vector(step * rng.standard_normal((n, 3)))
@@ -26,12 +26,12 @@ def a_walk(n, seed, step=0.5):
 
 
 @given(lengths, seeds)
-def test_the_path_meets_the_rotors(n, seed):
-    times, rotors = a_walk(n, seed)
+def test_the_spline_passes_through_the_rotors(n, seed):
+    times, rotors = random_walk(n, seed)
     spline = ph.RotorSpline(times, rotors)
     assert np.all(spline(times).distance(rotors) <= 16 * EPS)
     assert close(spline.rotors, spline(times), 8)
-    # It begins on the sheet of the first, and stays on it.
+    # It begins on the sheet of the first rotor and stays on it.
     assert close(spline(times[0]), rotors[0], 8)
     neighbours = (~spline.rotors[1:]).scalar_product(spline.rotors[:-1])
     assert np.all(neighbours.components >= 0)
@@ -41,22 +41,22 @@ def test_the_path_meets_the_rotors(n, seed):
 
 @given(lengths, seeds)
 def test_it_is_the_cubic_spline_of_the_components_on_the_sphere(n, seed):
-    """By SciPy's spline, whose first two derivatives are continuous; dividing by the norm keeps them so."""
-    times, rotors = a_walk(n, seed)
+    """Against SciPy's spline, whose first two derivatives are continuous, also after division by the norm."""
+    times, rotors = random_walk(n, seed)
     spline = ph.RotorSpline(times, rotors)
     cubic = CubicSpline(times, spline.rotors.components)
     t = np.linspace(times[0], times[-1], 5 * n)
     s, rate = cubic(t), cubic(t, 1)
-    # Slopes are known to some dozens of roundings of chords over steps, which are 0.5 and more.
+    # The error of slopes is some dozens of roundings of chords over steps, which are 0.5 or more.
     assert close(spline(t), ph.Rotor.from_components(s), 64)
     even = [ph.scalar(c[:, 0]) + ph.bivector(c[:, 1:]) for c in (s, rate)]
-    # R' is s'/|s| but for a part along R, and Ω_B = −2 ~R R' (handout eq. 4.13).
+    # R' is s'/|s| up to a part along R, and Ω_B = −2 ~R R' (handout eq. 4.13).
     expected = -2 * (~even[0] * even[1]).grade(2) / even[0].norm_squared()
     assert close(spline.omega_body(t), expected, 256, 1 + expected.norm())
 
 
 def test_omega_is_the_rate_of_the_rotor():
-    times, rotors = a_walk(8, 1)
+    times, rotors = random_walk(8, 1)
     spline = ph.RotorSpline(times, rotors)
     t, h = np.linspace(times[0] + 0.01, times[-1] - 0.01, 50), 1e-6
     rate = (spline(t + h) - spline(t - h)) / (2 * h)
@@ -65,8 +65,8 @@ def test_omega_is_the_rate_of_the_rotor():
 
 
 @given(lengths, seeds)
-def test_turned_rotors_have_the_turned_path(n, seed):
-    times, rotors = a_walk(n, seed)
+def test_the_spline_is_equivariant(n, seed):
+    times, rotors = random_walk(n, seed)
     Q, S = ph.Rotor.random(2, seed)
     t = np.linspace(times[0], times[-1], 30)
     turned = ph.RotorSpline(times, Q * rotors * S)(t)
@@ -82,7 +82,7 @@ def motion(n):
     return top, np.linspace(0, 20, n)
 
 
-def test_the_path_converges_to_the_motion():
+def test_the_spline_converges_to_the_motion():
     errors = []
     for n in (41, 81, 161):
         top, times = motion(n)
@@ -92,19 +92,19 @@ def test_the_path_converges_to_the_motion():
         rate_error = (spline.omega_body(t) - state.omega_body).norm().max()
         errors.append((spline(t).distance(state.rotor).max(), rate_error))
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
-    # Fourth order in the rotor and third in the rate, at the ends as well; on the way there a little less.
+    # Fourth order in the rotor and third in the rate, at the ends, too; a little less before the limit.
     assert np.all(orders[:, 0] > 3.5)
     assert np.all(orders[:, 1] > 2.6)
     assert errors[-1][0] < 1e-5
 
 
 @pytest.mark.parametrize(("step", "bound"), [(10, 2e-5), (30, 3e-3), (90, 0.7)])
-def test_a_steady_turn_is_met_closely(step, bound):
+def test_a_steady_turn_is_approximated(step, bound):
     k = np.arange(9.0)
     spline = ph.RotorSpline(k, ph.Rotor.from_euler("z", k[:, None] * step, degrees=True))
     t = np.linspace(0, 8, 200)
     exact = ph.Rotor.from_euler("z", t[:, None] * step, degrees=True)
-    # By the fourth power of the step: 3⁴ = 81 from row to row, in degrees.
+    # The error falls with the fourth power of the step: 3⁴ = 81 from row to row, in degrees.
     assert np.degrees(spline(t).distance(exact).max()) < bound
     assert close(spline(t)(e3), e3, 16)
 
@@ -120,13 +120,13 @@ def test_two_and_three_rotors():
     assert close(spline(0.4).reverse() * b, b.reverse() * spline(1.6), 16)
 
 
-def test_a_half_turn_keeps_the_signs_it_is_given():
+def test_half_turns_keep_the_given_signs():
     rotors = ph.Rotor.from_components([[1, 0, 0, 0], [0, 0, 0, 1], [-1, 0, 0, 0]])
     spline = ph.RotorSpline([0, 1, 2], rotors)
     assert np.all(spline.rotors == rotors)
 
 
-def test_shapes_and_rest():
+def test_shapes_and_text():
     spline = ph.RotorSpline([0, 1, 3], ph.Rotor.identity(3))
     assert spline(0.5).shape == ()
     assert spline([[0, 1], [2, 3]]).shape == (2, 2)
@@ -139,7 +139,7 @@ def test_shapes_and_rest():
     assert repr(spline) == "RotorSpline(3 rotors, times 0 to 3)"
 
 
-def test_bad_times_and_rotors_are_errors():
+def test_invalid_times_and_rotors_raise():
     three = ph.Rotor.identity(3)
     for bad in (ph.Rotor.identity(), ph.Rotor.identity(1), ph.Rotor.identity((2, 2)), e1, None):
         with pytest.raises(ValueError, match=r"rotors of shape \(n,\), n >= 2"):
@@ -153,9 +153,9 @@ def test_bad_times_and_rotors_are_errors():
     with pytest.raises(ValueError, match="from 7 to 14 a smooth path would swing far"):
         ph.RotorSpline([0, 2, 3, 7, 14], to_and_fro)
     spline = ph.RotorSpline([0, 1, 2], three)
-    with pytest.raises(ValueError, match=r"from 0 to 2; the time at index \(1,\) is 2\.1, outside"):
+    with pytest.raises(ValueError, match=r"the time at index \(1,\) is 2\.1; the spline goes from 0 to 2"):
         spline([1, 2.1])
-    with pytest.raises(ValueError, match="the time is -1, outside"):
+    with pytest.raises(ValueError, match="the time is -1; the spline goes from 0 to 2"):
         spline(-1)
     with pytest.raises(ValueError, match="the time is nan"):
         spline.omega_body(np.nan)

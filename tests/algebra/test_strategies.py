@@ -1,4 +1,4 @@
-"""The Hypothesis strategies: they make what they say, everywhere they should, and shrink to simple values."""
+"""The Hypothesis strategies: types, coverage of special cases, shrinking to simple values."""
 
 import sys
 
@@ -18,11 +18,11 @@ QUICK = settings(max_examples=2000, derandomize=True, database=None)
 
 
 def least(strategy, condition):
-    """What the first example of a condition shrinks to."""
+    """The smallest example of a condition."""
     return find(strategy, condition, settings=QUICK)
 
 
-# --- they make what they say
+# --- types
 
 
 @given(ga.vectors(), ga.bivectors(), ga.trivectors(), ga.scalars())
@@ -69,7 +69,7 @@ def test_rotors_are_rotors(R, S, a):
     assert min(abs(angle - k) for k in (0, np.pi, 2 * np.pi)) <= 0.1 + 1e-15
 
 
-# --- and everything that should occur does
+# --- coverage
 
 
 @pytest.mark.parametrize("grades", [(0,), (1,), (0, 2), (0, 1, 2, 3)])
@@ -123,7 +123,7 @@ def test_shrinking():
         (lambda: ga.components(float("nan")), "must be finite"),
     ],
 )
-def test_what_cannot_be_made(make, message):
+def test_invalid_arguments_raise(make, message):
     with pytest.raises(ValueError, match=message):
         make()
 
@@ -135,7 +135,7 @@ def test_the_package_does_not_import_hypothesis():
     processes.run([sys.executable, "-c", code], check=True)
 
 
-def test_the_extra_is_named(monkeypatch):
+def test_a_missing_hypothesis_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "hypothesis.strategies", None)
     monkeypatch.delitem(sys.modules, "polhode.strategies")
     with pytest.raises(

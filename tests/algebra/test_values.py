@@ -1,4 +1,4 @@
-"""How values behave: made from arrays, compared, indexed, copied and printed; and that they never change."""
+"""Values: constructors, comparison, indexing, copies, text, immutability."""
 
 import copy
 import pickle
@@ -37,7 +37,7 @@ def test_is_close_is_relative_to_the_larger_norm():
     # |A − B| = 1e-12 in a component that is zero in one of them; the norm is 1.
     assert (e1 + 1e-12 * e2).is_close(e1)
     assert (e1 + 1e-12 * I).is_close(e1)
-    assert not (1e-12 * e2).is_close(0)  # relative to itself it is far
+    assert not (1e-12 * e2).is_close(0)  # relative to its own norm it is far
     assert (1e-12 * e2).is_close(0, atol=1e-11)
     assert ph.scalar(0.0).is_close(0)
     assert not (2 * e1).is_close(e1, rtol=0.49)
@@ -45,7 +45,7 @@ def test_is_close_is_relative_to_the_larger_norm():
     assert (1e-300 * e1).is_close(1e-300 * e1 * (1 + 1e-10))
 
 
-def test_is_close_of_batches_and_the_non_finite():
+def test_is_close_of_batches_and_non_finite_values():
     A = ph.vector([[1, 0, 0], [np.nan, 0, 0], [np.inf, 0, 0], [-np.inf, 0, 0]])
     assert np.array_equal(A.is_close(A), [True, False, True, True])
     assert np.array_equal(A.is_close(-A), [False, False, False, False])
@@ -58,7 +58,7 @@ def test_is_close_at_the_end_of_the_range():
     assert not ph.vector([big, 0, 0]).is_close(ph.vector([-big, 0, 0]))
 
 
-def test_is_close_of_other_things_is_an_error():
+def test_is_close_rejects_other_types():
     with pytest.raises(TypeError, match="cannot compare a multivector with str"):
         e1.is_close("e1")
 
@@ -111,7 +111,7 @@ def test_indexing():
     ids=str,
 )
 @pytest.mark.parametrize("grades", GRADE_SETS)
-def test_what_is_picked_computes_like_any_other(index, grades):
+def test_indexed_values_compute_like_others(index, grades):
     # Whatever the memory order of the selection.
     eight = numbers((2, 3, 8), 20)
     eight[..., 0] += 40
@@ -181,7 +181,7 @@ def test_items_of_rotors_are_rotors():
 def test_float_of_a_scalar():
     assert float(ph.scalar(2.5)) == 2.5
     for value in (e1, ph.scalar([1.0, 2.0]), 1 + e1, ph.multivector([1.0, 0, 0, 0, 0, 0, 0, 0])):
-        with pytest.raises(TypeError, match="only a single scalar becomes a float"):
+        with pytest.raises(TypeError, match="only a single scalar converts to float"):
             float(value)
 
 
@@ -238,7 +238,7 @@ def test_a_mapped_value_has_coefficients():
             exact.map(f)
 
 
-def test_functions_of_numpy_do_not_take_values():
+def test_numpy_functions_reject_values():
     A, R = ph.vector(np.ones((2, 3))), ph.Rotor.identity()
     for f, *given in (
         (np.sum, A),
@@ -248,21 +248,21 @@ def test_functions_of_numpy_do_not_take_values():
         (np.stack, [e1, e2]),
         (np.linalg.norm, A),
     ):
-        with pytest.raises(TypeError, match=rf"np\.{f.__name__} does not take multivectors.*components"):
+        with pytest.raises(TypeError, match=rf"np\.{f.__name__} does not accept multivectors.*components"):
             f(*given)
 
 
-def test_in_place_operators_make_new_values():
+def test_in_place_operators_create_new_values():
     value = before = e1
     value += e2
     assert before == e1
     assert value == e1 + e2
     array = np.array([1.0, 2.0])
-    with pytest.raises(TypeError):  # it would have to become a multivector in place
+    with pytest.raises(TypeError):  # the array would have to become a multivector
         array += value
 
 
-def test_multivectors_have_no_hash_and_no_constructor():
+def test_multivectors_have_neither_hash_nor_constructor():
     with pytest.raises(TypeError, match="unhashable"):
         hash(e1)
     with pytest.raises(TypeError, match=r"use ph\.scalar, ph\.vector"):
@@ -309,7 +309,7 @@ def test_repr(value, text):
     assert str(value) == text
 
 
-# --- what the constructors take
+# --- constructors
 
 
 def test_constructors_and_their_shapes():
@@ -367,7 +367,7 @@ def test_ragged_lists_are_errors():
         ph.vector([[1, 2, 3], [1, 2]])
 
 
-def test_fortran_ordered_and_strided_input():
+def test_fortran_ordered_and_strided_arrays():
     table = numbers((5, 6), 23)
     for array in (np.asfortranarray(table[:, :3]), table[:, ::2], table.T[:3].T, table[::-1, 3:]):
         value = ph.vector(array)

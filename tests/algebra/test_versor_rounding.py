@@ -1,4 +1,4 @@
-"""Versors of any algebra as rounding leaves them: their logarithms and roots, against fifty digits."""
+"""Rounded versors of any algebra: logarithms and roots against fifty digits."""
 
 import mpmath
 import numpy as np
@@ -36,9 +36,9 @@ def exp_to_fifty_digits(A, b):
 
 
 @pytest.mark.parametrize("signature", DEGENERATE)
-def test_what_is_left_of_a_motor_that_cancels_is_rounding(signature):
+def test_parts_of_a_motor_that_cancel_are_rounding(signature):
     A = ph.algebra(*signature)
-    for far in (1.0, 1e2, 1e4):  # beside boosts below 100, the rounding of which stays below √ε
+    for far in (1.0, 1e2, 1e4):  # boosts are below 100, so their rounding is below √ε
         B = bivectors(A, 500, 1, 0.5)
         null = A.vector(np.eye(A.dimension)[-1])
         # A bivector that contains the null generator: a translation.
@@ -51,7 +51,7 @@ def test_what_is_left_of_a_motor_that_cancels_is_rounding(signature):
         assert np.all(size(one.sqrt() - 1) <= bound)
 
 
-def test_a_null_part_below_rounding_is_nothing():
+def test_null_parts_below_rounding_are_ignored():
     P = ph.algebra(3, 0, 1)
     assert (1 + 1e-17 * P.I).log() == 0
     assert (1 + 1e-17 * P.I).sqrt() == 1
@@ -64,7 +64,7 @@ def test_a_null_part_below_rounding_is_nothing():
 
 
 @pytest.mark.parametrize("name", ["log", "sqrt"])
-def test_the_bad_row_of_a_batch_is_named(name):
+def test_the_invalid_row_of_a_batch_is_named(name):
     P = ph.algebra(3, 0, 1)
     M = bivectors(P, 60, 4).exp()
     rows = np.array(M.components).reshape(3, 20, -1)
@@ -84,7 +84,7 @@ def test_logarithms_of_rounded_versors(signature, dtype):
         M = exp_to_fifty_digits(A, B.components).astype(dtype)
         log, root = M.log(), M.sqrt()
         assert log.dtype == root.dtype == dtype
-        # The components are rounded, which the logarithm magnifies by |M| at most; angles are below 1.
+        # The logarithm magnifies the rounding of components by at most |M|; angles are below 1.
         assert size(log - B) <= 16 * EPS[dtype] * size(M) ** 2
         assert size(root * root - M) <= 16 * EPS[dtype] * size(M) ** 2
 
@@ -100,7 +100,7 @@ def test_large_versors_have_logarithms(signature, dtype):
     M = 3 * M[(norms > largest / 4) & (norms < largest)].astype(dtype)
     assert len(M) > 200
     lengths = size(M) / 3
-    # M~M is known to ε|R|², and so is the size that divides M; in 32 roundings of sums of products.
+    # The errors of M~M and of the norm that divides M are ε|R|²; 32 roundings of sums of products.
     log = M.log()
     error = size(log.exp() - M) / size(M)
     assert np.all(error <= 4096 * EPS[dtype] * (1 + size(log)) + 32 * EPS[dtype] * lengths**2)
@@ -115,7 +115,7 @@ def test_single_precision_spans_subspaces():
     assert np.all(abs(along - 1) <= 64 * EPS[np.float32])
 
 
-def test_small_null_parts_do_not_make_singular():
+def test_small_null_parts_are_not_singular():
     A = ph.algebra(1, 1, 1)
     boost = A.bivector([16.0, 0, 0]).exp()
     noisy = boost + 1e-17 * A.bivector([0.0, 1, -1])

@@ -1,4 +1,4 @@
-"""Which arithmetic serves which arrays; exact stays exact; products over any coefficients; JAX pytrees."""
+"""Choice of arithmetic, exactness, products over any coefficients, JAX pytrees."""
 
 import math
 import sys
@@ -11,12 +11,13 @@ import pytest
 import naive
 import polhode as ph
 import processes
+from generic_arrays import MASKS, exact, floating, fractions, geometric_terms, of, signature_terms
 from polhode._generic import exact as elements
-from polhode._generic import layout, pytrees
+from polhode._generic import layout
 from polhode._generic.exact import Exact
 from polhode._generic.numeric import Numeric
 from polhode._generic.products import product
-from worlds import MASKS, exact, floating, fractions, geometric_terms, of, signature_terms
+from polhode._support.extras import register_pytree
 
 __all__ = ["floating"]
 F = Fraction
@@ -30,7 +31,7 @@ def test_numpy_and_python_numbers_are_native():
         assert of(*values).native
 
 
-def test_exact_coefficients_take_floats_along():
+def test_exact_coefficients_combine_with_floats():
     sympy = pytest.importorskip("sympy")
     for values in (
         (F(1, 2),),
@@ -42,7 +43,7 @@ def test_exact_coefficients_take_floats_along():
         assert isinstance(of(*values), Exact)
 
 
-def test_other_libraries_take_numpy_along(floating):
+def test_other_libraries_combine_with_numpy(floating):
     array = floating(np.ones(3))
     for values in ((array,), (np.ones(3), array), ([array[0], 1.0, array[2]],), (array, 2)):
         d = of(*values)
@@ -65,7 +66,7 @@ def test_libraries_do_not_mix():
 
 
 def test_the_missing_extra_is_named(monkeypatch):
-    """Arrays such as torch's, which follow the standard through array-api-compat."""
+    """Arrays such as torch's, which need array-api-compat."""
     tensor = type("Tensor", (), {"__module__": "torch", "dtype": None})()
     monkeypatch.setitem(sys.modules, "array_api_compat", None)
     with pytest.raises(
@@ -92,7 +93,7 @@ def test_whole_numbers_become_floats(floating):
     assert of(array).xp.isdtype(of(array).dtype, "real floating")
 
 
-def test_complex_numbers_are_refused():
+def test_complex_numbers_raise():
     jnp = pytest.importorskip("jax.numpy")
     with pytest.raises(TypeError, match=r"real numbers .* got dtype complex64"):
         of(jnp.ones(3, dtype="complex64"))
@@ -112,14 +113,14 @@ def test_sympy_and_jax_are_not_imported():
 
 
 @pytest.mark.parametrize("bad", ["x", None, True, 1j, object(), np.bool_(True), [1]])
-def test_other_elements_are_refused_with_their_index(bad):
+def test_other_elements_raise_with_their_index(bad):
     array = exact([[F(1), 2], [3, 4]])
     array[1, 0] = bad
     with pytest.raises(TypeError, match=r"coefficient at index \(1, 0\) is .*Fraction, SymPy"):
         Exact().asarray(array)
 
 
-def test_whole_floats_that_meet_exact_coefficients_are_whole_numbers():
+def test_whole_floats_beside_exact_coefficients_are_integers():
     d = Exact()
     met = d.asarray(np.array([1.0, -0.0, 0.5, 2.0**60, np.inf]))
     assert [type(x) for x in met] == [int, int, float, float, float]
@@ -177,7 +178,7 @@ def test_functions_of_multiprecision_numbers_keep_their_precision():
         d = of(x, F(1, 3))
         third = d.asarray([F(1, 3), 1])[0]
         assert abs(3 * third - 1) < mpmath.mpf(10) ** -49
-        assert abs(d.asarray([F(1, 3)])[0] - x) > 1  # fractions met by multiprecision numbers become such
+        assert abs(d.asarray([F(1, 3)])[0] - x) > 1  # fractions beside multiprecision numbers are converted
 
 
 # --- products
@@ -222,7 +223,7 @@ def test_products_of_large_algebras_are_gathered_to_the_same_numbers(floating):
     assert np.array_equal(np.asarray(product(of(x), terms, 32, x[0, ...], y)[0, ...]), expected[0])
 
 
-def test_what_fills_up_rows_is_left_out(floating):
+def test_padding_does_not_contribute(floating):
     """With generators that square to 0 components have different numbers of terms."""
     terms = signature_terms(3, 0, 2)
     a, b = np.zeros(32), np.ones(32)
@@ -252,7 +253,7 @@ def test_pytrees_are_registered_once_and_take_any_leaves():
             self.data, self.mask = data, mask
 
     def register():
-        pytrees.register(Held, lambda v: ((v.data,), v.mask), lambda mask, leaves: Held(*leaves, mask))
+        register_pytree(Held, lambda v: ((v.data,), v.mask), lambda mask, leaves: Held(*leaves, mask))
 
     register()
     register()
@@ -266,6 +267,6 @@ def test_pytrees_are_registered_once_and_take_any_leaves():
     assert jax.tree_util.tree_map(lambda _: None, gradient).data is None
 
 
-def test_nothing_is_registered_without_jax(monkeypatch):
+def test_register_pytree_without_jax_does_nothing(monkeypatch):
     monkeypatch.setitem(sys.modules, "jax", None)
-    pytrees.register(type("Other", (), {}), None, None)
+    register_pytree(type("Other", (), {}), None, None)

@@ -1,10 +1,10 @@
-"""JAX: derivatives of the functions of G3 and of rotors, above all where plain formulas divide 0 by 0."""
+"""JAX: derivatives of the functions of G3 and of rotors, above all where naive formulas divide 0 by 0."""
 
 import numpy as np
 import pytest
 
+from generic_arrays import EPS, eight_of, multiplied, native, of
 from polhode._generic import functions, layout, rotors
-from worlds import EPS, eight_of, multiplied, native, of
 
 jax = pytest.importorskip("jax")
 jnp = jax.numpy
@@ -39,7 +39,7 @@ def close(got, expected, count=16):
     return np.all(abs(np.asarray(got) - expected) <= count * EPS * (1 + np.abs(expected)))
 
 
-# --- at the singular places of the formulas
+# --- at singular points of the formulas
 
 
 @pytest.mark.parametrize("mask", [BIVECTOR, 0b0010, 0b0110, ALL])
@@ -70,7 +70,7 @@ def test_log_and_sqrt_at_one_and_minus_one(mask, s):
     curvature = second(lambda m: function("log", mask)(m)[0])(one)
     signs = np.array([-1, -1, -1, -1, 1, 1, 1, 1])[indices]
     assert close(curvature, np.diag(signs))
-    if mask == EVEN:  # of all grades it takes long to compile
+    if mask == EVEN:  # compiling it for all grades takes long
         assert np.isfinite(second(lambda m: function("sqrt", mask)(m).sum())(one)).all()
 
 
@@ -145,7 +145,7 @@ def test_compiled_and_mapped_values_are_those_computed_at_once(name):
         assert np.all(abs(np.asarray(values) - at_once) <= 8 * EPS * np.abs(at_once).max())
 
 
-def test_what_has_no_value_is_not_finite_while_traced():
+def test_undefined_values_are_not_finite_while_traced():
     singular = jnp.asarray([1.0, 1, 0, 0, 0, 0, 0, 0])
     for name in ("inverse", "log"):
         assert not np.isfinite(jax.jit(function(name, ALL))(singular)).all()
@@ -162,7 +162,7 @@ def test_float32_derivatives_stay_float32():
 
 
 def test_a_gradient_through_a_chain_of_turns():
-    """The turn that takes e1 to a target, by gradient descent from no turn at all."""
+    """The turn that takes e1 to a target, by gradient descent from the identity."""
     target = np.array([0.0, 0.6, 0.8])
 
     def distance(B):

@@ -1,4 +1,4 @@
-"""The laws of the algebra over every kind of coefficients, and that results are of that kind."""
+"""Laws of the algebra over every kind of coefficients; results keep the kind."""
 
 from fractions import Fraction
 
@@ -25,7 +25,7 @@ def plane(A):
     return A.grade(2)
 
 
-# Each gives two sides that are equal for all multivectors A, B, C; J is I in their precision.
+# Each returns two sides that are equal for all multivectors A, B, C; J is I in their precision.
 POLYNOMIAL = {
     "the product is associative": lambda A, B, C, J: (A * (B * C), (A * B) * C),
     "and distributes from the left": lambda A, B, C, J: (A * (B + C), A * B + A * C),
@@ -132,7 +132,7 @@ OPERATIONS = {
 
 @pytest.mark.parametrize("grades", [(1,), (0, 2), (0, 1, 2, 3)], ids=str)
 @pytest.mark.parametrize("name", OPERATIONS)
-def test_results_are_of_the_kind_and_have_the_grades_of_floats(kind, name, grades):
+def test_results_keep_the_kind_and_the_grades_of_floats(kind, name, grades):
     numbers = halves((8,), 7)
     result = kind.evaluate(OPERATIONS[name], kind.value(numbers, grades), kind.own(e2))
     assert type(result) is ph.Multivector
@@ -144,7 +144,7 @@ def test_results_are_of_the_kind_and_have_the_grades_of_floats(kind, name, grade
 
 @pytest.mark.parametrize("grades", GRADE_SETS, ids=str)
 def test_products_are_those_of_floats(kind, grades):
-    """Numbers that all kinds hold alike; the products of floats are held to the oracle elsewhere."""
+    """Numbers that all kinds hold exactly; products of floats are compared with the oracle elsewhere."""
     numbers = [halves((8,), seed) for seed in (8, 9)]
     if kind.name == "sympy":
         pytest.skip("symbols have no numbers")
@@ -226,7 +226,7 @@ def test_exp_and_log_of_bivectors(kind):
 
 
 @pytest.mark.parametrize("kind", [*ROUNDING, "mpmath"], indirect=True)
-def test_a_rotor_is_its_two_sided_product(kind):
+def test_a_rotor_acts_as_its_two_sided_product(kind):
     B, X = kind.random(5, (4, 1), (2,)), kind.random(6, (3,))
     R = (B / 8).exp()
     size = 9 * 8**0.5
@@ -290,7 +290,7 @@ def test_converters_of_rotors(kind):
     )
 
 
-def test_a_symbolic_rotor_turns_as_rodrigues_says():
+def test_a_symbolic_rotor_satisfies_rodrigues_formula():
     theta = sympy.Symbol("theta", real=True)
     R = ph.Rotor.from_plane_angle(e1.wedge(e2), theta)
     assert (R * ~R).map(sympy.simplify) == 1
@@ -347,7 +347,7 @@ def test_text(kind):
     assert "…" in batch
 
 
-def test_indexing_picks_what_numpy_picks(kind):
+def test_indexing_matches_numpy(kind):
     numbers = halves((2, 3, 8), 13)
     A = kind.value(numbers)
     for index in (0, -1, (1, 2), slice(1, None), (..., 0), (None, 1), (slice(None), slice(0, 3, 2)), ()):
@@ -403,7 +403,7 @@ def test_large_whole_numbers_are_rounded_beside_floats(kind):
 
 
 @pytest.mark.parametrize("kind", ROUNDING, indirect=True)
-def test_closeness_at_the_ends_of_the_range(kind):
+def test_is_close_at_the_ends_of_the_range(kind):
     A = kind.random(14, (2,))
     for size in (2.0**100, 2.0**-100):  # their squares are beyond the range of single precision
         large = A * size

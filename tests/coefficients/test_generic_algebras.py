@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from generic_arrays import EPS, difference, floating, fractions, native, of, one_of, signature_terms
 from polhode._generic import algebras
 from polhode._generic.exact import Exact
 from polhode._generic.products import product
-from worlds import EPS, difference, floating, fractions, native, of, one_of, signature_terms
 
 __all__ = ["floating"]
 SIGNATURES = [
@@ -70,7 +70,7 @@ def test_singular_values_are_errors_with_the_index(floating):
 
 
 def series(terms, m):
-    """exp by its plain series."""
+    """exp by its power series."""
     total = power = np.eye(m.size)[0]
     for k in range(1, 60):
         power = product(of(1.0), terms, m.size, power, m) / k
@@ -90,7 +90,7 @@ def test_exp_against_its_series(signature, size, floating):
         blades = [i for i in range(1 << n) if grades[i] in held]
         got = algebras.exp(of(x), terms, blades, x)
         norm = abs(data).sum()
-        # 60 terms below e^|M| each, and the squarings double what was rounded, up to 4|M| in all.
+        # 60 terms below e^|M| each, and the squarings double the rounding error, up to 4|M| in all.
         assert difference(got, series(terms, data)) <= 64 * EPS * (1 + 4 * norm) * np.exp(norm)
 
 
@@ -150,7 +150,7 @@ def test_traced_by_jax(signature):
         assert np.all(difference(one, one_of(one)) <= 64 * 2.0**n * EPS)
 
 
-def test_derivatives_of_exp_lead_off_simple_bivectors():
+def test_derivatives_of_exp_leave_simple_bivectors():
     """d/dε exp(e12 + ε e34) at 0 is e34 exp(e12), which has a part in e1234."""
     jax = pytest.importorskip("jax")
     terms = signature_terms(4, 0, 0)
@@ -171,8 +171,8 @@ def test_derivatives_of_exp_lead_off_simple_bivectors():
 
 
 @pytest.mark.parametrize("signature", [(3, 0, 1), (2, 0, 2), (1, 3, 1)])
-def test_far_translations_leave_the_turns_alone(signature):
-    """The core scales null generators; so must this, or 1e6 costs six digits and 1e150 is out of range."""
+def test_large_translations_keep_the_accuracy_of_turns(signature):
+    """Without scaled null generators, as in the core, 1e6 costs six digits and 1e150 is out of range."""
     A = ph.algebra(*signature)
     n, r = A.dimension, signature[2]
     null = np.array([bits >> (n - r) != 0 for bits, _ in A._blades()])

@@ -1,4 +1,4 @@
-"""inverse, exp, log, sqrt over other coefficients: the core's numbers, exact and symbolic identities."""
+"""inverse, exp, log, sqrt over other coefficients: against the core, exact and symbolic identities."""
 
 from fractions import Fraction
 
@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
-from polhode._generic import functions, layout
-from polhode._generic.exact import Exact
-from worlds import (
+from generic_arrays import (
     EPS,
     MASKS,
     difference,
@@ -22,6 +20,8 @@ from worlds import (
     of,
     one_of,
 )
+from polhode._generic import functions, layout
+from polhode._generic.exact import Exact
 
 __all__ = ["floating"]
 F = Fraction
@@ -175,7 +175,7 @@ ERRORS = [
 
 
 @pytest.mark.parametrize(("name", "mask", "value", "message"), ERRORS)
-def test_what_has_no_value_is_an_error_with_the_index(name, mask, value, message, floating):
+def test_undefined_values_raise_with_the_index(name, mask, value, message, floating):
     one = floating(np.array(value))
     with pytest.raises(ValueError, match=f"^[^(]*{message}"):
         call(name, of(one), one, mask)
@@ -207,7 +207,7 @@ def test_inverses_of_fractions_are_exact(mask):
     assert all(isinstance(x, int | F) for x in inverse.flat)
 
 
-def test_whole_numbers_divide_to_fractions():
+def test_quotients_of_integers_are_fractions():
     d = Exact()
     inverse, _ = functions.inverse(d, d.asarray([1, 2, 3, 4]), EVEN)
     assert list(inverse) == [F(1, 30), F(-1, 15), F(-1, 10), F(-2, 15)]
@@ -240,7 +240,7 @@ def test_functions_of_fractions_are_near_those_of_the_core(name, mask):
 
 
 @pytest.mark.parametrize(("name", "mask", "value", "message"), ERRORS[:5])
-def test_exact_values_without_a_value_are_errors_with_the_index(name, mask, value, message):
+def test_undefined_exact_values_raise_with_the_index(name, mask, value, message):
     d = Exact()
     one = d.asarray(np.array(value))
     with pytest.raises(ValueError, match=f"^{message}"):

@@ -1,4 +1,4 @@
-"""Rotors over other coefficients: the compiled core's numbers, and exact rational rotations."""
+"""Rotors over other coefficients: against the compiled core, and exact rational rotations."""
 
 from fractions import Fraction
 
@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from generic_arrays import EPS, difference, exact, floating, of
 from polhode import _native
 from polhode._generic import functions, rotors
 from polhode._generic.exact import Exact
-from worlds import EPS, difference, exact, floating, of
 
 __all__ = ["floating"]
 F = Fraction
@@ -17,7 +17,7 @@ BIVECTOR = 0b0100
 
 
 def quaternions(seed, count=40):
-    """Unit components over the whole double cover, near ±1 and near half turns too."""
+    """Unit components over the whole double cover, also near ±1 and near half turns."""
     rng = np.random.default_rng(seed)
     c = rng.standard_normal((count, 4))
     c[10:20, 1:] *= 10.0 ** rng.uniform(-12, -1, (10, 1))
@@ -79,7 +79,7 @@ def test_rotors_act_on_any_grades(left, right, floating):
         assert np.all(abs(np.asarray(got) - core) <= 32 * EPS * (1 + abs(core).max(initial=0)))
 
 
-def test_from_vectors_also_when_opposite(floating):
+def test_from_vectors_of_opposite_vectors(floating):
     rng = np.random.default_rng(5)
     a = rng.standard_normal((30, 3))
     b = rng.standard_normal((30, 3))
@@ -97,7 +97,7 @@ def test_from_vectors_also_when_opposite(floating):
     assert np.all(difference(turned, units[0]) <= 32 * EPS * np.linalg.norm(a, axis=-1))
 
 
-def test_the_nearest_rotation_is_taken(floating):
+def test_from_matrix_returns_the_nearest_rotation(floating):
     noisy = _native.rotor_to_matrix(quaternions(6)).reshape(-1, 9) + 1e-5 * np.random.default_rng(7).uniform(
         -1, 1, (40, 9)
     )
@@ -108,7 +108,7 @@ def test_the_nearest_rotation_is_taken(floating):
 @pytest.mark.parametrize(
     ("make", "bad", "message"),
     [
-        (rotors.from_components, np.zeros(4), "no rotor"),
+        (rotors.from_components, np.zeros(4), "not a rotor"),
         (rotors.from_components, np.full(4, np.nan), "NaN or infinite"),
         (lambda d, x: rotors.from_plane_angle(d, x, x[..., 0]), np.zeros(3), "spans no plane"),
         (lambda d, x: rotors.from_vectors(d, x, x), np.zeros(3), "no direction"),
@@ -116,7 +116,7 @@ def test_the_nearest_rotation_is_taken(floating):
         (rotors.from_matrix, np.diag([1.0, 1, -1]), "reflection"),
     ],
 )
-def test_what_is_no_rotor_is_an_error_with_the_index(make, bad, message, floating):
+def test_invalid_rotors_raise_with_the_index(make, bad, message, floating):
     good = np.eye(3) if bad.ndim == 2 else np.ones_like(bad)
     x = floating(np.stack([good, bad]))
     with pytest.raises(ValueError, match=rf"at index \(1,\): .*{message}"):

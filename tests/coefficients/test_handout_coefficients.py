@@ -1,6 +1,6 @@
 """Sections 1 and 2 of the handout over floats, fractions, symbols, multiprecision numbers and JAX arrays.
 
-What `test_handout_algebra` and `test_handout_rotations` say for floats, by the same numbers.
+The equations of `test_handout_algebra` and `test_handout_rotations`, which use floats.
 """
 
 from fractions import Fraction
@@ -20,7 +20,7 @@ turning = pytest.mark.parametrize("kind", TURNING, indirect=True)
 
 @pytest.fixture
 def basis(kind):
-    """e1, e2, e3 with coefficients of the kind; for symbols numbers of SymPy."""
+    """e1, e2, e3 with coefficients of the kind; SymPy numbers for symbols."""
     rows = np.frompyfunc(lambda x: Fraction(int(x)), 1, 1)(np.eye(3, dtype=int))
     if kind.name == "int":
         rows = rows / 2  # that kind doubles
@@ -268,5 +268,5 @@ def test_eq_4_10_the_derivative_of_a_rotor_with_jax():
         assert np.allclose(rate, (-0.5 * omega * R).components, rtol=0, atol=8 * 2.0**-52)
 
 
-def test_halves_are_what_the_kinds_share():
+def test_halves_are_exact_in_all_kinds():
     assert set(np.unique(2 * halves((1000,), 1))) == {*range(-9, 0), *range(1, 10)}

@@ -1,4 +1,4 @@
-"""Numbers, arrays and values of different kinds together: which kind results, from either side."""
+"""Arithmetic of numbers, arrays and values of different kinds, on either side."""
 
 import copy
 import operator
@@ -64,13 +64,13 @@ def test_small_integers_do_not_overflow():
     assert -ph.scalar(np.uint8(1)) == -1
 
 
-def test_whole_numbers_that_meet_floats_become_floats_whatever_their_size():
+def test_integers_beside_floats_become_floats():
     big = 2**53 + 1
     for number in (big, np.int64(big), np.array(big), np.array([big])):
         for result in (number * e1, e1 * number, e1 + number, number - e1):
             assert result.dtype == np.float64
     assert np.all(np.array([big]) * e1 == float(big) * e1)
-    # By themselves they are exact.
+    # Without floats they are exact.
     assert ph.scalar(big).dtype == object
     assert ph.vector(np.array([2**64 - 1, 0, 0], np.uint64)) == (2**64 - 1) * ph.vector(
         [1, 0, 0], dtype=object
@@ -81,7 +81,7 @@ def test_whole_numbers_that_meet_floats_become_floats_whatever_their_size():
         10**400 * e1
 
 
-def test_single_precision_meets_others_as_in_numpy():
+def test_single_precision_is_promoted_as_in_numpy():
     a = ph.vector(np.array([1, 2, 3], np.float32))
     for number in (2, 2.5, np.float32(2)):
         for result in (number * a, a * number, a / number, a + number, number - a, a ^ number, number / a):
@@ -157,7 +157,7 @@ def test_changed_components_are_coefficients():
         a.astype(object).map(str)
 
 
-def test_a_number_beyond_single_precision_is_told():
+def test_overflow_of_single_precision_warns():
     a = ph.vector(np.array([1, 2, 3], np.float32))
     with pytest.warns(RuntimeWarning, match="overflow"):
         assert np.isinf((a * 1e300).components).all()
@@ -195,7 +195,7 @@ def test_a_number_beyond_single_precision_is_told():
     ids=lambda value: type(value).__name__,
 )
 @pytest.mark.parametrize("operate", [*OPERATORS, operator.truediv])
-def test_other_things_are_type_errors_from_either_side(bad, operate):
+def test_other_types_raise_on_either_side(bad, operate):
     for A in (e1, ph.vector(np.ones((2, 3))), ph.vector([F(1, 2), 0, 0]), ph.algebra(2).scalar(1)):
         with pytest.raises(TypeError):
             operate(A, bad)
@@ -206,7 +206,7 @@ def test_other_things_are_type_errors_from_either_side(bad, operate):
 @pytest.mark.parametrize(
     "bad", [np.ma.array([1.0, 2, 3], mask=[0, 1, 0]), np.ma.array([[1.0, 2, 3]])], ids=repr
 )
-def test_masked_arrays_are_refused(bad):
+def test_masked_arrays_raise(bad):
     with pytest.raises(TypeError, match="masked array; fill it"):
         ph.vector(bad)
     with pytest.raises(TypeError):
@@ -361,7 +361,7 @@ def test_jax_keeps_its_default_precision():
         assert value.dtype == np.float32
 
 
-def test_shapes_without_numbers_have_a_text(jnp):
+def test_traced_values_have_a_repr(jnp):
     import jax
 
     text = repr(jax.eval_shape(lambda v: v * v, ph.vector(jnp.ones((2, 3)))))
@@ -408,7 +408,7 @@ def test_dask_arrays_stay_lazy_and_give_the_same():
         assert np.allclose(np.asarray(got.components), expected.components, rtol=0, atol=64 * 2.0**-52 * 12)
 
 
-# --- nothing changes what others hold
+# --- aliasing
 
 
 def test_values_do_not_share_the_arrays_of_other_libraries():
@@ -421,7 +421,7 @@ def test_values_do_not_share_the_arrays_of_other_libraries():
     assert float(values[1].components[0, 0]) == 1
 
 
-def test_no_operation_changes_its_operands():
+def test_operations_do_not_change_their_operands():
     arrays = [np.arange(1.0, 9.0), np.array([F(1, k) for k in range(1, 9)], dtype=object)]
     for array in arrays:
         A = ph.multivector(array)

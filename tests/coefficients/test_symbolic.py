@@ -1,13 +1,13 @@
-"""The algebra over SymPy expressions: what comes out is what stands in the handout."""
+"""The algebra over SymPy expressions: results are the formulas of the handout."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
+from generic_arrays import eight_of, multiplied, native, of, signature_terms
 from polhode._generic import algebras, functions, layout, rotors
 from polhode._generic.products import product
-from worlds import eight_of, multiplied, native, of, signature_terms
 
 sympy = pytest.importorskip("sympy")
 t, s = sympy.symbols("t s", positive=True)
@@ -80,7 +80,7 @@ def test_log_undoes_exp():
 @pytest.mark.parametrize("name", ["inverse", "exp", "log", "sqrt"])
 @pytest.mark.parametrize("mask", range(1, 16))
 def test_functions_of_any_symbols_are_those_of_the_core(name, mask):
-    """Of symbols whose values are only then put in."""
+    """With symbols, for which the values are substituted afterwards."""
     numbers = dict(zip("abcdefgh", (0.7, -1.1, 0.4, 0.9, 0.3, -0.8, 1.3, 0.6), strict=True))
     all8 = np.array([sympy.Symbol(name, real=True) for name in numbers], dtype=object)
     symbol = all8[layout.indices(mask)]
@@ -141,7 +141,7 @@ def test_a_symbolic_turn():
     assert np.allclose(at(rotors.to_rotation_vector(d, R), x=4.0), [0, 0, 4.0 - 2 * np.pi])
 
 
-def test_what_vanishes_is_found_without_proof():
+def test_vanishing_expressions_are_found_numerically():
     f = sympy.Function("f")
     d = of(t)
     R = d.asarray([sympy.cos(f(t)), 0, 0, sympy.sin(f(t))])

@@ -1,4 +1,4 @@
-"""The product of blades in any signature, as slowly and plainly as it can be written: an oracle.
+"""Oracle: products of blades in any signature, written as plainly as possible.
 
 A blade is a set of generators, the bits of a number, in rising order. It shares nothing with the package but
 the order of the components: by grade, then by rising generators; e2e3, e3e1, e1e2 where there are three.
@@ -92,7 +92,7 @@ def product(name, table, a, b):
 
 
 def places(n, grades):
-    """Which components have these grades."""
+    """The places of the components of these grades."""
     return [k for k, blade in enumerate(basis(n)) if len(blade) in grades]
 
 

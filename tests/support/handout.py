@@ -1,4 +1,4 @@
-"""What the tests of the handout share: its names for the basis, and batches of values to hold equations to.
+"""Names of the handout and batches of values, shared by its tests.
 
 Integer components make float arithmetic exact, so most equations hold with `==`. Where exponentials
 enter, EPS counts roundings: a rotor's components carry about 2 eps, a product of it with a vector sums

@@ -1,4 +1,4 @@
-"""Every equation of the handout as it stands there, in the order of the handout.
+"""Every equation of the handout, in its notation and order.
 
 The vector cross product, there a bold x, is ⨯; what is called parallel, a vector or a bivector is written as
 an equation; an integral over a body is the sum over three points. Beside each stands a wrong version: a sign,

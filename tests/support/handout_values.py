@@ -1,4 +1,4 @@
-"""What the names in the handout's equations stand for, values that make them true, over four kinds.
+"""Values of the names in the handout's equations, over four kinds of numbers.
 
 Where an equation defines a name, its value is found in another way: by components, from a matrix, by sine and
 cosine. Rotors are rational where the numbers are, so that all but exponentials holds exactly.
@@ -99,7 +99,7 @@ class Numbers:
         return cos(angle / 2) - plane * sin(angle / 2)
 
     def whole(self, count):
-        """The same, but whole where they are exact: a map's matrix is of floats, and whole ones are exact."""
+        """The same, but whole if exact: the matrix of a map holds floats, and whole floats are exact."""
         if not self.exact:
             return self.numbers(count)
         return np.array([Fraction(int(n)) for n in self._signed(self._rng.integers(1, 10, count))])
@@ -285,7 +285,7 @@ def two_turns(v):
 
 
 def _moments(v):
-    """Three different moments; a map's matrix is of floats, and whole floats are exact."""
+    """Three different moments, whole if exact: the matrix of a map holds floats."""
     return tuple(map(v.exactly, (5, 7, 11))) if v.exact else tuple(1 + abs(x) for x in v.each(3))
 
 

@@ -1,4 +1,4 @@
-"""Kinds of coefficients, each of which the same laws are held to.
+"""Kinds of coefficients for tests of the same laws.
 
 All numbers are halves of small whole numbers, so that sums of triple products are exact in every kind, also
 in single precision, and polynomial laws hold with `==`. A kind makes values of such numbers, evaluates
@@ -28,7 +28,7 @@ def halves(shape, seed):
 
 @dataclass(frozen=True)
 class Kind:
-    """Floats of NumPy; the others differ where they override."""
+    """Floats of NumPy; the base class of the other kinds."""
 
     name: str
     dtype: Any = np.float64
@@ -45,7 +45,7 @@ class Kind:
         return type(data) is np.ndarray and data.dtype == self.dtype
 
     def floats(self, data):
-        """As float64, to look at."""
+        """The values as float64."""
         return np.asarray(data, dtype=np.float64)
 
     def equal(self, x, y):
@@ -160,7 +160,7 @@ def _multiprecision():
 
 def _jax(**options):
     jnp = pytest.importorskip("jax.numpy")
-    ph.scalar(jnp.asarray(1.0))  # values made behind the constructors' back are known to JAX, too
+    ph.scalar(jnp.asarray(1.0))  # also registers values made without the constructors
     return Library("jax", module=jnp, **options)
 
 

@@ -1,4 +1,4 @@
-"""The algebra of 3-d space as slowly and plainly as it can be written: the oracle of the tests.
+"""Oracle: the algebra of 3-d space, written as plainly as possible.
 
 A blade is the tuple of its generators in rising order, `(1, 3)` for e1e3; a multivector is a dict from
 blades to coefficients of any kind of number. It shares nothing with the package but the component order.
@@ -20,7 +20,7 @@ GRADE_SETS = [tuple(k for k in GRADES if mask >> k & 1) for mask in range(1, 16)
 def sort_generators(generators):
     """Return the sign and the blade of a product of generators.
 
-    Different neighbours anticommute, equal ones are 1: swap and strike out until the list rises.
+    Different neighbours anticommute, equal ones are 1: swap and delete until the list rises.
     """
     sign, rest = 1, list(generators)
     i = 0

@@ -1,4 +1,4 @@
-"""Samples to hold laws to, of all kinds of values and batch shapes, near-singular ones among them.
+"""Samples of values and rotors in all batch shapes, near-singular ones among them.
 
 Whole components make the polynomial laws exact. Where rounding enters, the allowance is a count of
 roundings times EPS times the size of what is summed; the count is stated where it is used.

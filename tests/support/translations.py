@@ -19,7 +19,7 @@ CANONICAL = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111]
 
 @dataclass(frozen=True)
 class Line:
-    """A line of a table: the equation `theirs = ours`; `theirs` is None where they have no such thing."""
+    """A line of a table: the equation `theirs = ours`; `theirs` is None if they lack it."""
 
     operation: str
     theirs: str | None
@@ -42,7 +42,7 @@ def lines(text):
 
 
 def expression(cell):
-    """What stands between the backticks, which are all of the cell."""
+    """The text between the backticks, which enclose the whole cell."""
     return re.fullmatch(r"`([^`]*)`", cell)[1]
 
 

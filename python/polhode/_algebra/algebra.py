@@ -1,4 +1,4 @@
-"""The geometric algebra of any signature: its basis and the constructors of its values."""
+"""Geometric algebras of any signature: basis, constructors and tables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from polhode._algebra.native import joins
 class Algebra(_native.Algebra):
     """The geometric algebra Cl(p, q, r): p generators square to +1, q to −1, r to 0, in this order.
 
-    Made by `algebra`. The basis is ordered by grade, then by rising generators (``e1e2, e1e3, …``); with
+    Created by `algebra`. The basis is ordered by grade, then by rising generators (``e1e2, e1e3, …``); with
     three generators the bivectors are ``e2e3, e3e1, e1e2``. `I` is the product of all generators.
     """
 
@@ -64,29 +64,29 @@ class Algebra(_native.Algebra):
     # --- constructors
 
     def scalar(self, x: Any, *, dtype: Any = None) -> Multivector:
-        """Scalars from numbers; an array of shape S is a batch of shape S."""
+        """Create scalars from numbers; an array of shape S is a batch of shape S."""
         return self._single(x, "scalar", 0, dtype)
 
     def vector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Vectors from an array (..., n) over the generators."""
+        """Create vectors from an array (..., n) over the generators."""
         return self._of_grade(components, "vector", 1, dtype, copy)
 
     def bivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order."""
+        """Create bivectors from an array (..., n(n−1)/2) over the basis bivectors in their order."""
         return self._of_grade(components, "bivector", 2, dtype, copy)
 
     def k_vector(self, k: int, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Values of grade k from an array (..., n over k)."""
+        """Create values of grade k from an array (..., n over k)."""
         if operator.index(k) not in range(self.dimension + 1):
             raise ValueError(f"{self} has grades 0 to {self.dimension}, got {k}")
         return self._of_grade(components, f"{k}-vector", k, dtype, copy)
 
     def pseudoscalar(self, x: Any, *, dtype: Any = None) -> Multivector:
-        """Multiples of I from numbers; an array of shape S is a batch of shape S."""
+        """Create multiples of I from numbers; an array of shape S is a batch of shape S."""
         return self._single(x, "pseudoscalar", self.dimension, dtype)
 
     def multivector(self, components: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
-        """Multivectors from an array (..., 2**n) over the whole basis."""
+        """Create multivectors from an array (..., 2**n) over the whole basis."""
         return self._wrapped(components, "multivector", self.size, self._all, dtype, copy)
 
     def _single(self, x: Any, what: str, grade: int, dtype: Any) -> Multivector:
@@ -95,7 +95,7 @@ class Algebra(_native.Algebra):
 
     def _of_grade(self, components: Any, what: str, k: int, dtype: Any, copy: bool) -> Multivector:
         if k > self.dimension:
-            raise ValueError(f"{self} has grades 0 to {self.dimension}, no {what}")
+            raise ValueError(f"{self} has grades 0 to {self.dimension}; it has no {what}")
         return self._wrapped(components, what, math.comb(self.dimension, k), 1 << k, dtype, copy)
 
     def _wrapped(
@@ -116,7 +116,7 @@ class Algebra(_native.Algebra):
             data = data.view()
         return Multivector._of(data, mask, self)
 
-    # --- what values ask
+    # --- tables that values use
 
     @property
     def _all(self) -> int:
@@ -124,32 +124,54 @@ class Algebra(_native.Algebra):
         return (1 << self.dimension + 1) - 1
 
     @property
+    @functools.cache  # noqa: B019  # algebras live as long as the process
     def _grade_of(self) -> np.ndarray[Any, np.dtype[np.int64]]:
         """The grade of each basis element."""
-        return _grade_of(self)
+        return np.array([bits.bit_count() for bits, _ in self._blades()])
 
+    @functools.cache  # noqa: B019
     def _names(self, mask: int) -> tuple[str, ...]:
         """Return the names of the basis elements of some grades; that of the scalar is empty."""
-        return _names(self, mask)
+        blades = self._blades()
+        return tuple(_name(*blades[i], self.dimension) for i in self._indices(mask))
 
+    @functools.cache  # noqa: B019
     def _reverse_squares(self, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
-        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0; small, so float32 stays so."""
-        return _reverse_squares(self, mask)
+        """Return ``E ~E`` of the basis elements of some grades: 1, −1 or 0, as int8 so that float32 stays."""
+        signs = np.zeros(len(self._indices(mask)), dtype=np.int8)
+        terms, _ = self._terms("scalar", mask, mask)
+        grades = self._grade_of[self._indices(mask)]
+        for a, _b, _out, sign in terms:
+            signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
+        return signs
 
+    @functools.cache  # noqa: B019
     def _complement(self, right: bool) -> list[tuple[int, float]]:
-        """Return where each basis element goes by the right or left complement, and with which sign."""
-        return _complement(self, right)
+        """Return the place and sign of each basis element's right or left complement."""
+        images = self._right_complement()
+        if right:
+            return images
+        inverse = [(0, 0.0)] * len(images)
+        for i, (place, sign) in enumerate(images):
+            inverse[place] = (i, sign)
+        return inverse
 
+    @functools.cache  # noqa: B019
     def _inverse_of_I(self) -> Multivector:
-        return _inverse_of_pseudoscalar(self)
+        square = float((self.I * self.I).grade(0))
+        if not square:
+            raise TypeError(
+                f"I has no inverse in {self}, whose metric is degenerate; use right_complement for dual"
+            )
+        return self.I / square
 
 
 def algebra(p: int, q: int = 0, r: int = 0) -> Algebra:
     """Return the algebra Cl(p, q, r) of at most 8 generators: the same object for the same signature.
 
-    ``algebra(3)`` is that of 3-d space, to which `vector`, `e1` and the rest belong. ``algebra(3, 0, 1)``
-    is the plane-based one of Euclidean space, whose null generator comes last, ``e4``;
-    ``algebra(4, 1)`` the conformal one; ``algebra(1, 3)`` that of space-time.
+    ``algebra(3)`` is the algebra of 3-d space, to which `vector`, `e1` and the others belong;
+    ``algebra(3, 0, 1)`` the plane-based algebra of Euclidean space, with the null generator ``e4`` last;
+    ``algebra(4, 1)`` the conformal algebra; ``algebra(1, 3)`` the algebra of space-time.
     """
     for count in (p, q, r):
         if not hasattr(count, "__index__"):
@@ -168,51 +190,9 @@ def _algebra(p: int, q: int, r: int) -> Algebra:
     return _native.Algebra(p, q, r)  # type: ignore[return-value]
 
 
-@functools.cache
-def _grade_of(algebra: Algebra) -> np.ndarray[Any, np.dtype[np.int64]]:
-    return np.array([bits.bit_count() for bits, _ in algebra._blades()])
-
-
-@functools.cache
-def _names(algebra: Algebra, mask: int) -> tuple[str, ...]:
-    blades = algebra._blades()
-    return tuple(_name(*blades[i], algebra.dimension) for i in algebra._indices(mask))
-
-
 def _name(bits: int, sign: int, dimension: int) -> str:
     if bits.bit_count() == dimension and dimension > 1:
         return "I"
     generators = [f"e{i + 1}" for i in range(dimension) if bits >> i & 1]
-    # The only basis element against the rising order is e3∧e1.
+    # e3∧e1 is the only basis element not in rising order.
     return "∧".join(generators if sign > 0 else reversed(generators))
-
-
-@functools.cache
-def _reverse_squares(algebra: Algebra, mask: int) -> np.ndarray[Any, np.dtype[np.int8]]:
-    signs = np.zeros(len(algebra._indices(mask)), dtype=np.int8)
-    terms, _ = algebra._terms("scalar", mask, mask)
-    grades = _grade_of(algebra)[algebra._indices(mask)]
-    for a, _b, _out, sign in terms:
-        signs[a] = -sign if grades[a] % 4 in (2, 3) else sign
-    return signs
-
-
-@functools.cache
-def _complement(algebra: Algebra, right: bool) -> list[tuple[int, float]]:
-    images = algebra._right_complement()
-    if right:
-        return images
-    inverse = [(0, 0.0)] * len(images)
-    for i, (place, sign) in enumerate(images):
-        inverse[place] = (i, sign)
-    return inverse
-
-
-@functools.cache
-def _inverse_of_pseudoscalar(algebra: Algebra) -> Multivector:
-    square = float((algebra.I * algebra.I).grade(0))
-    if not square:
-        raise TypeError(
-            f"I has no inverse in {algebra}, whose metric is degenerate; use right_complement for dual"
-        )
-    return algebra.I / square

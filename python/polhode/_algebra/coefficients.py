@@ -1,4 +1,4 @@
-"""From what people pass to arrays of coefficients: floats, exact numbers, expressions, foreign arrays."""
+"""Convert arguments to arrays of coefficients: floats, exact numbers, expressions, arrays of any library."""
 
 from __future__ import annotations
 
@@ -11,23 +11,24 @@ import numpy as np
 
 from polhode import _generic, _native
 from polhode._support.arrays import as_floats, is_float
+from polhode._support.extras import register_pytree
 
 _PLAIN = {int, float, bool, complex, str, bytes, type(None)}
 
 
 def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
-    """Return an array of coefficients: of floats where they are enough, else of the kind that they are.
+    """Convert values to an array of coefficients, of floats if these are exact.
 
-    NumPy's float32 and float64 stay as they are. Other real numbers become float64, but integers that float64
-    cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other libraries stay
-    theirs. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
+    NumPy's float32 and float64 are unchanged. Other real numbers become float64, but integers that float64
+    cannot hold stay exact, as do arrays of objects, fractions and expressions. Arrays of other libraries are
+    unchanged. `dtype` converts: ``float``, ``np.float32``, or ``object`` for exact numbers.
     """
     if isinstance(values, _native.Multivector):
         raise TypeError(f"{what} must be real numbers, got a multivector; pass its .components")
     if dtype is not None:
         return _converted(values, what, dtype)
     if isinstance(values, np.ndarray) and hasattr(values, "mask"):
-        raise TypeError(f"{what} is a masked array; fill it, or take its compressed values")
+        raise TypeError(f"{what} is a masked array; fill it or pass its compressed values")
     if is_float(values):
         return values
     if isinstance(values, list | tuple):
@@ -38,7 +39,7 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
     if special:
         kind = kind_of(values)
         if not kind.native:
-            tell_jax()
+            register_pytrees()
             return kind.asarray(values)
     array = _as_array(values, what)
     if array.dtype == object and _is_exact(array, isinstance(values, np.ndarray)):
@@ -49,21 +50,21 @@ def as_coefficients(values: Any, what: str, dtype: Any = None) -> Any:
 
 
 def namespace(array: Any) -> Any:
-    """Return the namespace of an array: NumPy's also for exact coefficients."""
+    """Return the namespace of an array; NumPy for exact coefficients."""
     kind = kind_of(array)
     return np if kind.exact else kind.xp
 
 
 def kind_of(*values: Any) -> Any:
-    """Return the arithmetic that serves arrays which are not all of NumPy floats."""
+    """Return the arithmetic of arrays, not all of NumPy floats."""
     return _generic.coefficients.of(*values)
 
 
 def duplicate(array: Any) -> Any:
-    """Return the same numbers in memory that nobody else writes to. JAX's arrays are never written to."""
+    """Return a copy; JAX's arrays, which nobody can write to, are returned as they are."""
     if isinstance(array, np.ndarray):
         return np.array(array, order="C")
-    # A product, unlike a copy, is followed by the derivatives of other libraries.
+    # Other libraries differentiate a product, but not a copy.
     return array if namespace(array).__name__ == "jax.numpy" else array * 1
 
 
@@ -79,14 +80,14 @@ def taken(array: Any, places: list[int]) -> Any:
     return kind_of(array).stack([array[..., k] for k in places])
 
 
-def tell_jax() -> None:
-    """Make values pytrees of JAX, if JAX has been imported: they then pass through jit, grad and vmap."""
-    _generic.pytrees.register(
+def register_pytrees() -> None:
+    """Register values as pytrees of JAX, if it has been imported."""
+    register_pytree(
         _native.Multivector,
         lambda value: ((value._data,), (value._mask, value.algebra)),
         lambda kind, leaves: _native.Multivector._of(next(iter(leaves)), *kind),
     )
-    _generic.pytrees.register(
+    register_pytree(
         _native.Rotor,
         lambda rotor: ((rotor._data,), None),
         lambda _, leaves: _native.Rotor._from_rows(next(iter(leaves))),
@@ -94,23 +95,23 @@ def tell_jax() -> None:
 
 
 if "jax" in sys.modules:
-    tell_jax()
+    register_pytrees()
 
 
 def scalars(value: Any, like: Any) -> Any:
-    """Return a number or an array as coefficients (…, 1) that go with those of `like`; else None."""
+    """Convert a number or an array to coefficients (…, 1) beside those of `like`; None for anything else."""
     if isinstance(value, bool | np.bool_ | list | tuple | str | bytes):
         return None
     floating = like is not None and like.dtype != object
     if type(value) in (int, float) and floating:
         number = as_floats(value, "scalar")[np.newaxis]
-        return number.astype(like.dtype) if is_float(like) else number  # as a number in NumPy
+        return number.astype(like.dtype) if is_float(like) else number  # float32 stays float32
     if type(value) is int and like is not None and like.dtype == object:
-        return _whole(value)[np.newaxis]
+        return np.array([value], dtype=object)  # exact, even if a float could hold it, such as 2**60
     if isinstance(value, np.ndarray | np.number):
         if value.dtype.kind not in "iufO":
             return None
-        if value.dtype.kind in "iu" and floating:  # rounded as they are, whatever their values
+        if value.dtype.kind in "iu" and floating:  # rounded, not exact
             return as_floats(value, "scalar")[..., None]
     elif not isinstance(value, Real) and foreign_kind(value) is None:
         return None
@@ -118,21 +119,16 @@ def scalars(value: Any, like: Any) -> Any:
 
 
 def number_like(value: Any, what: str, like: Any) -> Any:
-    """Return coefficients (…); numbers of Python take the precision of `like`, if that is of floats."""
+    """Convert a value to coefficients (…); Python numbers take the precision of `like` if it has floats."""
     if is_float(like) and type(value) in (int, float):
         return as_floats(value, what).astype(like.dtype)
     if type(value) is int and isinstance(like, np.ndarray) and like.dtype == object:
-        return _whole(value)
+        return np.array(value, dtype=object)
     return as_coefficients(value, what)
 
 
-def _whole(value: int) -> Any:
-    """Return an integer beside exact numbers: itself, though a float may hold it, as it does 2**60."""
-    return np.array(value, dtype=object)
-
-
 def foreign_kind(value: Any) -> Any:
-    """Return the arithmetic of a value that is neither a number nor an array of NumPy; else None."""
+    """Return the arithmetic of a value that NumPy floats cannot hold; None for numbers and NumPy arrays."""
     try:
         kind = kind_of(value)
     except TypeError:
@@ -141,7 +137,7 @@ def foreign_kind(value: Any) -> Any:
 
 
 def common(*arrays: Any) -> tuple[Any, ...]:
-    """Return the arrays with coefficients of one kind; floats of two precisions are left to NumPy."""
+    """Convert arrays to coefficients of one kind; NumPy itself promotes float32 to float64."""
     if all(is_float(array) for array in arrays):
         return arrays
     kind = kind_of(*arrays)
@@ -149,7 +145,7 @@ def common(*arrays: Any) -> tuple[Any, ...]:
 
 
 def _exact(array: Any, what: str) -> Any:
-    """Return an array of objects, each of them a number or an expression."""
+    """Return an array of objects; a TypeError unless each is a number or an expression."""
     try:
         return kind_of(array).asarray(array)
     except TypeError as error:
@@ -174,7 +170,7 @@ def _as_array(values: Any, what: str) -> Any:
 
 
 def _is_exact(array: Any, asked: bool) -> bool:
-    """Whether an array of objects is meant to be exact: it is, unless a list mixes floats with integers."""
+    """Whether an array of objects is exact: not if it comes from a list that mixes floats with integers."""
     return asked or not any(isinstance(x, float) for x in array.flat)
 
 
@@ -186,29 +182,31 @@ def _fits_floats(array: Any) -> bool:
 
 
 def _converted(values: Any, what: str, dtype: Any) -> Any:
-    """Return coefficients of the type asked for."""
+    """Convert values to coefficients of a dtype."""
     given = as_coefficients(values, what)
     if not isinstance(given, np.ndarray):
         return _converted_foreign(given, what, dtype)
     wanted = np.dtype(dtype)
     if wanted.kind == "O":
-        # Whole floats become integers, so that what is computed of them stays exact.
+        # Whole floats become integers, so that results stay exact.
         return kind_of(np.empty(0, dtype=object)).asarray(given)
     if wanted not in (np.float64, np.float32):
         raise TypeError(f"coefficients are float64, float32 or object, got dtype {wanted}")
     try:
         return given.astype(wanted, copy=False)
     except (TypeError, OverflowError) as error:
-        raise TypeError(f"{what} does not become {wanted}: {error}") from error
+        raise TypeError(f"{what} cannot be converted to {wanted}: {error}") from error
 
 
 def _converted_foreign(given: Any, what: str, dtype: Any) -> Any:
-    """Return an array of another library in a floating type of it, given by itself or by NumPy's name."""
+    """Convert an array of another library to one of its floating types, also given by NumPy's name."""
     xp = namespace(given)
     try:
         wanted = getattr(xp, np.dtype(dtype).name, None)
-    except TypeError:  # it is a type of the library's own
+    except TypeError:  # a type of the library itself
         wanted = dtype
     if wanted is None or not xp.isdtype(wanted, "real floating"):
-        raise TypeError(f"{what} of a {type(given).__name__} of {xp.__name__} does not become {dtype}")
+        raise TypeError(
+            f"{what} of type {type(given).__name__} of {xp.__name__} cannot be converted to {dtype}"
+        )
     return xp.astype(given, wanted)

@@ -8,6 +8,7 @@ import numpy as np
 
 from polhode._algebra.coefficients import common, namespace
 from polhode._algebra.grades import over_grades
+from polhode._algebra.products import coerced, common_algebra
 from polhode._support.arrays import is_float
 
 if TYPE_CHECKING:
@@ -26,13 +27,15 @@ def equal(a: Multivector, b: Multivector) -> Any:
     return namespace(left).all(same, axis=-1)
 
 
-def negated(same: Any) -> Any:
-    """Return the opposite truth of each."""
-    return not same if isinstance(same, bool) else ~same
+def is_close(a: Multivector, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
+    """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape.
 
-
-def close(a: Multivector, b: Multivector, rtol: float, atol: float) -> Any:
-    """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``."""
+    Sizes are those of the components, ``√Σ c²``.
+    """
+    b = coerced(other, a)
+    if b is None:
+        raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
+    common_algebra(a, b)
     if np.any(np.less(rtol, 0)) or np.any(np.less(atol, 0)):
         raise ValueError(f"rtol and atol must not be negative, got {rtol} and {atol}")
     left, right = _same_grades(a, b)

@@ -1,4 +1,4 @@
-"""Values of 3-d space from numbers, and numbers from values: constructors, and the Pauli matrices."""
+"""Values of 3-d space: constructors, axial vectors and Pauli matrices."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ def scalar(a: Any, *, dtype: Any = None) -> Multivector:
 def vector(xyz: Any, *, dtype: Any = None, copy: bool = True) -> Multivector:
     """Vectors ``x e1 + y e2 + z e3`` from an array (..., 3).
 
-    Real numbers become float64, float32 stays; fractions, SymPy expressions, integers beyond 2⁵³ and
-    arrays of objects stay exact; arrays of JAX and others stay theirs. `dtype` converts (``np.float32``,
-    ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of floats in C order.
+    Real numbers become float64, float32 is kept; fractions, SymPy expressions, integers beyond 2⁵³ and
+    arrays of objects stay exact; arrays of JAX and other libraries keep their type. `dtype` converts
+    (``np.float32``, ``float``, or ``object`` for exact integers). ``copy=False`` makes a read-only view of
+    floats in C order.
     """
     return _G3.vector(xyz, dtype=dtype, copy=copy)
 
@@ -60,6 +61,33 @@ def cross(a: Multivector, b: Multivector) -> Multivector:
     return one_grade(a, 1, "the left factor").wedge(one_grade(b, 1, "the right factor")).dual()
 
 
+def axial(B: Any) -> Multivector:
+    """Return the axial vectors ``B I⁻¹`` of bivectors, values or an array (..., 3).
+
+    ``axial(e1∧e2) = e3``, ``axial(a∧b) = a x b`` (handout eq. 1.20, 1.24). The components are the same.
+    """
+    return one_grade(B, 2, "the plane").dual() if isinstance(B, Multivector) else vector(B)
+
+
+def from_axial(v: Any) -> Multivector:
+    """Return the bivectors ``I v`` of axial vectors, values or an array (..., 3).
+
+    The plane perpendicular to v, in its right-handed sense, as ``Ω = I ω`` (handout eq. 4.4).
+    """
+    return one_grade(v, 1, "the axial vector").undual() if isinstance(v, Multivector) else bivector(v)
+
+
+def split(x: Multivector, blade: Multivector) -> tuple[Multivector, Multivector]:
+    """Return the parts of x in the subspace of `blade` and perpendicular to it: a∥ and a⊥ of eq. 1.7.
+
+    ``(x.project(blade), x.reject(blade))``; they add up to x, to its rounding.
+    """
+    if not isinstance(x, Multivector):
+        raise TypeError(f"split needs a multivector, got {type(x).__name__}; wrap arrays with ph.vector")
+    parallel = x.project(blade)
+    return parallel, x - parallel
+
+
 def to_pauli(M: Any) -> np.ndarray[Any, np.dtype[np.complex128]]:
     """Return the 2×2 complex matrices of M: ``e_k ↦ σ_k``, ``I ↦ i``; shape (..., 2, 2)."""
     value = coerced(M)
@@ -80,16 +108,16 @@ def from_pauli(matrices: Any) -> Multivector:
 
 
 def one_grade(value: Any, grade: int, what: str) -> Multivector:
-    """Return a value of 3-d space as one of a single grade; the others must be absent or exactly zero."""
+    """Return a value of 3-d space with a single grade; the others must be absent or exactly zero."""
     if not isinstance(value, Multivector):
         raise TypeError(
-            f"{what} must be a {_KINDS[grade]}, got {type(value).__name__}; see ph.{_KINDS[grade]}"
+            f"{what} must be a {_KINDS[grade]}, got {type(value).__name__}; use ph.{_KINDS[grade]}"
         )
     _of_3d(value, what)
     if value._mask == 1 << grade:
         return value
     if value._held() & ~(1 << grade):
-        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which holds other grades")
+        raise TypeError(f"{what} must be a {_KINDS[grade]}, got {value!r}, which has other grades")
     return Multivector._of(with_grades(value, 1 << grade), 1 << grade)
 
 

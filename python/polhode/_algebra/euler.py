@@ -1,64 +1,109 @@
-"""Euler angles, by the names SciPy gives them: lower-case axes stay in space, upper-case ones turn along."""
+"""Euler angles, named as in SciPy: lower-case axes are fixed in space, upper-case axes turn with the body.
+
+In quaternions, whose units e_i, e_j, e_k are those of the axes, a turn about i, then j, then i again is
+``q = q_i(θ3) q_j(θ2) q_i(θ1)``. Because ``q_i(θ) e_j = e_j q_i(−θ)``, its parts are the complex numbers
+``q_0 + i q_i = cos(θ2/2) exp(i(θ3 + θ1)/2)`` and ``q_j + i ε q_k = sin(θ2/2) exp(i(θ3 − θ1)/2)``, with ε = ±1
+as i, j, k are right- or left-handed (Bernardes & Viollet, PLoS ONE 17 (2022)). Their product has the angle
+θ3, the product of the first and the conjugate of the second θ1.
+
+Where the three axes i, j, k differ, a quarter turn about j, ``(1 + e_j) q/√2``, carries i to ±k: it is such a
+product, of the angles θ1, θ2 + π/2 and ε θ3.
+"""
 
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from typing import Any
 
 import numpy as np
 
-from polhode import _generic
-from polhode._algebra.coefficients import as_coefficients, kind_of
-from polhode._algebra.constructors import bivector
-from polhode._algebra.rotor import Rotor
+from polhode._algebra.coefficients import kind_of
+from polhode._generic import exact
+from polhode._generic.exact import Exact, by_rows
+from polhode._generic.numeric import Numeric, components
 from polhode._support.arrays import is_float
 
-# e2e3, e3e1 and e1e2, the planes of turns about e1, e2 and e3.
-_PLANES = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
+Parts = list[Any]
+
+# A cosine or sine of θ2/2 below this many roundings is rounding of the quaternion.
+_LOCK = 4
 
 
-def from_euler(seq: str, angles: Any, degrees: bool) -> Rotor:
-    """Return the product of the turns about each axis.
-
-    Turns about axes that turn along are the same turns about fixed axes in the opposite order.
-    """
-    axes = _axes(seq, (1, 2, 3))
-    theta = as_coefficients(angles, "angles")
-    if not theta.shape:
-        theta = theta[None]
-    if theta.shape[-1] != len(seq):
-        raise ValueError(
-            f"the sequence {seq!r} needs {len(seq)} angles in the last axis, got shape {tuple(theta.shape)}"
-        )
-    if degrees:
-        theta = _generic.euler.to_radians(kind_of(theta), theta)
-    turns: list[Any] = [
-        Rotor.from_plane_angle(bivector(_PLANES[axis]), theta[..., k]) for k, axis in enumerate(axes)
-    ]
-    total, *others = turns[::-1] if seq.isupper() else turns
-    for turn in others:
-        total = turn * total
-    result: Rotor = total.astype(theta.dtype) if is_float(theta) else total
-    return result
-
-
-def to_euler(R: Rotor, seq: str, degrees: bool) -> Any:
-    """Return the three angles (..., 3) of R."""
-    i, j, k = _axes(seq, (3,))
-    q = R.to_quaternion(order="wxyz")
-    kind = _generic.numeric.Numeric(np, q.dtype) if is_float(q) else kind_of(q)
-    angles = _generic.euler.to_euler(kind, q, (i, j, k), seq.isupper())
-    return _generic.euler.to_degrees(kind, angles) if degrees else angles
-
-
-def _axes(seq: str, lengths: tuple[int, ...]) -> list[int]:
-    """Return the numbers of the axes, after a check of their names."""
+def axes_of(seq: str, lengths: tuple[int, ...]) -> list[int]:
+    """Return the axes of a sequence, numbered from 0; a ValueError if it is not one of these lengths."""
     valid = isinstance(seq, str) and re.fullmatch("[xyz]+|[XYZ]+", seq)
     if not valid or len(seq) not in lengths or any(a == b for a, b in itertools.pairwise(seq)):
         count = "three" if lengths == (3,) else "one to three"
         raise ValueError(
-            f"a sequence of Euler angles is {count} of x, y, z (fixed axes) or of X, Y, Z (axes that turn "
-            f"along), no two neighbours alike; got {seq!r}"
+            f"a sequence of Euler angles is {count} of x, y, z (fixed axes) or of X, Y, Z (body axes), "
+            f"neighbours different; got {seq!r}"
         )
     return ["xyz".index(letter) for letter in seq.lower()]
+
+
+def to_radians(angles: Any) -> Any:
+    """Convert angles in degrees to radians."""
+    d = kind_of(angles)
+    if isinstance(d, Exact):
+        return np.frompyfunc(lambda x: exact.divide(x * exact.pi_beside(x, d.pi), 180), 1, 1)(angles)
+    return angles * (math.pi / 180)
+
+
+def to_degrees(angles: Any) -> Any:
+    """Convert angles in radians to degrees."""
+    d = kind_of(angles)
+    if isinstance(d, Exact):
+        return np.frompyfunc(lambda x: 180 * x / exact.pi_beside(x, d.pi), 1, 1)(angles)
+    return angles * (180 / math.pi)
+
+
+def angles_of(wxyz: Any, seq: str) -> Any:
+    """Return the angles (..., 3) about the axes `seq` of quaternions (..., 4).
+
+    In gimbal lock, where only the sum or difference of the outer angles is known, the one named last is 0.
+    """
+    axes, turning = axes_of(seq, (3,)), seq.isupper()
+    d = Numeric(np, wxyz.dtype) if is_float(wxyz) else kind_of(wxyz)
+    if isinstance(d, Exact):
+        return by_rows(lambda q: _exact_angles(d, q, axes, turning), wxyz, range(3))
+    (a, b, c, e), sign = _two_numbers(components(wxyz), axes, turning)
+    # Equal to the other, or to its conjugate, the number in lock gives 0 for the angle named last.
+    with np.errstate(all="ignore"):
+        cosine, sine = d.length([a, b]), d.length([c, e])
+        free = 1.0 if turning else -1.0
+        locked = cosine <= _LOCK * d.eps
+        a, b = d.where(locked, c, a), d.where(locked, free * e, b)
+        locked = sine <= _LOCK * d.eps
+        c, e = d.where(locked, a, c), d.where(locked, free * b, e)
+        middle = 2.0 * d.atan2(sine, cosine)
+        first, last = d.atan2(b * c - a * e, a * c + b * e), d.atan2(b * c + a * e, a * c - b * e)
+    if sign is not None:
+        middle, last = middle - 0.5 * math.pi, sign * last
+    return d.stack([last, middle, first] if turning else [first, middle, last])
+
+
+def _exact_angles(d: Exact, q: Parts, axes: list[int], turning: bool) -> Parts:
+    """Return the angles of one quaternion of exact components."""
+    (a, b, c, e), sign = _two_numbers(q, axes, turning)
+    cosine, sine = (exact.sqrt(x * x + y * y) for x, y in ((a, b), (c, e)))
+    free = 1 if turning else -1
+    if exact.is_rounding(cosine, _LOCK * d.eps):
+        a, b = c, free * e
+    elif exact.is_rounding(sine, _LOCK * d.eps):
+        c, e = a, free * b
+    middle = 2 * exact.atan2(sine, cosine)
+    first, last = exact.atan2(b * c - a * e, a * c + b * e), exact.atan2(b * c + a * e, a * c - b * e)
+    if sign is not None:
+        middle, last = middle - exact.divide(exact.pi_beside(middle, d.pi), 2), sign * last
+    return [last, middle, first] if turning else [first, middle, last]
+
+
+def _two_numbers(q: Parts, axes: list[int], turning: bool) -> tuple[Parts, int | None]:
+    """Return the real and imaginary parts of both complex numbers, and ε where the three axes differ."""
+    i, j, third = axes[::-1] if turning else axes
+    k = 3 - i - j
+    sign = 1 if (j - i) % 3 == 1 else -1
+    a, b, c, e = q[0], q[1 + i], q[1 + j], sign * q[1 + k]
+    return ([a, b, c, e], None) if third == i else ([a - c, b + e, c + a, e - b], sign)

@@ -1,4 +1,4 @@
-"""Values as they stand on paper: ``2 e1 + 3 e2∧e3``, as formulas read them, and the same in LaTeX."""
+"""Text and LaTeX of values: ``2 e1 + 3 e2∧e3``, in the notation of formulas."""
 
 from __future__ import annotations
 
@@ -17,10 +17,7 @@ _NEW_LINE = r" \\ "
 
 
 class _Notation(NamedTuple):
-    """How a coefficient is written, as whether a minus stands before it and what follows; and the rest.
-
-    A blade comes with the space between a coefficient and it.
-    """
+    """The sign and magnitude of a coefficient, the space before a blade and the blade, an ellipsis."""
 
     coefficient: Callable[[Any], tuple[bool, str]]
     blade: Callable[[str], tuple[str, str]]
@@ -28,7 +25,7 @@ class _Notation(NamedTuple):
 
 
 def value(name: str, data: Any, blades: Sequence[str]) -> str:
-    """Return the ``repr``: the value itself, or the first and last values of a batch."""
+    """Return the ``repr``: the value, or the first and last values of a batch."""
     batch = tuple(data.shape[:-1])
     array = _numbers(data)
     if array is None:
@@ -41,13 +38,13 @@ def value(name: str, data: Any, blades: Sequence[str]) -> str:
 
 
 def latex(name: str, data: Any, blades: Sequence[str]) -> str | None:
-    """Return the same for notebooks; None where there are no numbers to show, and the text is shown."""
+    """Return LaTeX for notebooks; None, so that the text is shown, if the values are not known."""
     array = _numbers(data)
     return None if array is None else _displayed(name, array, 1, lambda row: _sum(row, blades, _LATEX))
 
 
 def matrix_latex(name: str, matrices: Any) -> str:
-    """Return matrices (..., 3, 3) for notebooks."""
+    """Return LaTeX of matrices (..., 3, 3) for notebooks."""
 
     def one(matrix: Any) -> str:
         lines = [" & ".join(_signed_latex(x) for x in line) for line in matrix]
@@ -57,7 +54,7 @@ def matrix_latex(name: str, matrices: Any) -> str:
 
 
 def _numbers(data: Any) -> Any:
-    """Return an array of NumPy, or None: traced or lazy arrays have no numbers to show."""
+    """Return a NumPy array; None for traced and lazy arrays, whose values are not known."""
     try:
         return np.asarray(data).reshape(data.shape)
     except Exception:  # each library has its own error
@@ -65,14 +62,14 @@ def _numbers(data: Any) -> Any:
 
 
 def _shown(array: Any, axes: int, write: Callable[[Any], str], more: str) -> list[str]:
-    """Return the first and last values of a batch, of `axes` axes each."""
+    """Return lines of the first and last values of a batch, of `axes` axes each."""
     flat = array.reshape(-1, *array.shape[-axes:])
     lines = [write(one) for one in (flat if len(flat) <= _SHOWN else flat[: _SHOWN - 1])]
     return [*lines, more, write(flat[-1])] if len(flat) > _SHOWN else lines
 
 
 def _displayed(name: str, array: Any, axes: int, write: Callable[[Any], str]) -> str:
-    """Return a formula: of one value, or of a batch's shape and its first and last values in lines."""
+    """Return LaTeX of one value, or of a batch: its shape and its first and last values."""
     batch = array.shape[:-axes]
     if not batch:
         return f"${write(array)}$"
@@ -104,7 +101,7 @@ def _is_zero(x: Any) -> bool:
 
 
 def _sign_and_size(x: Any) -> tuple[bool, str]:
-    """Return a number or an expression as formulas are written; a sum is bracketed."""
+    """Return the sign and magnitude of a number or an expression; a sum is bracketed."""
     if isinstance(x, float | np.floating):
         return bool(x < 0), f"{abs(x):.{_DIGITS}g}"
     text = str(x)
@@ -122,7 +119,7 @@ _TEXT = _Notation(_sign_and_size, lambda blade: (" ", blade), "…")
 
 
 def _sign_and_latex(x: Any) -> tuple[bool, str]:
-    """Return a number or an expression in LaTeX; a sum is bracketed."""
+    """Return the sign and magnitude in LaTeX; a sum is bracketed."""
     if is_symbolic(x):
         return _symbolic_latex(x)
     negative, size = _sign_and_size(x)
@@ -152,7 +149,7 @@ def _signed_latex(x: Any) -> str:
 
 
 def _blade_latex(blade: str) -> tuple[str, str]:
-    """A wedge is set close, for it binds tighter than the product with a coefficient."""
+    """Return the space before a blade and its LaTeX; a wedge is set tighter than the product."""
     space = r"\," if "∧" in blade else " "
     return space, re.sub(r"(\d)", r"_{\1}", blade).replace("∧", r"{\wedge}")
 

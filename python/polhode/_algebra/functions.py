@@ -1,4 +1,4 @@
-"""Sizes, powers, inverses, exponentials, logarithms and roots of values."""
+"""Norms, powers, inverses, exponentials, logarithms and roots of values."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from polhode import _generic, _native
 from polhode._algebra import grades as _parts
 from polhode._algebra.coefficients import common, kind_of, taken
 from polhode._algebra.products import coerced
-from polhode._support.arrays import Array, is_float, mapped, new
+from polhode._support.arrays import Array, at_index, first_index, is_float, mapped, new
 
 if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
@@ -22,19 +22,16 @@ _BIVECTOR, _EVEN = 0b0100, 0b0101
 
 
 def divided(value: Multivector, other: Any) -> Multivector:
-    """``A/s``, and ``A/B = A B⁻¹``."""
+    """Return ``A/s``, or ``A/B = A B⁻¹``."""
     divisor = coerced(other, value)
     if divisor is None:
         return NotImplemented  # type: ignore[no-any-return]
     if divisor._mask != 1:
         return value * divisor.inverse()
     if isinstance(divisor._data, np.ndarray):
-        zeros = np.argwhere(divisor._data[..., 0] == 0)
-        if len(zeros):
-            index = tuple(int(i) for i in zeros[0])
-            raise ZeroDivisionError(
-                "division of a multivector by zero" + (f" at index {index}" if index else "")
-            )
+        zero = divisor._data[..., 0] == 0
+        if np.any(zero):
+            raise ZeroDivisionError(f"division of a multivector by zero{at_index(first_index(zero))}")
     a, b = common(value._data, divisor._data)
     with np.errstate(over="ignore", invalid="ignore"):
         quotient = a / b if is_float(a) else kind_of(a, b).divide(a, b)
@@ -42,7 +39,7 @@ def divided(value: Multivector, other: Any) -> Multivector:
 
 
 def power(value: Multivector, n: Any) -> Multivector:
-    """Return an integer power, by squaring."""
+    """Return an integer power; negative ones through the inverse."""
     try:
         exponent = operator.index(n)
     except TypeError:
@@ -66,14 +63,14 @@ def power(value: Multivector, n: Any) -> Multivector:
 
 
 def as_precise(value: Multivector, like: Multivector) -> Multivector:
-    """Return a value of float64 in single precision, if the other is of it."""
+    """Convert a value of float64 to single precision if the other has it."""
     if like._is_one:
         return value
     return value.astype(np.float32) if is_float(like._data) and like._data.dtype == np.float32 else value
 
 
 def norm_squared(value: Multivector) -> Any:
-    """``⟨A ~A⟩``, of the batch shape."""
+    """Return ``⟨A ~A⟩``, of the batch shape; in 3-d space the sum of the squared components."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if is_float(data):
         with np.errstate(over="ignore"):
@@ -84,7 +81,11 @@ def norm_squared(value: Multivector) -> Any:
 
 
 def norm(value: Multivector) -> Any:
-    """``√abs⟨A ~A⟩``, of the batch shape."""
+    """Return ``√⟨A ~A⟩`` without intermediate overflow: a float, or an array of the batch shape.
+
+    Where squares may be negative, ``√abs⟨A ~A⟩``. The norm has no derivative at zero; JAX gives 0 there. Use
+    `norm_squared` to differentiate the square.
+    """
     if value._is_one:
         return np.float64(value._norm_of_one())
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
@@ -98,7 +99,7 @@ def norm(value: Multivector) -> Any:
 
 
 def _counted(data: Array, signs: Signs) -> tuple[Array, Signs]:
-    """Return the components of ``E ~E`` not 0, which make up the size, and those signs."""
+    """Return the components that count in the norm, those with ``E ~E`` not 0, and these signs."""
     if signs.all():
         return data, signs
     # In C order, as sums depend on the order of memory.
@@ -106,7 +107,7 @@ def _counted(data: Array, signs: Signs) -> tuple[Array, Signs]:
 
 
 def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
-    """Return the largest component that counts, and the norm in units of it."""
+    """Return the largest magnitude of the components that count, and the norm in units of it."""
     counted, signs = _counted(data, signs)
     unit = np.abs(counted).max(axis=-1, keepdims=True, initial=0)
     unit = np.where(np.isfinite(unit) & (unit > 0), unit, np.ones_like(unit))
@@ -116,7 +117,7 @@ def _unit_and_size(data: Array, signs: Signs) -> tuple[Array, Array]:
 
 
 def normalized(value: Multivector) -> Multivector:
-    """``A/|A|``, with an error for the first value that has no direction."""
+    """Return ``A/|A|``; a ValueError for zero and non-finite values."""
     data, signs = value._data, value.algebra._reverse_squares(value._mask)
     if not is_float(data):
         if min(signs) > 0:
@@ -134,13 +135,12 @@ def _require(ok: Any, what: str, value: Multivector) -> None:
     """Raise a ValueError that names the first batch index where `ok` is false, and the norm there."""
     if np.all(ok):
         return
-    index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
-    place = f"the multivector at index {index}" if index else "the multivector"
-    raise ValueError(f"{place} {what.format(np.asarray(norm(value))[index])}")
+    index = first_index(~np.asarray(ok))
+    raise ValueError(f"the multivector{at_index(index)} {what.format(np.asarray(norm(value))[index])}")
 
 
 def function(name: str, value: Multivector) -> Multivector:
-    """Return a function of any value: native over floats, else by the generic formulas."""
+    """Return inverse, exp, log or sqrt: in the compiled core for floats, else by the generic formulas."""
     algebra, data = value.algebra, value._data
     if is_float(data):
         mask, single = algebra._grades_of_function(name, value._mask), data.dtype == np.float32
@@ -159,7 +159,7 @@ def function(name: str, value: Multivector) -> Multivector:
 
 
 def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
-    """Return the inverse or the exponential of other coefficients in other algebras."""
+    """Return the inverse or the exponential of generic coefficients in another algebra than G3."""
     algebra = value.algebra
     if name not in ("inverse", "exp"):
         raise TypeError(
@@ -179,7 +179,7 @@ def _generic_function(name: str, value: Multivector) -> tuple[Any, int]:
 
 
 def exp(value: Multivector) -> Multivector:
-    """``exp A``; a rotor of a bivector of 3-d space."""
+    """Return ``exp A``; a rotor if A is a bivector of 3-d space."""
     data, in_space = value._data, value.algebra.signature == (3, 0, 0)
     if value._mask == _BIVECTOR and in_space and is_float(data):
         rotors = new((*value.shape, 4), data.dtype)
@@ -189,11 +189,3 @@ def exp(value: Multivector) -> Multivector:
     if result._mask == _EVEN and in_space and not value._held() & ~_BIVECTOR:
         return _native.Rotor._from_rows(result._data)
     return result
-
-
-def projected(value: Multivector, blade: Multivector) -> Multivector:
-    """``(A⌋B) B⁻¹``, over the grades of A."""
-    if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
-        raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
-    unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
-    return (value.left_contraction(unit) * unit.inverse())._part(value._mask)

@@ -1,4 +1,4 @@
-"""The grades of values, their signs and sums, and the shapes of batches."""
+"""Grades of values: selection, signs and sums; shapes of batches."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ def with_grades(value: Multivector, mask: int) -> Any:
 
 
 def over_grades(value: Multivector, mask: int) -> Any:
-    """Return the components of the grades in `mask` to be read: a copy only where grades are missing."""
+    """Return the components of the grades in `mask`, read-only: a copy only if grades are missing."""
     return value._data if value._mask == mask else with_grades(value, mask)
 
 
 def held(value: Multivector) -> int:
-    """Return the grades, as bits, in which some component is not zero; all where that is not known."""
+    """Return the grades, as bits, with a nonzero component; all of them if that is not known."""
     data = value._data
     if not isinstance(data, np.ndarray):
         return value._mask
@@ -65,13 +65,13 @@ def linear(left: Multivector, right: Any, combine: Callable[[Any, Any], Any]) ->
 
 
 def signed(value: Multivector, negative: Callable[[int], bool]) -> Multivector:
-    """Return the value with the sign of some grades changed."""
+    """Return the value with the sign of some grades reversed."""
     grades = value.algebra._grade_of[value.algebra._indices(value._mask)]
     return value._like(with_signs(value._data, [-1 if negative(int(k)) else 1 for k in grades]))
 
 
 def with_signs(data: Any, signs: Sequence[float]) -> Any:
-    """Return components, those with a negative sign changed."""
+    """Return the components times these signs."""
     if is_float(data):
         return np.where(np.array(signs) < 0, -data, data)
     parts = [data[..., k] if sign > 0 else -data[..., k] for k, sign in enumerate(signs)]
@@ -79,24 +79,27 @@ def with_signs(data: Any, signs: Sequence[float]) -> Any:
 
 
 def mapped(value: Multivector, f: Callable[[Any], Any]) -> Multivector:
-    """Return the value with f of each component; object components one by one, others as one array."""
+    """Return the value with each component changed by f, such as ``sympy.simplify``; never a rotor.
+
+    Components of dtype object are passed one by one, others as one array.
+    """
     data = value._data
     changed = np.frompyfunc(f, 1, 1)(data) if data.dtype == object else f(data)
     if getattr(changed, "shape", None) != data.shape:
         raise TypeError(f"the function must return one component for each, got {type(changed).__name__}")
     changed = as_coefficients(changed, "what the function returns")
-    own = duplicate(changed)  # it may be the function's array
+    own = duplicate(changed)  # f may keep its array
     return _native.Multivector._of(own, value._mask, value.algebra)
 
 
 def check_index(shape: Shape, index: tuple[Any, ...]) -> None:
-    """Raise an IndexError where a plain index is out of range, which JAX would take for the last one."""
+    """Raise an IndexError for a plain index out of range, which JAX would clip to the last one."""
     if all(part is None or part is Ellipsis or isinstance(part, int | np.integer | slice) for part in index):
         np.broadcast_to(np.int8(0), shape)[index]
 
 
-def reshaped(value: V, shape: tuple[Any, ...]) -> V:
-    """Return a batch of another shape."""
+def reshaped(value: V, *shape: Any) -> V:
+    """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
     if len(shape) == 1 and not hasattr(shape[0], "__index__"):
         shape = tuple(shape[0])
     lengths = [operator.index(length) for length in shape]
@@ -124,8 +127,8 @@ def stack(values: Iterable[V], axis: int = 0) -> V:
     return build(namespace(parts[0]).stack(parts, axis=axis))  # type: ignore[return-value]
 
 
-def summed(value: Multivector, axis: int | tuple[int, ...] | None) -> Multivector:
-    """Return the sum over batch axes; over all for None."""
+def summed(value: Multivector, axis: int | tuple[int, ...] | None = None) -> Multivector:
+    """Return the sum of a batch over some of its axes, or all; a sum of rotors is not a rotor."""
     count = len(value.shape)
     chosen = tuple(range(count)) if axis is None else axis if isinstance(axis, tuple) else (axis,)
     axes = tuple(_batch_axis(k, count) for k in chosen)
@@ -138,10 +141,10 @@ def concatenate(values: Iterable[V], axis: int = 0) -> V:
     parts, shapes, build = _unified(values, "concatenate")
     dimensions = {len(shape) for shape in shapes}
     if dimensions == {0} or len(dimensions) > 1:
-        raise ValueError(f"concatenate needs batches of as many axes, got shapes {_listed(shapes)}")
+        raise ValueError(f"concatenate needs equal numbers of batch axes, got shapes {_listed(shapes)}")
     axis = _batch_axis(axis, dimensions.pop())
     if len({shape[:axis] + shape[axis + 1 :] for shape in shapes}) > 1:
-        raise ValueError(f"the batch shapes differ elsewhere than in axis {axis}: {_listed(shapes)}")
+        raise ValueError(f"the batch shapes must agree except in axis {axis}, got {_listed(shapes)}")
     return build(namespace(parts[0]).concat(parts, axis=axis))  # type: ignore[return-value]
 
 
@@ -160,7 +163,7 @@ def _batch_axis(axis: int, count: int) -> int:
 def _unified(
     values: Iterable[Multivector], name: str
 ) -> tuple[list[Any], set[Shape], Callable[[Any], Multivector]]:
-    """Return components over the grades of all values, their batch shapes, and what builds the result."""
+    """Return components over the grades of all values, their batch shapes, and the type's constructor."""
     items = list(values)
     for i, item in enumerate(items):
         if not isinstance(item, _native.Multivector):

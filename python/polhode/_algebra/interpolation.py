@@ -1,4 +1,4 @@
-"""Between rotors: slerp, the mean attitude, and a smooth path through many."""
+"""Interpolation of rotors: slerp, the mean attitude, and splines."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from polhode import _generic
 from polhode._algebra.coefficients import as_coefficients, foreign_kind, kind_of, namespace
 from polhode._algebra.constructors import bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._support.arrays import Array, as_floats, frozen, is_float
+from polhode._support.arrays import Array, as_floats, at_index, first_index, frozen, is_float
 
-# Roundings of a sum of four products of rounded numbers.
+# Rounding errors in a sum of four products of rounded numbers.
 _HALF_TURN = 4
 
 _NO_MEAN = "the rotors have no mean: two attitudes are equally close to all of them"
@@ -24,12 +23,12 @@ def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
     """Return the rotor a fraction t (an array broadcasts) of the way from R to S, at constant rate.
 
     The shorter way round: ``R (~R S)^t``, with the sign of S that makes it so: t = 0 gives R, t = 1 gives S
-    or −S. Where the attitudes are half a turn apart, to rounding, both ways are as long, and S keeps its
-    sign: from R to S and from R to −S go opposite ways round.
+    or −S. If the attitudes are half a turn apart, to rounding, both ways are equally long and S keeps its
+    sign: R to S and R to −S go opposite ways round.
     """
     for value in (R, S):
         if not isinstance(value, Rotor):
-            raise TypeError(f"slerp goes between rotors, got {type(value).__name__}")
+            raise TypeError(f"slerp needs rotors, got {type(value).__name__}")
     step = (~R * S)._data
     longer = step[..., :1] < -_half_turn(step)
     shorter = Rotor.from_components(namespace(step).where(longer, -step, step))
@@ -38,9 +37,9 @@ def slerp(R: Rotor, S: Rotor, t: Any) -> Rotor:
 
 
 def _half_turn(components: Any) -> float:
-    """Return how far from 0 rounding leaves the scalar part of ``~R S`` where it turns by half a turn.
+    """Return the rounding error of the scalar part of ``~R S`` for attitudes half a turn apart.
 
-    It is a sum of four products of components that are rounded themselves, in sizes a sum of at most 1.
+    It is a sum of four products of rounded components, whose magnitudes add up to at most 1.
     """
     return _HALF_TURN * (
         float(np.finfo(components.dtype).eps) if is_float(components) else kind_of(components).eps
@@ -51,13 +50,12 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
     """Return the mean attitude of a batch (n,), whatever the signs: the Q that minimises ``Σ w |R − Q|²``.
 
     The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
-    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are not negative. A
-    ValueError where no attitude is closer than all others, as for half turns about three axes; while JAX
-    traces, the result is arbitrary there. Arrays of other libraries stay theirs; derivatives are right up to
-    the third.
+    Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are >= 0. A ValueError
+    if the mean is not unique, as for half turns about three axes; while JAX traces, the result is then
+    arbitrary. Arrays of other libraries keep their type; derivatives are right up to the third.
     """
     if not isinstance(R, Rotor) or len(R.shape) != 1 or not R.shape[0]:
-        raise ValueError(f"mean takes a batch of rotors of shape (n,), n > 0, got {R!r}")
+        raise ValueError(f"mean needs a batch of rotors of shape (n,), n > 0, got {R!r}")
     kind = kind_of(R._data)
     if kind.exact:
         raise TypeError(
@@ -78,7 +76,7 @@ def mean(R: Rotor, weights: Any = None) -> Rotor:
 
 
 def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
-    """Return the mean of arrays of another library, in its own arrays and with their derivatives."""
+    """Return the mean of arrays of another library, with its derivatives."""
     given = [] if weights is None else [as_coefficients(weights, "weights")]
     kind = kind_of(R._data, *given)
     rows, xp = kind.asarray(R._data), kind.xp
@@ -91,24 +89,49 @@ def _foreign_mean(R: Rotor, weights: Any) -> Rotor:
         weighted = w[:, None] * rows
     else:
         weighted = rows
-    best = _generic.eigen.largest(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows), _NO_MEAN)
+    best = _largest_eigenvector(kind, xp.matmul(xp.permute_dims(weighted, (1, 0)), rows))
     return Rotor.from_components(kind.where(best[0] < 0, -best, best))
 
 
+def _largest_eigenvector(d: Any, matrix: Any) -> Any:
+    """Return the unit eigenvector (n,) of the matrix (n, n); a ValueError where two eigenvalues are largest.
+
+    A library's own derivatives of eigenvectors need all eigenvalues to differ. Newton's method for
+    ``K v = λ v, vᵀv = 1``, from a solution that counts as constant, needs it of the largest only. After k
+    steps the derivatives are right up to the order 2^k − 1.
+    """
+    xp = d.xp
+    values, vectors = xp.linalg.eigh(d.constant(matrix))
+    n = int(values.shape[0])
+    d.require(values[-1] - values[-2] > 2 * n * d.eps * values[-1], _NO_MEAN)
+    v, value = vectors[:, -1], values[-1]
+    identity = xp.eye(n, dtype=matrix.dtype, **d.placed)
+    zero = xp.reshape(value * 0.0, (1, 1))
+    for _ in range(2):
+        image = xp.sum(matrix * v[None, :], axis=1)
+        column = xp.reshape(v, (n, 1))
+        upper = xp.concat([matrix - value * identity, -column], axis=1)
+        lower = xp.concat([xp.reshape(v, (1, n)), zero], axis=1)
+        error = xp.concat([value * v - image, xp.reshape(0.5 * (1.0 - xp.sum(v * v)), (1,))])
+        step = xp.linalg.solve(xp.concat([upper, lower], axis=0), xp.reshape(error, (n + 1, 1)))[:, 0]
+        v, value = v + step[:n], value + step[n]
+    return v
+
+
 class RotorSpline:
-    """A smooth path through the attitudes of `rotors` (n,) at increasing `times` (n,), n >= 2.
+    """Cubic spline through the attitudes of `rotors` (n,) at increasing `times` (n,), n >= 2.
 
     The cubic spline ``s(t)`` of the rotors' components, divided by its norm: ``R(t) = s/|s|``. Rotor,
-    angular velocity and angular acceleration are continuous; the path turns with what its rotors are
-    multiplied by, from either side, and backwards in time it is the same. Between close rotors it errs
-    by their distance to the fourth power, in the rate to the third.
+    angular velocity and angular acceleration are continuous. The spline of ``S R`` or ``R S``, for a fixed S,
+    is S times that of R, and the spline of reversed times is the same path. The error between close rotors is
+    of the order of the fourth power of their distance, that of the rate of the third.
 
-    Each rotor first takes the sign that is nearer to the one before it, so that the path goes the short
-    way round and stays on one sheet of the double cover; it begins at ``rotors[0]``. Half a turn apart, where
-    both signs are as near, two neighbours keep theirs, as in `slerp`. At each end the first
-    two intervals share one cubic ("not a knot"); three rotors give a parabola, two a line, along which the
-    rate is not constant as that of `slerp` is. A steady turn is likewise met closely, not exactly. Where the
-    times are so uneven that the path could swing half a turn away from its rotors, a ValueError says so.
+    Each rotor first takes the sign nearer to the one before it, so that the path goes the short way round and
+    stays on one sheet of the double cover; it begins at ``rotors[0]``. Neighbours half a turn apart keep
+    their signs, as in `slerp`. At each end the first two intervals share one cubic ("not a knot"); three
+    rotors give a parabola, two a line, along which the rate is not constant, unlike `slerp`. A steady turn is
+    approximated, not reproduced. A ValueError if the times are so uneven that the path could swing far from
+    its rotors.
 
     >>> spline = RotorSpline(times, rotors)
     >>> spline(t), spline.omega_body(t)
@@ -142,11 +165,11 @@ class RotorSpline:
 
     @property
     def rotors(self) -> Rotor:
-        """The rotors (n,) on the path, each with the sign the path has."""
+        """The rotors (n,), with the signs that they have on the path."""
         return Rotor.from_components(self._values)
 
     def __call__(self, t: Any) -> Rotor:
-        """Return the rotors at the times t (...), which lie between the first and the last."""
+        """Return the rotors at the times t (...), between the first and the last."""
         return Rotor.from_components(self._at(t)[0])
 
     def omega_body(self, t: Any) -> Multivector:
@@ -169,10 +192,9 @@ class RotorSpline:
         first, last = self._times[[0, -1]]
         outside = ~((when >= first) & (when <= last))
         if outside.any():
-            index = tuple(int(i) for i in np.argwhere(outside)[0])
-            place = f" at index {index}" if index else ""
+            index = first_index(outside)
             raise ValueError(
-                f"the spline goes from {first:g} to {last:g}; the time{place} is {when[index]:g}, outside it"
+                f"the time{at_index(index)} is {when[index]:g}; the spline goes from {first:g} to {last:g}"
             )
         k = np.clip(np.searchsorted(self._times, when, side="right") - 1, 0, len(self._times) - 2)
         step = (self._times[k + 1] - self._times[k])[..., np.newaxis]
@@ -186,9 +208,9 @@ class RotorSpline:
 
 
 def _one_sheet(components: Array) -> Array:
-    """Return the rotors' components with the signs that keep neighbours at most a right angle apart.
+    """Return the rotors' components with signs that keep neighbours at most a right angle apart.
 
-    Where they are a right angle apart to rounding, attitudes half a turn apart, they keep the signs given.
+    At a right angle, to rounding, the attitudes are half a turn apart and the given signs are kept.
     """
     apart = np.einsum("ij,ij->i", components[1:], components[:-1]) < -_half_turn(components)
     signs = np.cumprod(np.where(apart, -1.0, 1.0))
@@ -196,11 +218,11 @@ def _one_sheet(components: Array) -> Array:
 
 
 def _require_near(x: Array, y: Array, slopes: Array) -> None:
-    """Raise a ValueError if the spline may come near 0, where it would have no direction.
+    """Raise a ValueError if the spline may come near 0, where it has no direction.
 
-    A cubic lies in the hull of its ends a, b and the points a third of the end slopes away from them. The
-    ends are √½ or more along the line to the middle of their chord; so must the other two be, but for some
-    room, and then so is every point between.
+    A cubic lies in the convex hull of its Bézier points: its ends a, b and the points a third of the end
+    slopes away from them. The ends project to √½ or more on the direction of ``a + b``. If the other two
+    points project to 0.1 or more, so does the whole curve.
     """
     step = np.diff(x)[:, np.newaxis]
     a, b = y[:-1], y[1:]
@@ -218,10 +240,10 @@ def _require_near(x: Array, y: Array, slopes: Array) -> None:
 def _spline_slopes(x: Array, y: Array) -> Array:
     """Return the slopes (n, m) at x (n,) of the not-a-knot cubic spline through y (n, m).
 
-    A continuous second derivative asks of the slopes d, with steps h and slopes of chords c,
-    ``h_k d_{k-1} + 2 (h_{k-1} + h_k) d_k + h_{k-1} d_{k+1} = 3 (h_k c_{k-1} + h_{k-1} c_k)``; a continuous
-    third one at x_1, that ``h_1 d_0 + (h_0 + h_1) d_1`` is a known `_edge`. With it d_0 leaves the first
-    equation, whose diagonal still outweighs the rest; and so at the other end.
+    With steps h and slopes of chords c, the second derivative is continuous if the slopes d satisfy
+    ``h_k d_{k-1} + 2 (h_{k-1} + h_k) d_k + h_{k-1} d_{k+1} = 3 (h_k c_{k-1} + h_{k-1} c_k)``, the third one
+    at x_1 if ``h_1 d_0 + (h_0 + h_1) d_1`` has the value of `_edge`. This eliminates d_0 from the first
+    equation, which remains diagonally dominant; likewise at the other end.
     """
     h = np.diff(x)[:, np.newaxis]
     c = np.diff(y, axis=0) / h
@@ -256,8 +278,8 @@ def _edge(h0: Array, h1: Array, c0: Array, c1: Array) -> Array:
 def _tridiagonal(lower: Array, diagonal: Array, upper: Array, right: Array) -> Array:
     """Solve ``lower x_{k-1} + diagonal x_k + upper x_{k+1} = right`` by cyclic reduction.
 
-    Every odd equation loses its neighbours to the even ones beside it, which leaves half as many; stable
-    where the diagonal outweighs the rest of its row.
+    The even equations eliminate the neighbours of each odd one, which leaves half as many; stable for
+    diagonally dominant rows.
     """
     n = len(diagonal)
     if n == 1:

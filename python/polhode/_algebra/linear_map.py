@@ -1,4 +1,4 @@
-"""Linear maps of vectors, which reach every grade as outermorphisms, and linear maps of bivectors."""
+"""Linear maps of vectors, extended to all grades as outermorphisms, and of bivectors."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ import numpy as np
 
 from polhode._algebra.constructors import bivector, e1, e2, e3, pure, scalar, trivector, vector
 from polhode._algebra.multivector import Multivector
-from polhode._support.arrays import Array, Shape, as_floats, frozen
+from polhode._support.arrays import Array, Shape, as_floats, at_index, first_index, frozen
 
 _NAMES = {1: "vectors", 2: "bivectors"}
 
-# A sum or product of matrices is rounded a few dozen times; so much of a matrix's size may be rounding.
+# Relative asymmetry that may be rounding: a sum or product of matrices rounds a few dozen times.
 _ROUNDING = 64 * np.finfo(float).eps
 
 
 class LinearMap:
-    """A linear map F of vectors to vectors, or an array of them; or one of bivectors to bivectors. Immutable.
+    """A linear map F of vectors to vectors or of bivectors to bivectors, or an array of them. Immutable.
 
     A map of vectors (`grade` 1) acts on every multivector, as the outermorphism
     ``F(a∧b) = F(a)∧F(b)``, ``F(1) = 1``, ``F(I) = det F · I``. One of bivectors (`grade` 2) acts on bivectors
     only; the inertia of a body (handout eq. 4.18) is one.
 
-    ``F*G`` does G first; where one of them maps bivectors, so does the product. An outermorphism is not
+    ``F*G`` applies G first; if one of them maps bivectors, so does the product. An outermorphism is not
     linear in F, ``(F + G)(a∧b)`` is not ``F(a∧b) + G(a∧b)``, so maps have no sum: add their matrices.
 
-    Made by `from_matrix` and `from_function`.
+    Created by `from_matrix` and `from_function`.
     """
 
     __slots__ = ("_grade", "_matrix")
@@ -37,7 +37,7 @@ class LinearMap:
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
     def __init__(self, *_: object) -> None:
-        raise TypeError("a LinearMap is made by LinearMap.from_matrix or LinearMap.from_function")
+        raise TypeError("LinearMap has no constructor; use LinearMap.from_matrix or LinearMap.from_function")
 
     # --- constructors
 
@@ -46,10 +46,10 @@ class LinearMap:
         """From matrices (..., 3, 3) whose columns are the images of e1, e2, e3, or of e2e3, e3e1, e1e2."""
         matrix = np.array(as_floats(m, "the matrix of a linear map"))
         if matrix.shape[-2:] != (3, 3):
-            raise ValueError(f"the matrix of a linear map has shape (..., 3, 3), got {matrix.shape}")
+            raise ValueError(f"the matrix of a linear map must have shape (..., 3, 3), got {matrix.shape}")
         if not np.isfinite(matrix).all():
-            index = tuple(int(i) for i in np.argwhere(~np.isfinite(matrix))[0])
-            raise ValueError(f"a linear map's entry {index} is {matrix[index]}; it must be finite")
+            index = first_index(~np.isfinite(matrix))
+            raise ValueError(f"matrix entry {index} of a linear map must be finite, got {matrix[index]}")
         self = object.__new__(LinearMap)
         self._matrix, self._grade = frozen(matrix), _checked(grade)
         return self
@@ -58,7 +58,7 @@ class LinearMap:
     def from_function(f: Callable[[Multivector], Multivector], grade: int = 1) -> LinearMap:
         """From a function on vectors, or for grade 2 on bivectors: a rotor, ``lambda a: a.project(plane)``.
 
-        It is called with the three basis values, and with a fourth to see whether it is linear; a ValueError
+        It is called with the three basis values, and with a fourth to check that it is linear; a ValueError
         if it is not.
         """
         basis = [e1, e2, e3] if _checked(grade) == 1 else [e1.undual(), e2.undual(), e3.undual()]
@@ -67,10 +67,12 @@ class LinearMap:
         probe = 0.6 * basis[0] - 1.7 * basis[1] + 2.3 * basis[2]
         image, size = f(probe), np.linalg.norm(F.matrix, axis=(-2, -1))
         if not np.all(image.is_close(F(probe), rtol=0, atol=1e-9 * size)):
-            raise ValueError(f"the function is not linear: {probe!r} goes to {image!r}, not to {F(probe)!r}")
+            raise ValueError(
+                f"the function is not linear: it maps {probe!r} to {image!r}, not to {F(probe)!r}"
+            )
         return F
 
-    # --- what it is
+    # --- matrices
 
     @property
     def grade(self) -> int:
@@ -111,11 +113,11 @@ class LinearMap:
         """``F(X)``, in float64; batches broadcast."""
         if not isinstance(X, Multivector):
             name = type(X).__name__
-            raise TypeError(f"a linear map takes multivectors, got {name}; wrap arrays with ph.vector")
+            raise TypeError(f"a linear map acts on multivectors, got {name}; wrap arrays with ph.vector")
         if self.grade == 2:
             return bivector(_times(self.matrix, pure(X, 2, "the argument of a map of bivectors")))
         if X.algebra is not e1.algebra:
-            raise TypeError(f"a linear map takes values of 3-d space, got one of {X.algebra}")
+            raise TypeError(f"a linear map acts on values of 3-d space, got one of {X.algebra}")
         first, *others = [self._part(X.astype(float), k) for k in X.grades]
         return sum(others, start=first)
 
@@ -137,7 +139,7 @@ class LinearMap:
     # --- algebra
 
     def __mul__(self, other: LinearMap) -> LinearMap:
-        """``F*G``: G first, ``(F*G)(X) = F(G(X))``."""
+        """``F*G`` applies G first: ``(F*G)(X) = F(G(X))``."""
         if not isinstance(other, LinearMap):
             return NotImplemented
         if self.grade == other.grade == 1:
@@ -156,9 +158,10 @@ class LinearMap:
         sizes = np.linalg.svd(self.matrix, compute_uv=False)
         singular = sizes[..., 2] <= 4 * np.finfo(float).eps * sizes[..., 0]
         if singular.any():
-            index = tuple(int(i) for i in np.argwhere(singular)[0])
-            place = f"the map at index {index}" if index else "the map"
-            raise ValueError(f"{place} has no inverse: its singular values are {sizes[index].tolist()}")
+            index = first_index(singular)
+            raise ValueError(
+                f"the map{at_index(index)} has no inverse: its singular values are {sizes[index].tolist()}"
+            )
         return LinearMap.from_matrix(np.linalg.inv(self.matrix), self.grade)
 
     def symmetric_part(self) -> LinearMap:
@@ -171,12 +174,12 @@ class LinearMap:
         transposed = np.swapaxes(self.matrix, -1, -2)
         return LinearMap.from_matrix(0.5 * self.matrix - 0.5 * transposed, self.grade)
 
-    # --- what it leaves in place
+    # --- eigenvalues
 
     def eigenvectors(self) -> tuple[Multivector, Array]:
-        """Return unit vectors (..., 3) and the factors (..., 3) by which a symmetric map stretches them.
+        """Return unit eigenvectors (..., 3) and eigenvalues (..., 3) of a symmetric map of vectors.
 
-        The factors rise; the vectors are perpendicular and right-handed, ``a1 a2 a3 = I``.
+        The eigenvalues rise; the vectors are perpendicular and right-handed, ``a1 a2 a3 = I``.
         """
         if self.grade == 2:
             raise ValueError("a map of bivectors has no eigenvectors; see eigenplanes")
@@ -184,9 +187,9 @@ class LinearMap:
         return vector(axes), factors
 
     def eigenplanes(self) -> tuple[Multivector, Array]:
-        """Return unit bivectors (..., 3) and the factors (..., 3) by which a symmetric map scales them.
+        """Return unit bivectors (..., 3) that a symmetric map only scales, and their eigenvalues (..., 3).
 
-        The factors rise. Those of a map of vectors scale the planes of two eigenvectors, by both of theirs.
+        The eigenvalues rise. For a map of vectors they are the products of two eigenvalues of vectors.
         """
         if self.grade == 2:
             factors, axes = self._principal_axes()
@@ -198,16 +201,15 @@ class LinearMap:
         return bivector(planes), np.take_along_axis(factors, order, axis=-1)
 
     def _principal_axes(self) -> tuple[Array, Array]:
-        """Return eigenvalues (..., 3), rising, and as rows (..., 3, 3) a right-handed frame of axes."""
+        """Return eigenvalues (..., 3), rising, and right-handed eigenvectors as rows (..., 3, 3)."""
         transposed = np.swapaxes(self.matrix, -1, -2)
         skew = np.abs(self.matrix - transposed).max(axis=(-2, -1))
         asymmetric = skew > _ROUNDING * np.abs(self.matrix).max(axis=(-2, -1))
         if asymmetric.any():
-            index = tuple(int(i) for i in np.argwhere(asymmetric)[0])
-            place = f"the map at index {index}" if index else "the map"
+            index = first_index(asymmetric)
             raise ValueError(
-                f"{place} is not symmetric: entries differ from their mirror images by {skew[index]:.3g}; "
-                "take its symmetric_part(), or for a rotation Rotor.from_matrix(F.matrix).plane_angle()"
+                f"the map{at_index(index)} is not symmetric: it differs from adjoint() by {skew[index]:.3g}; "
+                "take symmetric_part(), or for a rotation Rotor.from_matrix(F.matrix).plane_angle()"
             )
         factors, columns = np.linalg.eigh(0.5 * self.matrix + 0.5 * transposed)
         columns[..., 2] *= np.sign(np.linalg.det(columns))[..., np.newaxis]
@@ -228,7 +230,7 @@ class LinearMap:
     def is_close(self, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
         """Whether ``|F − G| <= max(rtol · max(|F|, |G|), atol)``, |F|² the sum of the squared entries."""
         if not isinstance(other, LinearMap) or other.grade != self.grade:
-            raise TypeError(f"a map of {_NAMES[self.grade]} compares with another, got {other!r}")
+            raise TypeError(f"is_close needs another map of {_NAMES[self.grade]}, got {other!r}")
         a, b = np.broadcast_arrays(self.matrix, other.matrix)
         distance, p, q = (np.linalg.norm(m, axis=(-2, -1)) for m in (a - b, a, b))
         return (distance <= np.maximum(rtol * np.maximum(p, q), atol))[()]
@@ -247,7 +249,7 @@ class LinearMap:
 
 
 def _checked(grade: int) -> int:
-    """Return the grade of a linear map."""
+    """Return the grade; a ValueError unless it is 1 or 2."""
     if grade not in _NAMES:
         raise ValueError(f"a linear map takes vectors (grade 1) or bivectors (grade 2), got grade {grade!r}")
     return grade

@@ -1,9 +1,9 @@
-"""The type of all values of the algebra: multivectors with leading batch axes."""
+"""`Multivector`, the type of all values: multivectors with leading batch axes."""
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -11,10 +11,11 @@ import numpy as np
 from polhode import _native
 from polhode._algebra import comparison as _comparison
 from polhode._algebra import functions as _functions
-from polhode._algebra import grades as _parts
+from polhode._algebra import grades as _grades
+from polhode._algebra import subspaces as _subspaces
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.native import joins
-from polhode._algebra.products import coerced, common_algebra, product
+from polhode._algebra.products import coerced, product
 from polhode._support.arrays import Shape, copied
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 class Multivector(_native.Multivector):
     """An element of a geometric algebra, or an array of them. Immutable.
 
-    The basis of 3-d space is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``; that of
-    other algebras see `algebra`. Only the grades present are stored: a vector has 3 components, a product
+    The basis of 3-d space is ``1, e1, e2, e3, e2e3, e3e1, e1e2, I`` in this order, ``I = e1e2e3``; for other
+    algebras see `algebra`. Only the grades present are stored: a vector has 3 components, a product
     of two vectors 4 (scalar and bivector). Batch axes lead, components are the last axis, and batches
     broadcast as in NumPy.
 
@@ -42,21 +43,20 @@ class Multivector(_native.Multivector):
     and ``e1 | e2 * e1`` means ``e1 | (e2 * e1)``. On paper they bind tighter than the product. Put
     brackets around them, or use the named methods ``A.wedge(B)`` and ``A.dot(B)``.
 
-    Made by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
+    Created by `scalar`, `vector`, `bivector`, `trivector` and `multivector`, not directly.
     """
 
     __slots__ = ()
-    __array_ufunc__ = None  # NumPy arrays leave mixed operations to this class
-    __sympy__ = False  # and so do expressions of SymPy, which are not to convert it
+    __array_ufunc__ = None  # NumPy arrays defer to this class in mixed operations
+    __sympy__ = False  # and so do SymPy expressions, without converting it
     __hash__ = None  # type: ignore[assignment]  # equality is by value, over arrays
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"multivectors are immutable; cannot set {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        signature = self.algebra.signature
         data = np.array(self._data) if isinstance(self._data, np.ndarray) else self._data
-        return _rebuild, (type(self), data, self._mask, signature)
+        return _rebuild, (type(self), data, self._mask, self.algebra)
 
     def __copy__(self) -> Multivector:
         return self
@@ -64,19 +64,19 @@ class Multivector(_native.Multivector):
     def __deepcopy__(self, _memo: object) -> Multivector:
         return self
 
-    # --- what it holds
+    # --- contents
 
     @property
     def grades(self) -> tuple[int, ...]:
-        """The grades it may hold, e.g. ``(0, 2)``."""
+        """The grades present, e.g. ``(0, 2)``."""
         return tuple(k for k in range(self._mask.bit_length()) if self._mask >> k & 1)
 
     @property
     def components(self) -> NDArray[Any]:
         """Components of the grades present, in basis order: shape ``(*shape, K)``.
 
-        A new array each time, which may be changed: the value stays. In a loop over a large batch keep it in
-        a variable. Arrays of other libraries are handed out as they are.
+        A copy at each access: changing it does not change the value. In a loop over a large batch keep it in
+        a variable. Arrays of other libraries are not copied.
         """
         data: NDArray[Any] = self._data
         return data if self._is_one else copied(data)
@@ -88,11 +88,11 @@ class Multivector(_native.Multivector):
 
     @property
     def dtype(self) -> Any:
-        """The components' type: float64, float32, object (exact or symbolic), or that of another library."""
+        """The dtype of the components: float64, float32, object (exact or symbolic), or another library's."""
         return self._data.dtype
 
     def _grade(self, k: int) -> Multivector:
-        """Return the part of grade k, where it is not native."""
+        """Return the part of grade k, for values that the native method does not cover."""
         n = self.algebra.dimension
         if operator.index(k) not in range(n + 1):
             space = "3-d space" if self.algebra.signature == (3, 0, 0) else str(self.algebra)
@@ -100,16 +100,13 @@ class Multivector(_native.Multivector):
         return self._part(1 << k)
 
     def astype(self, dtype: Any) -> Self:
-        """Return it with components of another type, such as ``np.float32`` or, from fractions, ``float``."""
-        data = as_coefficients(self._data, "a component", dtype)
-        return self._like(data)
+        """Return the value with components of another type, such as ``np.float32`` or ``float``."""
+        return self._like(as_coefficients(self._data, "a component", dtype))
 
-    def map(self, f: Callable[[Any], Any]) -> Multivector:
-        """Return it with each component changed by f, such as ``sympy.simplify``. Never a rotor."""
-        return _parts.mapped(self, f)
+    map = _grades.mapped
 
     def __bool__(self) -> bool:
-        raise TypeError("a multivector is neither true nor false; compare it with == or is_close")
+        raise TypeError("a multivector has no truth value; compare it with == or is_close")
 
     def __len__(self) -> int:
         if not self.shape:
@@ -122,39 +119,34 @@ class Multivector(_native.Multivector):
         rest: tuple[Any, ...] = () if any(part is Ellipsis for part in parts) else (Ellipsis,)
         try:
             if not isinstance(self._data, np.ndarray):
-                _parts.check_index(self.shape, parts)
+                _grades.check_index(self.shape, parts)
             picked = self._data[(*parts, *rest, slice(None))]
         except IndexError as error:
-            remedy = "" if self.shape else "; the numbers of a single value are its .components"
+            remedy = "" if self.shape else "; for the numbers of a single value use .components"
             raise IndexError(f"{error} (batch shape {self.shape}){remedy}") from None
         return self._like(picked)
 
     def __iter__(self) -> Iterator[Self]:
         return (self[i] for i in range(len(self)))
 
-    def reshape(self, *shape: Any) -> Self:
-        """Return a batch of another shape; one length may be −1. ``reshape(2, 3)`` or ``reshape((2, 3))``."""
-        return _parts.reshaped(self, shape)
-
-    def sum(self, axis: int | tuple[int, ...] | None = None) -> Multivector:
-        """Return the sum of a batch over some of its axes, or all; of rotors, no rotor."""
-        return _parts.summed(self, axis)
+    reshape = _grades.reshaped
+    sum = _grades.summed
 
     def __float__(self) -> float:
         if self._mask != 1 or self.shape:
             raise TypeError(
-                f"only a single scalar becomes a float; this has grades {self.grades} and shape "
-                f"{self.shape}; take .grade(0) or .components"
+                f"only a single scalar converts to float, got grades {self.grades} and shape {self.shape}; "
+                "use .grade(0) or .components"
             )
         return float(self._data[0])
 
     def __array__(self, *_: Any, **__: Any) -> Any:
-        raise TypeError("a multivector does not become an array by itself; take its .components")
+        raise TypeError("a multivector does not convert to an array; use its .components")
 
     def __array_function__(self, function: Any, *_: object) -> Any:
-        # np.array_equal would otherwise be False, and others name no remedy.
+        # Otherwise np.array_equal is False, and the errors of other functions do not help.
         raise TypeError(
-            f"np.{function.__name__} does not take multivectors; use their own methods, or their .components"
+            f"np.{function.__name__} does not accept multivectors; use their methods or their .components"
         )
 
     def __repr__(self) -> str:
@@ -167,7 +159,7 @@ class Multivector(_native.Multivector):
 
         return _format.latex(type(self).__name__, self._data, self.algebra._names(self._mask))
 
-    # --- the values behind the methods
+    # --- helpers of methods
 
     def _like(self, data: Any) -> Self:
         """Return a value of the same kind and grades."""
@@ -180,24 +172,19 @@ class Multivector(_native.Multivector):
     def _part(self, mask: int) -> Multivector:
         return self._of(self._with_grades(mask), mask, self.algebra)
 
-    def _with_grades(self, mask: int) -> Any:
-        """Return the components of the grades in `mask`, zeros for those not held: a new array."""
-        return _parts.with_grades(self, mask)
+    _with_grades = _grades.with_grades
+    _held = _grades.held
 
-    def _held(self) -> int:
-        """Return the grades, as bits, in which some component is not zero."""
-        return _parts.held(self)
-
-    # --- sums and scaling, where they are not native
+    # --- sums and scaling, called by native operators
 
     def _add(self, other: Any) -> Multivector:
-        return _parts.linear(self, other, operator.add)  # type: ignore[no-any-return]
+        return _grades.linear(self, other, operator.add)  # type: ignore[no-any-return]
 
     def _subtract(self, other: Any) -> Multivector:
-        return _parts.linear(self, other, operator.sub)  # type: ignore[no-any-return]
+        return _grades.linear(self, other, operator.sub)  # type: ignore[no-any-return]
 
     def _subtract_from(self, other: Any) -> Multivector:
-        return _parts.linear(-self, other, operator.add)  # type: ignore[no-any-return]
+        return _grades.linear(-self, other, operator.add)  # type: ignore[no-any-return]
 
     def _negated(self) -> Multivector:
         return self._like(-self._data)
@@ -205,16 +192,15 @@ class Multivector(_native.Multivector):
     def __pos__(self) -> Self:
         return self
 
-    def _divide(self, other: Any) -> Multivector:
-        return _functions.divided(self, other)
+    _divide = _functions.divided
 
     def __rtruediv__(self, other: Any) -> Multivector:
         dividend = coerced(other, self)
         return NotImplemented if dividend is None else dividend * self.inverse()
 
-    # --- products, where they are not native
+    # --- products, called by native operators
 
-    # An operator of a native type has no docstring of its own; a method in its place does, and warns.
+    # These methods have docstrings, with a warning, which operators of a native type cannot have.
     __xor__ = _native.Multivector._xor
     __or__ = _native.Multivector._or
 
@@ -236,27 +222,25 @@ class Multivector(_native.Multivector):
             raise TypeError(f"{name} needs a multivector, a number or an array, got {type(other).__name__}")
         return product(name, self, right, out)
 
-    def __pow__(self, n: Any) -> Multivector:
-        """Integer powers, negative ones through the inverse."""
-        return _functions.power(self, n)
+    __pow__ = _functions.power
 
     # --- involutions
 
     def _reversed(self) -> Multivector:
-        return _parts.signed(self, lambda k: k % 4 in (2, 3))
+        return _grades.signed(self, lambda k: k % 4 in (2, 3))
 
     def grade_involution(self) -> Multivector:
-        """Odd grades change sign."""
-        return _parts.signed(self, lambda k: k % 2 == 1)
+        """Reverse the sign of odd grades."""
+        return _grades.signed(self, lambda k: k % 2 == 1)
 
     def clifford_conjugate(self) -> Multivector:
-        """Reverse and grade involution: grades 1 and 2, 5 and 6 change sign."""
-        return _parts.signed(self, lambda k: k % 4 in (1, 2))
+        """Reverse and grade involution: the sign of grades 1, 2, 5, 6 is reversed."""
+        return _grades.signed(self, lambda k: k % 4 in (1, 2))
 
     def dual(self) -> Multivector:
         """``A I⁻¹``: the dual of a bivector of 3-d space is its axial vector, ``dual(e1∧e2) = e3``.
 
-        A TypeError where I has no inverse, as in Cl(3,0,1); `right_complement` takes its place there.
+        A TypeError where I has no inverse, as in Cl(3,0,1); use `right_complement` there.
         """
         return self * _functions.as_precise(self.algebra._inverse_of_I(), self)
 
@@ -265,128 +249,43 @@ class Multivector(_native.Multivector):
         self.algebra._inverse_of_I()
         return self * _functions.as_precise(self.algebra.I, self)
 
-    def right_complement(self) -> Multivector:
-        """Return what is missing from the whole space: linear, ``E ∧ rc(E) = I`` for basis elements E.
-
-        Needs no metric, so that it serves where I has no inverse.
-        """
-        from polhode._algebra import subspaces as _subspaces
-
-        return _subspaces.complement(self, right=True)
-
-    def left_complement(self) -> Multivector:
-        """``lc(E) ∧ E = I`` for basis elements E: the inverse of `right_complement`."""
-        from polhode._algebra import subspaces as _subspaces
-
-        return _subspaces.complement(self, right=False)
-
     # --- subspaces
 
-    def vee(self, other: Any) -> Multivector:
-        """``A∨B``, the regressive product: the wedge of complements, ``rc(A∨B) = rc(A) ∧ rc(B)``.
-
-        Of grade r + s − n: where two blades span the whole space, what they have in common.
-        """
-        from polhode._algebra import subspaces as _subspaces
-
-        return _subspaces.regressive(self, other)
-
-    def join(self, other: Multivector) -> Multivector:
-        """Return the unit blade of the smallest subspace that contains both blades.
-
-        Directions within 1e-10 (in single precision 3e-5) of a subspace count as lying in it. Components are
-        compared as lengths, the basis vectors as orthonormal, whatever the metric. For the sign see `meet`. A
-        ValueError for a value that is not a blade.
-        """
-        from polhode._algebra import subspaces as _subspaces
-
-        return _subspaces.joined(self, other, "join")
-
-    def meet(self, other: Multivector) -> Multivector:
-        """Return the unit blade of the subspace common to both blades; the scalar 1 where it is zero only.
-
-        Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``. Their
-        signs are, where
-
-        - A and B have nothing in common: ``M = 1``, and J has the sign of ``A∧B``;
-        - A contains B: ``J = A``, ``M = B``, divided by their sizes; where only B contains A, ``J = B``,
-          ``M = A``;
-        - elsewhere: the first of the largest components of J is positive. So where the two span the whole
-          space, ``J = I``, and M has the sign of ``A∨B``; in the first two cases it need not.
-
-        Tolerance as for `join`.
-        """
-        from polhode._algebra import subspaces as _subspaces
-
-        return _subspaces.joined(self, other, "meet")
+    right_complement = _subspaces.right_complement
+    left_complement = _subspaces.left_complement
+    vee = _subspaces.vee
+    join = _subspaces.join
+    meet = _subspaces.meet
+    project = _subspaces.project
+    reject = _subspaces.reject
+    reflect = _subspaces.reflect
 
     # --- sizes
 
-    def norm_squared(self) -> Any:
-        """``⟨A ~A⟩``, in 3-d space the sum of the squared components: of the batch shape."""
-        return _functions.norm_squared(self)
+    norm_squared = _functions.norm_squared
+    norm = _functions.norm
+    normalized = _functions.normalized
 
-    def norm(self) -> Any:
-        """``√⟨A ~A⟩`` without overflow on the way: a float, or an array of the batch shape.
-
-        Where squares may be negative, ``√abs⟨A ~A⟩``. At zero, where it has no derivative, those of JAX are
-        0; of its square they are right by `norm_squared` only.
-        """
-        return _functions.norm(self)
-
-    def normalized(self) -> Multivector:
-        """``A/|A|``; zero and non-finite values are an error."""
-        return _functions.normalized(self)
-
-    # --- functions, where they are not native
+    # --- functions, called by native methods
 
     def _function(self, name: str) -> Multivector:
         return _functions.exp(self) if name == "exp" else _functions.function(name, self)
 
-    # --- geometry
-
-    def project(self, blade: Multivector) -> Multivector:
-        """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹`` (a∥ of handout eq. 1.7)."""
-        return _functions.projected(self, blade)
-
-    def reject(self, blade: Multivector) -> Multivector:
-        """Return the part perpendicular to the subspace of `blade`: A minus its projection."""
-        return self - self.project(blade)
-
-    def reflect(self, n: Multivector) -> Multivector:
-        """Return the value in the mirror perpendicular to the vector n: ``−n a n⁻¹`` for a vector a.
-
-        ``n X̂ n⁻¹`` for any X, with X̂ its grade involution, so that mirrors respect ``∧``: scalars stay, I
-        changes sign. The mirror that is the plane of a bivector B has the normal ``B.dual()``.
-        """
-        from polhode._algebra.geometry import reflected
-
-        return reflected(self, n)
-
-    # --- comparison, where it is not native
+    # --- comparison, called by native operators
 
     def _equals(self, other: object) -> Any:
         right = coerced(other, self)
         return NotImplemented if right is None else _comparison.equal(self, right)
 
     def _differs(self, other: object) -> Any:
-        right = coerced(other, self)
-        return NotImplemented if right is None else _comparison.negated(_comparison.equal(self, right))
+        same = self._equals(other)
+        if same is NotImplemented:
+            return same
+        return not same if isinstance(same, bool) else ~same
 
-    def is_close(self, other: Any, rtol: float = 1e-9, atol: float = 0.0) -> Any:
-        """Whether ``|A − B| <= max(rtol · max(|A|, |B|), atol)``: a bool, or an array of the batch shape.
-
-        Sizes are those of the components, ``√Σ c²``.
-        """
-        right = coerced(other, self)
-        if right is None:
-            raise TypeError(f"cannot compare a multivector with {type(other).__name__}")
-        common_algebra(self, right)
-        return _comparison.close(self, right, rtol, atol)
+    is_close = _comparison.is_close
 
 
-def _rebuild(cls: type[Multivector], data: Any, mask: int, signature: tuple[int, int, int]) -> Multivector:
+def _rebuild(cls: type[Multivector], data: Any, mask: int, algebra: Algebra) -> Multivector:
     """Restore a pickled value."""
-    from polhode._algebra.algebra import algebra
-
-    return cls._restored(data, mask, algebra(*signature))
+    return cls._restored(data, mask, algebra)

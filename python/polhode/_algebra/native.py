@@ -1,22 +1,22 @@
-"""Types of two halves: operators and storage in Rust, everything else in Python."""
+"""Attaches Python methods to the native types, which have storage and operators."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-_OF_THE_BODY = {"__dict__", "__module__", "__qualname__", "__slots__", "__weakref__", "__static_attributes__"}
+_IMPLICIT = {"__dict__", "__module__", "__qualname__", "__slots__", "__weakref__", "__static_attributes__"}
 
 
 def joins(native: type) -> Callable[[type], Any]:
-    """Move the methods of a class body to the native type, which takes the place of the class.
+    """Attach the members of a class body to the native type, and return that instead of the class.
 
-    So values made in Rust, at the speed of Rust, have all the methods; a subclass could not be made there.
+    Values created in Rust then have all methods; Rust cannot create values of a Python subclass.
     """
 
     def join(half: type) -> type:
         for name, member in vars(half).items():
-            if name not in _OF_THE_BODY and not name.startswith("__firstlineno"):
+            if name not in _IMPLICIT and not name.startswith("__firstlineno"):
                 setattr(native, name, member)
         return native
 

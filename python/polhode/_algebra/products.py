@@ -1,4 +1,4 @@
-"""Products of any two values: over broadcast batches, into given arrays, with any coefficients."""
+"""Products of any two values: broadcasting, output arrays, any coefficients."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def product(name: str, left: Multivector, right: Multivector, out: Any = None) -> Multivector:
-    """Return a named product, or write it to `out` and return a view of that."""
+    """Return a named product, or write it to `out` and return a view of `out`."""
     algebra = common_algebra(left, right)
     mask, size = algebra._result(name, left._mask, right._mask)
     a, b = left._data, right._data
@@ -45,22 +45,22 @@ def aligned(a: Array, b: Array) -> tuple[Shape, Array, Array]:
 
 
 def result_array(shape: Shape, dtype: Any, operands: tuple[Array, ...], out: Any) -> Array:
-    """Return a new array for a result, or a view of `out` if it can take it."""
+    """Return a new array for a result, or a view of `out`; an error if `out` cannot hold it."""
     if out is None:
         return new(shape, dtype)
     if not isinstance(out, np.ndarray):
         raise TypeError(f"out must be a NumPy array, got {type(out).__name__}")
     if out.shape != shape or out.dtype != dtype:
-        raise ValueError(f"out is {out.dtype} of shape {out.shape}, the result {dtype} of shape {shape}")
+        raise ValueError(f"out must be {dtype} of shape {shape}, got {out.dtype} of shape {out.shape}")
     if not (out.flags.c_contiguous and out.flags.writeable):
         raise ValueError("out must be writable and in C order")
     if any(np.may_share_memory(out, operand) for operand in operands):
-        raise ValueError("out overlaps an operand; give an array of its own")
+        raise ValueError("out overlaps an operand; pass a separate array")
     return out.view()
 
 
 def common_algebra(left: Multivector, right: Multivector) -> Any:
-    """Return the algebra of both, or say which two they belong to."""
+    """Return the algebra of both; a TypeError if they differ."""
     algebra = left.algebra
     if algebra is not right.algebra:
         raise TypeError(f"the values belong to different algebras, {algebra} and {right.algebra}")
@@ -68,7 +68,7 @@ def common_algebra(left: Multivector, right: Multivector) -> Any:
 
 
 def coerced(value: Any, like: Multivector | None = None) -> Multivector | None:
-    """Return a multivector; a number or an array becomes scalars of the algebra of `like`; else None."""
+    """Convert to a multivector: a number or an array becomes scalars of the algebra of `like`; else None."""
     if isinstance(value, _native.Multivector):
         return value  # type: ignore[return-value]
     data = scalars(value, like._data if like is not None else None)

@@ -32,7 +32,7 @@ def _components(values: Any, size: int, what: str) -> Any:
 
 
 def _computed(name: str, *operands: Any) -> Any:
-    """Return a function of rows of components, batches broadcasting: native over floats, else generic."""
+    """Apply a function of rotors; batches broadcast. In the compiled core for floats, else generic."""
     if all(map(is_float, operands)):
         return mapped(getattr(_native, f"rotor_{name}"), joined(*operands))
     kind = kind_of(*operands)
@@ -44,12 +44,12 @@ class Rotor(_native.Rotor, Multivector):
     """A rotation, or an array of them: ``R = exp(−Bθ/2)`` turns by θ in the plane and sense of B.
 
     Active: ``R(X) = R X ~R`` for X of any grade; ``S*R`` turns by R first. Components
-    ``(1, e2e3, e3e1, e1e2)``, always of norm 1. R and −R turn alike; both are kept apart, so that
+    ``(1, e2e3, e3e1, e1e2)``, always of norm 1. R and −R are the same rotation but different rotors, so that
     a motion's rotor is continuous. The quaternion ``w + xi + yj + zk`` has the rotor
     ``w − x e2e3 − y e3e1 − z e1e2``.
 
-    What JAX gives as a derivative by a rotor comes as a Rotor too, but is none: only its `components` mean
-    something. Take derivatives by a bivector, a rotation vector or components instead.
+    A derivative with respect to a rotor by JAX has the type Rotor, but is not a rotor: only its `components`
+    are meaningful. Differentiate with respect to a bivector, a rotation vector or components instead.
     """
 
     __slots__ = ()
@@ -65,7 +65,7 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def identity(shape: int | Shape = ()) -> Rotor:
-        """Return the rotor 1, which turns nothing."""
+        """Return the rotor 1, the identity rotation."""
         return Rotor._from_rows(np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*batch_shape(shape), 4)).copy())
 
     @staticmethod
@@ -75,7 +75,7 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_plane_angle(B: Multivector, theta: Any) -> Rotor:
-        """``exp(−Bθ/2)``: turns by theta (radians) in the plane and sense of B, whose size is ignored."""
+        """``exp(−Bθ/2)``: turn by theta (radians) in the plane and sense of B, whose norm is ignored."""
         plane = one_grade(B, 2, "the plane")._data
         angle = number_like(theta, "angle", plane)
         if is_float(plane) and is_float(angle):
@@ -86,8 +86,8 @@ class Rotor(_native.Rotor, Multivector):
     def from_vectors(a: Multivector, b: Multivector) -> Rotor:
         """Turn the direction of a into that of b, the short way; lengths are ignored.
 
-        For opposite directions the plane is not determined: one through a and the basis vector farthest
-        from it is taken.
+        For opposite directions the plane is not unique; it is taken through a and the basis vector farthest
+        from a.
         """
         first, second = one_grade(a, 1, "the first direction"), one_grade(b, 1, "the second direction")
         return Rotor._from_rows(_computed("from_vectors", first._data, second._data))
@@ -137,14 +137,33 @@ class Rotor(_native.Rotor, Multivector):
     def from_euler(seq: str, angles: Any, degrees: bool = False) -> Rotor:
         """From Euler angles (..., n) about n = 1 to 3 axes, in radians; named as SciPy names them.
 
-        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes that turn along,
+        ``"xyz"`` turns about the fixed axes e1, then e2, then e3; ``"XYZ"`` about the axes of the body,
         so that ``from_euler("XYZ", [a, b, c]) == from_euler("zyx", [c, b, a])``. Neighbours in `seq` differ.
-        For one axis a single angle needs no array. Angles are numbers, SymPy expressions, or arrays of any
-        library, which stay theirs.
+        For one axis a single angle need not be an array. Angles are numbers, SymPy expressions, or arrays of
+        any library.
         """
         from polhode._algebra import euler
 
-        return euler.from_euler(seq, angles, degrees)
+        axes = euler.axes_of(seq, (1, 2, 3))
+        theta = as_coefficients(angles, "angles")
+        if not theta.shape:
+            theta = theta[None]
+        if theta.shape[-1] != len(axes):
+            raise ValueError(
+                f"sequence {seq!r} needs {len(axes)} angles in the last axis, got shape {tuple(theta.shape)}"
+            )
+        if degrees:
+            theta = euler.to_radians(theta)
+        planes = np.eye(3)[axes]
+        turns = [
+            Rotor.from_plane_angle(Multivector._of(plane, _BIVECTOR), theta[..., k])
+            for k, plane in enumerate(planes)
+        ]
+        # Turns about axes of the body are the same turns about fixed axes in the opposite order.
+        total, *others = turns[::-1] if seq.isupper() else turns
+        for turn in others:
+            total = turn * total
+        return total.astype(theta.dtype) if is_float(theta) else total
 
     @staticmethod
     def random(shape: int | Shape = (), rng: np.random.Generator | int | None = None) -> Rotor:
@@ -154,17 +173,17 @@ class Rotor(_native.Rotor, Multivector):
     # --- converters
 
     def to_matrix(self) -> Any:
-        """Rotation matrices (..., 3, 3) acting on columns."""
+        """Return rotation matrices (..., 3, 3) acting on columns."""
         return reshaped(_computed("to_matrix", self._data), (*self.shape, 3, 3))
 
     def to_quaternion(self, *, order: QuaternionOrder) -> Any:
-        """Quaternions (..., 4), Hamilton's and active; the order must be said."""
+        """Return quaternions (..., 4), Hamilton's and active; `order` is required."""
         wxyz_first = _to_wxyz(order)[0] == 0
         wxyz = _computed("to_quaternion", self._data)
         return wxyz if wxyz_first else taken(wxyz, [1, 2, 3, 0])
 
     def to_rotation_vector(self) -> Any:
-        """Vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
+        """Return vectors (..., 3) along the axis whose length is the angle in radians, at most π."""
         return _computed("to_rotation_vector", self._data)
 
     def to_scipy(self) -> Rotation:
@@ -179,16 +198,17 @@ class Rotor(_native.Rotor, Multivector):
         return quaternion.as_quat_array(self.to_quaternion(order="wxyz"))
 
     def to_euler(self, seq: str, degrees: bool = False) -> Any:
-        """Return Euler angles (..., 3) in radians about the three axes `seq`, for which see `from_euler`.
+        """Return Euler angles (..., 3) in radians about the three axes `seq`, named as in `from_euler`.
 
         The first and third lie in [−π, π]; the second in [0, π] if the first and third axes are the same
         ("zxz"), in [−π/2, π/2] if all differ. At the ends of its range, in gimbal lock, only a sum or
-        difference of the others is determined: the third angle is then 0, and the three angles give the
-        attitude as ever, so nothing is lost and nothing is warned of.
+        difference of the others is determined: the third angle is then 0. The three angles still give the
+        attitude, so there is no warning.
         """
         from polhode._algebra import euler
 
-        return euler.to_euler(self, seq, degrees)
+        angles = euler.angles_of(self.to_quaternion(order="wxyz"), seq)
+        return euler.to_degrees(angles) if degrees else angles
 
     def plane_angle(self) -> tuple[Multivector, Any]:
         """Return the unit plane B and the angle θ in [0, 2π] with ``R = exp(−Bθ/2)``; for R = ±1, e1∧e2."""
@@ -201,23 +221,34 @@ class Rotor(_native.Rotor, Multivector):
     def distance(self, other: Rotor) -> Any:
         """Return the angle in [0, π] of the turn from this attitude to the other, whatever their signs.
 
-        A float, or an array of the batch shape; accurate however close the attitudes are. Derivatives at 0,
-        where there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.
+        A float, or an array of the batch shape; accurate for close attitudes, too. Derivatives at 0, where
+        there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.
         """
-        from polhode._algebra import geometry
-
-        return geometry.distance(self, other)
+        # Half the angle has the cosine |⟨~R S⟩| and the sine |⟨~R S⟩₂| = |⟨~R (S ∓ R)⟩₂|, since ~R R is a
+        # scalar; between close attitudes that difference has no rounding.
+        if not isinstance(other, Rotor):
+            raise TypeError(f"distance needs another rotor, got {type(other).__name__}")
+        R, S, kind = self, other, kind_of(self._data, other._data)
+        if kind.native or kind.exact:  # arrays of another library stay theirs, with their derivatives
+            R, S, kind = R.astype(float), S.astype(float), kind_of()
+        cosine = (~R).scalar_product(S).components[..., 0]
+        nearer = S * kind.where(cosine < 0, kind.zeros_like(cosine) - 1.0, 1.0)
+        sine = (~R * (nearer - R)).grade(2).norm()
+        angle = 2 * kind.atan2(sine, kind.abs(cosine))
+        return angle[()] if kind.native else angle
 
     def astype(self, dtype: Any) -> Rotor:
-        """Return it with components of another type, of norm 1 in the precision of that."""
+        """Return the rotor with components of another type, of norm 1 in its precision."""
         return Rotor.from_components(Multivector.astype(self, dtype)._data)
 
     # --- action and algebra
 
     def _turn(self, X: Any, out: Any = None) -> Multivector:
-        """``R X ~R``, where it is not native."""
-        if not isinstance(X, Multivector):  # an array would be a batch of scalars, which stay as they are
-            raise TypeError(f"a rotor turns multivectors, got {type(X).__name__}; wrap arrays with ph.vector")
+        """``R X ~R``, for values that the native method does not cover."""
+        if not isinstance(X, Multivector):  # an array would be a batch of scalars, which do not turn
+            raise TypeError(
+                f"a rotor acts on multivectors, got {type(X).__name__}; wrap arrays with ph.vector"
+            )
         common_algebra(self, X)
         a, b = self._data, X._data
         if not (is_float(a) and is_float(b)):
@@ -231,7 +262,7 @@ class Rotor(_native.Rotor, Multivector):
         return X._like(result)
 
     def _log(self) -> Multivector:
-        """Return the logarithm, where it is not native."""
+        """Return the logarithm, for values that the native method does not cover."""
         data = self._data
         if not is_float(data):
             return Multivector._of(_generic.rotors.log(kind_of(data), data), _BIVECTOR)
@@ -244,15 +275,15 @@ class Rotor(_native.Rotor, Multivector):
         return ~self
 
     def sqrt(self) -> Rotor:
-        """Return the half-way rotor, whose square is R."""
+        """Return the rotor of half the angle, whose square is R."""
         return self**0.5
 
     def normalized(self) -> Rotor:
-        """Return itself: a rotor has norm 1."""
+        """Return the rotor itself, which has norm 1."""
         return self
 
     def grade_involution(self) -> Rotor:
-        """Return itself: a rotor is even."""
+        """Return the rotor itself, which is even."""
         return self
 
     def __pow__(self, n: Any) -> Rotor:
@@ -278,7 +309,7 @@ def _powers(R: Rotor, n: Array) -> Rotor:
 
 
 def _to_wxyz(order: str) -> list[int]:
-    """Return where w, x, y, z stand in a quaternion of this order."""
+    """Return the places of w, x, y, z in a quaternion of this order."""
     if order == "wxyz":
         return [0, 1, 2, 3]
     if order == "xyzw":

@@ -1,4 +1,4 @@
-"""Values as plain dictionaries, for JSON and the like."""
+"""Conversion of values to and from dictionaries that JSON can hold."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _DTYPES = {"float64": np.float64, "float32": np.float32, "object": object}
 
 
 def to_dict(value: Multivector) -> dict[str, Any]:
-    """Return signature, grades, whether it is a rotor, batch shape, type and components as nested lists.
+    """Return signature, grades, whether it is a rotor, batch shape, dtype and components as nested lists.
 
-    All of them are what JSON has: fractions are text, ``"1/3"``. `from_dict` gives the value back, with
-    every bit of it. A TypeError for symbolic coefficients; arrays of other libraries come back as floats.
+    JSON can hold all of them; a fraction is text, ``"1/3"``. `from_dict` restores the value, bit for bit. A
+    TypeError for symbolic coefficients; arrays of other libraries are restored as NumPy floats.
     """
     if not isinstance(value, _native.Multivector):
         raise TypeError(f"to_dict needs a multivector, got {type(value).__name__}")
@@ -49,14 +49,14 @@ def _plain(x: Any) -> Any:
 
 
 def from_dict(fields: Mapping[str, Any]) -> Multivector:
-    """Return the value that `to_dict` made the fields of. A ValueError names what does not fit."""
+    """Restore a value from the fields of `to_dict`; a ValueError for fields that are missing or wrong."""
     missing = _KEYS - set(fields)
     if missing:
         raise ValueError(f"a value needs the fields {sorted(_KEYS)}; missing: {sorted(missing)}")
     try:
         return _restored(fields)
     except (TypeError, ArithmeticError) as error:
-        raise ValueError(f"the fields do not make a value: {error}") from error
+        raise ValueError(f"invalid fields of a value: {error}") from error
 
 
 def _restored(fields: Mapping[str, Any]) -> Multivector:
@@ -79,7 +79,7 @@ def _restored(fields: Mapping[str, Any]) -> Multivector:
     if not fields["rotor"]:
         return Multivector._of(data, mask, space)
     if space is not algebra(3) or grades != [0, 2]:
-        raise ValueError(f"a rotor is of Cl(3) with grades [0, 2], got {space} with {grades}")
+        raise ValueError(f"a rotor must have algebra Cl(3) and grades [0, 2], got {space} with {grades}")
     unit = Rotor.from_components(data)
     # Dividing by a norm that is 1 but for rounding would change the last bits.
     rounding = 32 * np.finfo(data.dtype if is_float(data) else float).eps

@@ -1,4 +1,4 @@
-"""Blades as subspaces: complements, the regressive product, join and meet."""
+"""Blades as subspaces: complements, join and meet, projections and reflections."""
 
 from __future__ import annotations
 
@@ -16,8 +16,21 @@ if TYPE_CHECKING:
     from polhode._algebra.multivector import Multivector
 
 
-def complement(value: Multivector, right: bool) -> Multivector:
-    """Return the right or left complement: a permutation of the components, with signs."""
+def right_complement(value: Multivector) -> Multivector:
+    """Return the rest of the space: linear, ``E ∧ rc(E) = I`` for basis elements E.
+
+    Needs no metric, so it also exists where I has no inverse.
+    """
+    return _complement(value, right=True)
+
+
+def left_complement(value: Multivector) -> Multivector:
+    """Return the inverse of `right_complement`: ``lc(E) ∧ E = I`` for basis elements E."""
+    return _complement(value, right=False)
+
+
+def _complement(value: Multivector, right: bool) -> Multivector:
+    """Permute the components, with signs."""
     algebra, n = value.algebra, value.algebra.dimension
     mask = sum(1 << n - k for k in value.grades)
     images = algebra._complement(right)
@@ -26,16 +39,44 @@ def complement(value: Multivector, right: bool) -> Multivector:
     return value._of(with_signs(taken(value._data, list(places)), signs), mask, algebra)
 
 
-def regressive(left: Multivector, other: Any) -> Multivector:
-    """``A∨B``."""
+def vee(left: Multivector, other: Any) -> Multivector:
+    """Return ``A∨B``, the regressive product: the wedge of complements, ``rc(A∨B) = rc(A) ∧ rc(B)``.
+
+    Of grade r + s − n: the intersection of two blades that span the whole space.
+    """
     right = coerced(other, left)
     if right is None:
         raise TypeError(f"vee needs a multivector, a number or an array, got {type(other).__name__}")
     return left.right_complement().wedge(right.right_complement()).left_complement()
 
 
-def joined(left: Multivector, right: Multivector, name: str) -> Multivector:
-    """Return the join or the meet of blades of one grade each."""
+def join(left: Multivector, right: Multivector) -> Multivector:
+    """Return the unit blade of the smallest subspace that contains both blades.
+
+    Directions within 1e-10 (in single precision 3e-5) of a subspace count as lying in it. Components are
+    compared as lengths, the basis vectors as orthonormal, whatever the metric. For the sign see `meet`. A
+    ValueError for a value that is not a blade.
+    """
+    return _join_or_meet(left, right, "join")
+
+
+def meet(left: Multivector, right: Multivector) -> Multivector:
+    """Return the unit blade of the intersection of both blades; the scalar 1 where it is {0}.
+
+    Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``. The
+    signs are:
+
+    - if A and B have only 0 in common: ``M = 1``, and J has the sign of ``A∧B``;
+    - if A contains B: ``J = A``, ``M = B``, divided by their norms; if only B contains A, the reverse;
+    - otherwise the first of the largest components of J is positive. So if the two span the whole space,
+      ``J = I``, and M has the sign of ``A∨B``; in the first two cases it may not.
+
+    Tolerance as for `join`.
+    """
+    return _join_or_meet(left, right, "meet")
+
+
+def _join_or_meet(left: Multivector, right: Multivector, name: str) -> Multivector:
     if not isinstance(right, _native.Multivector):
         raise TypeError(f"{name} needs blades, got {type(right).__name__}")
     algebra = common_algebra(left, right)
@@ -56,3 +97,31 @@ def joined(left: Multivector, right: Multivector, name: str) -> Multivector:
     single = np.float32 in (left._data.dtype, right._data.dtype)
     result = left._of(_native.subspaces(algebra, name, a, b, single), everything, algebra)
     return result._part(result._held() or 1).astype(dtype)
+
+
+def project(value: Multivector, blade: Multivector) -> Multivector:
+    """Return the part in the subspace of `blade`: ``(A⌋B) B⁻¹``, over the grades of A (a∥ of eq. 1.7)."""
+    if not isinstance(blade, _native.Multivector) or blade._held().bit_count() > 1:
+        raise TypeError(f"the subspace must be a value of one grade, such as e1 or e1^e2, got {blade!r}")
+    unit = blade.normalized() if is_float(blade._data) else blade  # so that nothing overflows
+    return (value.left_contraction(unit) * unit.inverse())._part(value._mask)
+
+
+def reject(value: Multivector, blade: Multivector) -> Multivector:
+    """Return the part perpendicular to the subspace of `blade`: A minus its projection."""
+    return value - value.project(blade)
+
+
+def reflect(value: Multivector, n: Multivector) -> Multivector:
+    """Return the reflection in the plane perpendicular to the vector n: ``−n a n⁻¹`` for a vector a.
+
+    ``n X̂ n⁻¹`` for any X, with X̂ its grade involution, so that reflections respect ``∧``: scalars stay, I
+    changes sign. The plane of a bivector B has the normal ``B.dual()``.
+    """
+    if not isinstance(n, _native.Multivector) or any(np.any(n.grade(k) != 0) for k in n.grades if k != 1):
+        raise TypeError(f"a mirror is given by its normal, a vector; for a plane B use B.dual(); got {n!r}")
+    normal = n.grade(1)
+    # n⁻¹∧(n⌋X) is the part of X that contains n, and the one that changes sign.
+    mirrored = value - 2 * normal.inverse().wedge(normal.left_contraction(value))
+    first, *others = [mirrored.grade(k) for k in value.grades]
+    return sum(others, start=first)

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from polhode import _generic
 from polhode._algebra.coefficients import namespace
 from polhode._algebra.multivector import Multivector
 from polhode._formula.interpreter import Step, Walk
 from polhode._generic.exact import is_multiprecision, is_zero, sqrt
-from polhode._generic.numeric import Numeric
+from polhode._generic.numeric import Numeric, components
 from polhode._support.arrays import is_float
+from polhode._support.extras import register_pytree
 
 _SINGLE = 2.0**-23
 
@@ -119,7 +119,7 @@ def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
     residual, size = _worst(kind, [(r, s) for r, s in found])
     if kind.native:
         residual, size = residual[()], size[()]
-    _generic.pytrees.register(Agreement, _flattened, _restored)
+    register_pytree(Agreement, _flattened, _restored)
     return Agreement(residual, size, _rtol(walk, differences))
 
 
@@ -200,7 +200,7 @@ def _length(walk: Walk, data: Any) -> Any:
     _, kind = _floats(walk)
     if walk.kind.exact and not is_float(data):
         data = np.frompyfunc(_float, 1, 1)(data).astype(np.float64)
-    return kind.length(_generic.functions.components(kind.asarray(data)))
+    return kind.length(components(kind.asarray(data)))
 
 
 def _float(x: Any) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
-from polhode._algebra.coefficients import tell_jax
+from polhode._algebra.coefficients import register_pytrees
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._formula.arguments import Given, compiled, given
@@ -24,7 +24,7 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
     if len({_native.canonical(name) for name in names}) < len(names):
         raise TypeError(f"grad takes each name once, got {names!r}")
     jax = optional("jax", "jax", "the gradient of a formula")
-    tell_jax()
+    register_pytrees()
 
     def gradients(values: Mapping[str, Any] | None = None, /, **named: Any) -> Any:
         program, known = compiled(core, given(core, values, named))

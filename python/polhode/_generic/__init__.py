@@ -1,7 +1,7 @@
 """The algebra over arrays of any coefficients: exact, symbolic, traced, or on another device.
 
-The compiled core computes with float64. Here the same formulas walk over NumPy arrays of Python objects
-(`exact`) and over the arrays of any library that follows the array API (`numeric`): JAX, torch, CuPy, Dask.
+The compiled core computes with float64. Here the same formulas serve NumPy arrays of Python objects (`exact`)
+and the arrays of any library that follows the array API (`numeric`): JAX, torch, CuPy, Dask.
 """
 
 from __future__ import annotations
@@ -12,17 +12,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from polhode._generic import algebras as algebras
     from polhode._generic import coefficients as coefficients
-    from polhode._generic import eigen as eigen
-    from polhode._generic import euler as euler
     from polhode._generic import functions as functions
-    from polhode._generic import numeric as numeric
     from polhode._generic import products as products
-    from polhode._generic import pytrees as pytrees
     from polhode._generic import rotors as rotors
 
 
 def __getattr__(name: str) -> Any:
-    """Import a room of this package when it is first entered: computing with floats needs none of them."""
+    """Import a module of this package when it is first used: computing with floats needs none of them."""
     if name.startswith("_"):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return importlib.import_module(f"{__name__}.{name}")

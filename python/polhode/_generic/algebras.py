@@ -1,4 +1,4 @@
-"""inverse and exp in a geometric algebra of any signature, over arrays of any coefficients.
+"""Inverse and exp in algebras of any signature, over arrays of any coefficients.
 
 An algebra of n generators is its geometric product, a list of terms over all 2ⁿ blades (see `products`), of
 which the first is the scalar 1. Data are arrays (..., 2ⁿ).
@@ -6,19 +6,19 @@ which the first is the scalar 1. Data are arrays (..., 2ⁿ).
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from polhode._generic.closed_forms import free_root
 from polhode._generic.coefficients import Coefficients
-from polhode._generic.exact import call, divide, is_symbolic, is_zero
-from polhode._generic.functions import by_rows, components, require_in_range
-from polhode._generic.numeric import Numeric
+from polhode._generic.exact import by_rows, call, divide, is_symbolic, is_zero
+from polhode._generic.g3_exact import free_root
+from polhode._generic.g3_smooth import COSH, SINHC, horner
+from polhode._generic.numeric import Numeric, components, require_in_range
 from polhode._generic.products import Term, product
-from polhode._generic.smooth import COSH, SINHC, horner
 
 Array = Any
 
@@ -26,7 +26,7 @@ Array = Any
 _TAYLOR = [1 / math.factorial(k) for k in range(16)]
 # Halvings of an argument of unknown size: |M| up to 2¹¹.
 _TRACED_HALVINGS = 12
-# A product with the inverse this far from 1 has lost all but three digits.
+# A product with the inverse this far from 1: only three digits are left.
 _RESIDUAL = 2.0**-10
 
 
@@ -45,13 +45,15 @@ def inverse(
 
         U_k = U A_(k−1),   C_k = N/k ⟨U_k⟩,   A_k = U_k − C_k,   A_0 = 1,
 
-    ends in ``U A_(N−1) = ⟨U_N⟩``, a number. Only whole numbers divide, and that number at last. These are
-    identities between polynomials in the squares of the generators, so generators may square to 0 as well.
+    ends in ``U A_(N−1) = ⟨U_N⟩``, a number. The only divisions are by whole numbers and, at the end, by this
+    number. These are identities between polynomials in the squares of the generators, so generators may
+    square to 0 as well.
     """
     if isinstance(d, Numeric):
         with np.errstate(all="ignore"):
             regular = [data[..., i] for i in range(data.shape[-1]) if not null or null[i] == 0]
-            factors = _null_factors(d, null, data, _largest(d, regular))
+            largest = d.largest(regular)
+            factors = _null_factors(d, null, data, d.where(largest > 0, largest, 1.0))
             result = _refined_inverse(d, terms, generators, data * factors) / factors
             require_in_range(d, result)
             return result
@@ -73,7 +75,7 @@ def _adjugate(d: Coefficients, terms: Sequence[Term], generators: int, u: Array)
 
 
 def _refined_inverse(d: Numeric, terms: Sequence[Term], generators: int, data: Array) -> Array:
-    """The recursion loses digits; Newton's step ``X(2 − UX)`` for the inverse brings them back."""
+    """Return the inverse; Newton's step ``X(2 − UX)`` restores the digits that the recursion loses."""
     d.require_finite(components(data))
     scale = d.scale(components(data))[..., None]
     u, count = data / scale, data.shape[-1]
@@ -83,9 +85,7 @@ def _refined_inverse(d: Numeric, terms: Sequence[Term], generators: int, data: A
         x = product(d, terms, count, x, 2.0 * one - product(d, terms, count, u, x))
     residual = d.xp.max(d.xp.abs(product(d, terms, count, u, x) - one), axis=-1)
     d.require(residual <= _RESIDUAL, "no inverse: the multivector is singular to rounding")
-    result = x / scale
-    require_in_range(d, result)
-    return result
+    return x / scale
 
 
 def _number(d: Coefficients, like: Array, value: int) -> Array:
@@ -94,19 +94,11 @@ def _number(d: Coefficients, like: Array, value: int) -> Array:
     return d.stack([zero + value] + [zero] * (like.shape[-1] - 1))
 
 
-def _largest(d: Numeric, parts: list[Array]) -> Array:
-    """Return the largest magnitude, as a constant; 1 where all are 0."""
-    largest = d.xp.abs(d.constant(parts[0]))
-    for x in parts[1:]:
-        largest = d.xp.maximum(largest, d.xp.abs(d.constant(x)))
-    return d.where(largest > 0, largest, 1.0)
-
-
 def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Array:
-    """Return factors of the components (..., 2ⁿ) that bring those with generators of square 0 down to a size.
+    """Return factors of the components (..., 2ⁿ) that scale those with generators of square 0 down to a size.
 
-    To scale these generators by a number is an automorphism, so that far translations need not drown the
-    turns beside them, nor add to the halvings of an exponent.
+    Scaling these generators is an automorphism. With it, large translations do not swamp the rotations beside
+    them, nor do they need more halvings of an exponent.
     """
     root = d.zeros_like(data[..., 0]) + 1.0
     if not any(null):
@@ -116,7 +108,7 @@ def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Ar
             ratio = d.xp.abs(d.constant(data[..., i])) / size
             root = d.xp.maximum(root, ratio if count == 1 else ratio ** (1 / count))
     exponent = d.xp.ceil(d.xp.log2(d.where(d.xp.isfinite(root), root, 1.0)))
-    # Even the factor of a blade with all of them must not leave the range.
+    # The factor of a blade with all of them must stay in range, too.
     most = 0.875 * math.log2(float(d.xp.finfo(d.dtype).max)) // max(null)
     factor = 2.0 ** -d.where(exponent > most, most, exponent)
     powers = [d.zeros_like(factor) + 1.0]
@@ -131,19 +123,18 @@ def _null_factors(d: Numeric, null: Sequence[int], data: Array, size: Any) -> Ar
 def exp(
     d: Coefficients, terms: Sequence[Term], held: Sequence[int], data: Array, null: Sequence[int] = ()
 ) -> Array:
-    """``exp M``; `held` are the blades that M may have, its other components being 0, `null` as in `inverse`.
+    """``exp M``; `held` are the blades of M, its other components are 0; `null` as in `inverse`.
 
-    Where all blades held (but 1) anticommute, as those of vectors, the square of what they span is a number
-    and the result a closed form. Elsewhere the series is summed after halving, and squared back; exact and
-    symbolic values must have such a square by their components, or it is a TypeError.
+    If all blades held (but 1) anticommute, as those of vectors, the square of their sum is a number and the
+    result a closed form. Otherwise the series is summed after halving, and squared back; exact and symbolic
+    values must have such a square by their components, else a TypeError.
 
-    A value that only happens to have it, like a simple bivector in four dimensions, takes the series as well:
-    derivatives lead off such values. Values traced by JAX are computed up to ``Σ|m| = 2048``; beyond, NaN.
-    Components with generators of square 0 may have any size.
+    A value that only happens to have such a square, like a simple bivector in four dimensions, takes the
+    series as well, because derivatives lead away from such values. Values traced by JAX are computed up to
+    ``Σ|m| = 2048``; beyond, NaN. Components with generators of square 0 may have any size.
     """
     if not isinstance(d, Numeric):
-        rows = range(data.shape[-1])
-        return by_rows(lambda m: _exp_row(terms, m), data, list(rows))
+        return by_rows(functools.partial(_exp_row, terms), data)
     with np.errstate(all="ignore"):
         d.require_finite(components(data))
         simple = _anticommute(terms, [i for i in held if i != 0])
@@ -162,7 +153,7 @@ def _anticommute(terms: Sequence[Term], held: list[int]) -> bool:
 
 
 def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
-    """``e^s (cosh √w + V sinh √w / √w)`` for ``V² = w``, a number of any sign: a boost, a shift or a turn."""
+    """``e^s (cosh √w + V sinh √w / √w)`` for a number ``V² = w``: boost (w > 0), shift or turn (w < 0)."""
     s, *v = components(m)
     scale = d.scale(v) if v else d.zeros_like(s) + 1.0
     scaled = d.zeros_like(s)
@@ -173,7 +164,7 @@ def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
     small, turns = d.abs(w) < 1, w < 0
     near = d.where(small, w, 0.0)
     x = scale * d.sqrt(d.where(small, 1.0, d.abs(scaled)))
-    # Only of a boost is x an exponent; the exponents are added first, as their sum may be small.
+    # For a boost x is an exponent; exponents are added first, because their sum may be small.
     boost, turn = d.where(turns, 1.0, x), d.where(turns, x, 1.0)
     plus, minus = 0.5 * d.exp(s + boost), 0.5 * d.exp(s - boost)
     factor = d.exp(d.where(small | turns, s, 0.0))
@@ -185,7 +176,7 @@ def _closed_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
 
 
 def _series_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
-    """The series of M/2ᵏ, squared k times, k by the size of each value."""
+    """Sum the series of M/2ᵏ and square it k times; k depends on the size of each value."""
     size = d.xp.sum(d.xp.abs(d.constant(m)), axis=-1)[..., None]
     halvings = _TRACED_HALVINGS
     if d.is_concrete(size):
@@ -202,7 +193,7 @@ def _series_exp(d: Numeric, terms: Sequence[Term], m: Array) -> Array:
 
 
 def _taylor(d: Numeric, terms: Sequence[Term], x: Array) -> Array:
-    """Sixteen terms by six products: four blocks of four in the powers of x⁴ (Paterson and Stockmeyer)."""
+    """Sum sixteen terms with six products: four blocks of four in powers of x⁴ (Paterson and Stockmeyer)."""
     count = x.shape[-1]
     powers = [_number(d, x, 1), x]
     for _ in range(3):
@@ -217,7 +208,7 @@ def _taylor(d: Numeric, terms: Sequence[Term], x: Array) -> Array:
 
 
 def _exp_row(terms: Sequence[Term], m: list[Any]) -> list[Any]:
-    """The closed form for exact, symbolic or multiprecision components whose square is a number."""
+    """Return the closed form for exact components whose non-scalar part squares to a number."""
     s, v = m[0], [0, *m[1:]]
     square: list[Any] = [0] * len(m)
     for i, j, k, sign in terms:

@@ -1,4 +1,4 @@
-"""Which arithmetic serves given arrays: `of` tells, and the two kinds of answer are `Numeric` and `Exact`."""
+"""Choice of the arithmetic for given arrays: `of` returns a `Numeric` or an `Exact`."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from polhode._support.extras import optional
 
 Coefficients = Numeric | Exact
 
-# Libraries whose arrays follow the standard through array-api-compat only.
+# Libraries whose arrays need array-api-compat to follow the standard.
 _THROUGH_COMPAT = ("torch", "cupy", "dask", "ndonnx", "sparse")
 
 
 def of(*values: Any) -> Coefficients:
     """Return the arithmetic of these arrays, numbers and nested lists together.
 
-    Floats in NumPy arrays and Python numbers go along with everything. Exact coefficients (arrays of
-    objects, Fractions, SymPy expressions) go with them only, and so do the arrays of each other library;
-    another mix is a TypeError. NumPy alone gives NumPy, of float64.
+    Floats in NumPy arrays and Python numbers combine with everything. Exact coefficients (arrays of objects,
+    Fractions, SymPy expressions) combine with these only, and so do the arrays of each other library; any
+    other mix is a TypeError. NumPy alone gives NumPy with float64.
     """
     exact: list[Any] = []
     foreign: list[Any] = []
@@ -41,7 +41,7 @@ def of(*values: Any) -> Coefficients:
 
 
 def _numeric(arrays: list[Any]) -> Numeric:
-    """Return the arithmetic of arrays of one library, in the floating type that they have in common."""
+    """Return the arithmetic of arrays of one library, in their common floating type."""
     xp = _namespace(arrays[0])
     floating = []
     for array in arrays:
@@ -74,7 +74,7 @@ def _library(array: Any) -> str:
 
 
 def _namespace(array: Any) -> Any:
-    """Return the namespace of an array that is not NumPy's; None for what NumPy can take."""
+    """Return the namespace of an array of another library than NumPy; None for anything else."""
     if isinstance(array, np.ndarray | np.generic):
         return None
     if hasattr(array, "__array_namespace__"):

@@ -1,18 +1,22 @@
-"""NumPy arrays of Python objects: int, Fraction, SymPy expressions, mpmath numbers, and floats among them.
+"""Arithmetic of Python objects: int, Fraction, SymPy expressions, mpmath numbers, and floats among them.
 
-Exact stays exact: ``1/2`` is a Fraction, ``√(9/4)`` is ``3/2``, ``cos 0`` is 1. Where there is no exact value
-the function of the element's own library answers: SymPy's, mpmath's at its precision, else `math`.
+Exact stays exact: ``1/2`` is a Fraction, ``√(9/4)`` is ``3/2``, ``cos 0`` is 1. Without an exact value, the
+function of the element's own library is used: SymPy's, mpmath's at its precision, else `math`.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 import sys
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from numbers import Rational
 from typing import Any
 
 import numpy as np
+
+from polhode._support.arrays import at_index, first_index
 
 Array = Any
 
@@ -20,7 +24,7 @@ _WHOLE = 2.0**53  # larger floats are whole because they are rounded
 
 
 def is_symbolic(x: Any) -> bool:
-    """Whether x is a SymPy expression. SymPy is not imported for it: without SymPy there are none."""
+    """Whether x is a SymPy expression. Does not import SymPy: before its import there are none."""
     sympy = sys.modules.get("sympy")
     return sympy is not None and isinstance(x, sympy.Expr)
 
@@ -32,29 +36,28 @@ def is_multiprecision(x: Any) -> bool:
 
 
 def is_coefficient(x: Any) -> bool:
-    """Whether x is a number or expression that no array of floats holds."""
+    """Whether x is a number or expression that an array of floats cannot hold."""
     return isinstance(x, Fraction) or is_symbolic(x) or is_multiprecision(x)
 
 
 def checked(x: Any, index: tuple[int, ...] = ()) -> Any:
-    """Return the element as one of the types that are computed with; else a TypeError that names it."""
+    """Return the element as one of the supported types; a TypeError if it is of none."""
     if is_symbolic(x) or is_multiprecision(x) or type(x) in (int, float, Fraction):
         return x
     if isinstance(x, bool | np.bool_):
-        pass  # as an index or a mask it is a mistake
+        pass  # probably a mask passed by mistake
     elif isinstance(x, Rational):
         return divide(int(x.numerator), int(x.denominator))
     elif isinstance(x, float | np.floating):
         return float(x)
-    place = f" at index {index}" if index else ""
     raise TypeError(
-        f"the coefficient{place} is {x!r} ({type(x).__name__}); "
+        f"the coefficient{at_index(index)} is {x!r} ({type(x).__name__}); "
         "coefficients are int, float, Fraction, SymPy expressions or mpmath.mpf"
     )
 
 
 def met(x: float) -> Any:
-    """Return a float that meets exact coefficients: a whole one is the integer it stands for."""
+    """Convert a float that is combined with exact coefficients: a whole one becomes an integer."""
     return int(x) if x.is_integer() and abs(x) <= _WHOLE else x
 
 
@@ -62,7 +65,7 @@ def met(x: float) -> Any:
 
 
 def _library(*elements: Any) -> Any:
-    """Where the functions of these elements are: sympy, an mpmath context, or math."""
+    """Return the module with the functions of these elements: sympy, an mpmath context, or math."""
     if any(map(is_symbolic, elements)):
         return sys.modules["sympy"]
     for x in elements:
@@ -104,7 +107,7 @@ def sqrt(x: Any) -> Any:
 
 
 def divide(x: Any, y: Any) -> Any:
-    """``x/y``: of whole numbers and fractions a fraction, or the whole number that it is."""
+    """``x/y``; the quotient of whole numbers and fractions is an int or a Fraction."""
     if isinstance(x, int | Fraction) and isinstance(y, int | Fraction):
         quotient = Fraction(x) / y
         return quotient.numerator if quotient.denominator == 1 else quotient
@@ -112,7 +115,7 @@ def divide(x: Any, y: Any) -> Any:
 
 
 def is_zero(x: Any) -> bool:
-    """Whether x is 0; an expression such as ``1 − sin² − cos²`` also if it is only found to be."""
+    """Whether x is 0; an expression such as ``1 − sin² − cos²`` is evaluated at points to find out."""
     if not is_symbolic(x):
         return bool(x == 0)
     if x.is_zero is not None or x.is_number:
@@ -121,15 +124,15 @@ def is_zero(x: Any) -> bool:
 
 
 def _is_tiny(number: Any) -> bool:
-    """Whether thirty digits of an expression are 0. Those that have no digits do not count as 0."""
+    """Whether an expression is 0 to 20 digits; one that has no numerical value is not."""
     value = number.evalf(30)
     return bool(value.is_number and abs(value) < 1e-20)
 
 
 def _point(x: Any, sign: int) -> dict[Any, Any]:
-    """Unlikely values for the symbols and unknown functions in x, of this sign where they may have it.
+    """Return arbitrary values for the symbols and unknown functions in x, of this sign where it is allowed.
 
-    An expression that vanishes at two such points vanishes; to simplify it could take minutes.
+    An expression that vanishes at two such points is taken as 0; simplifying it could take minutes.
     """
     sympy = sys.modules["sympy"]
     unknown = x.atoms(sympy.core.function.AppliedUndef, sympy.Derivative) | x.free_symbols
@@ -148,46 +151,44 @@ def is_rounding(x: Any, tolerance: float) -> bool:
 
 
 def pi_beside(x: Any, pi: Any) -> Any:
-    """Return π as it goes with x: SymPy's beside an expression, else the number given."""
+    """Return SymPy's π if x is an expression, else the number given."""
     return sys.modules["sympy"].pi if is_symbolic(x) else pi
 
 
 def is_finite(x: Any) -> bool:
-    """Whether x is no NaN or infinity; expressions count as finite unless they are one."""
+    """Whether x is not NaN or infinite; expressions are finite unless SymPy knows otherwise."""
     if is_symbolic(x):
         return x.is_finite is not False and x is not sys.modules["sympy"].nan
     return isinstance(x, int | Fraction) or bool(_library(x).isfinite(x))
 
 
-_divide = np.frompyfunc(divide, 2, 1)
-_sqrt = np.frompyfunc(sqrt, 1, 1)
-_call = np.frompyfunc(call, 2, 1)
-
-
 class Exact:
-    """What NumPy arrays of Python objects can do."""
+    """Arithmetic of NumPy arrays of Python objects."""
 
     exact = True
     native = False
+    divide = np.frompyfunc(divide, 2, 1)
+    sqrt = np.frompyfunc(sqrt, 1, 1)
+    sin, cos, tan = (np.frompyfunc(functools.partial(call, name), 1, 1) for name in ("sin", "cos", "tan"))
 
     def __init__(self, context: Any = None) -> None:
-        self._context = context  # of mpmath, where its numbers are among the elements
+        self._context = context  # of mpmath, if its numbers are among the elements
 
     @property
     def eps(self) -> float:
-        """The spacing of numbers at 1, where they are rounded."""
+        """The spacing of rounded numbers at 1."""
         return 2.0**-52 if self._context is None else float(self._context.eps)
 
     @property
     def pi(self) -> Any:
-        """π, to the digits of mpmath's numbers where they are among the elements."""
+        """π, to the precision of the mpmath context if there is one."""
         return math.pi if self._context is None else +self._context.pi
 
     def asarray(self, values: Any) -> Array:
-        """Numbers, expressions, nested lists and arrays as an array of objects, every element checked.
+        """Convert numbers, expressions, nested lists and arrays to an array of objects; check every element.
 
-        Whole floats of a float array become the integers they stand for, so that ``Fraction(1, 3) * e1``
-        stays exact; other floats make floats of what they meet, as everywhere in Python.
+        Whole floats of a float array become integers, so that ``Fraction(1, 3) * e1`` stays exact; other
+        floats turn results into floats, as everywhere in Python.
         """
         given = np.asarray(values) if isinstance(values, np.ndarray) else np.array(values, dtype=object)
         if given.dtype.kind in "iuf":
@@ -200,17 +201,17 @@ class Exact:
         return array
 
     def _element(self, x: Any) -> Any:
-        """With mpmath numbers, rational ones become such: its differences do not take fractions."""
+        """Convert rational numbers among mpmath numbers, whose subtraction does not accept fractions."""
         if self._context is None or not isinstance(x, int | Fraction) or x == 0:
             return x
         return self._context.mpf(x.numerator) / x.denominator
 
     def zeros(self, shape: tuple[int, ...]) -> Array:
-        """Exact zeros of this shape."""
+        """Return exact zeros of this shape."""
         return np.zeros(shape, dtype=int).astype(object)
 
     def zeros_like(self, x: Array) -> Array:
-        """Exact zeros, as many as x has."""
+        """Return exact zeros in the shape of x."""
         return self.zeros(np.shape(x))
 
     def stack(self, components: list[Array]) -> Array:
@@ -222,36 +223,36 @@ class Exact:
         return stacked
 
     def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
-        """The same elements in another shape."""
+        """Return the elements in another shape."""
         return np.reshape(x, shape)
 
     def is_concrete(self, _: Array) -> bool:
-        """Elements can always be looked at."""
+        """Whether values are known: always."""
         return True
-
-    def divide(self, x: Array, y: Array) -> Array:
-        """``x/y``, exact where it can be."""
-        return _divide(x, y)
-
-    def sqrt(self, x: Array) -> Array:
-        """``√x``, exact where it can be."""
-        return _sqrt(x)
-
-    def sin(self, x: Array) -> Array:
-        """Return the sine."""
-        return _call("sin", x)
-
-    def cos(self, x: Array) -> Array:
-        """Return the cosine."""
-        return _call("cos", x)
-
-    def tan(self, x: Array) -> Array:
-        """Return the tangent."""
-        return _call("tan", x)
 
     def require(self, ok: Array, message: str) -> None:
         """Raise a ValueError, with the first index where `ok` is false."""
         if np.all(ok):
             return
-        index = tuple(int(i) for i in np.argwhere(~np.asarray(ok))[0])
+        index = first_index(~np.asarray(ok))
         raise ValueError(f"at index {index}: {message}" if index else message)
+
+
+def by_rows(f: Callable[[list[Any]], list[Any]], data: Array, places: Sequence[int] | None = None) -> Array:
+    """Apply f to each row of elements; keep the elements of its value at these places, by default as many.
+
+    An error gains the batch index.
+    """
+    wanted = range(data.shape[-1]) if places is None else places
+    result = np.empty((*data.shape[:-1], len(wanted)), dtype=object)
+    for index in np.ndindex(data.shape[:-1]):
+        row = list(data[index])
+        try:
+            if not all(map(is_finite, row)):
+                raise ValueError("a component is NaN or infinite; remove such values first")
+            values = f(row)
+        except ValueError as error:
+            raise ValueError(f"at index {index}: {error}" if index else str(error)) from None
+        for k, i in enumerate(wanted):
+            result[(*index, k)] = values[i]
+    return result

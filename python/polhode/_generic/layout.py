@@ -1,13 +1,14 @@
-"""Where the components of G3 stand: ``1 | e1 e2 e3 | e2e3 e3e1 e1e2 | I``, only those of the grades held.
+"""Components of G3 by grade: ``1 | e1 e2 e3 | e2e3 e3e1 e1e2 | I``, only those of the grades held.
 
-Grades are the bits of a mask.
+Grades are the bits of a mask. The complex numbers ``x + yI`` are the centre of G3.
 """
 
 from __future__ import annotations
 
+import operator
+from dataclasses import dataclass
 from typing import Any
 
-from polhode._generic.central import Central
 from polhode._generic.coefficients import Coefficients
 
 Array = Any
@@ -27,7 +28,7 @@ _INVERTED = (
 
 
 def indices(mask: int) -> list[int]:
-    """Which of the eight components the grades have."""
+    """Return the places of the grades among the eight components."""
     return [i for grade, blades in _BLADES.items() if mask & grade for i in blades]
 
 
@@ -51,16 +52,54 @@ def of_eight(d: Coefficients, components: list[Array], mask: int) -> Array:
     return d.stack([components[i] for i in indices(mask)])
 
 
-def split(m: list[Any]) -> tuple[Central, Central]:
-    """Return ζ and w of ``M = ζ + V``, ``V = a + B``: ``w = V² = a² + B² + 2 a∧B`` is central as well."""
+# --- the centre
+
+
+@dataclass(frozen=True, slots=True)
+class Complex:
+    """``re + im I``, an element of the centre of G3: I commutes with everything and squares to −1."""
+
+    re: Any
+    im: Any
+
+    def __add__(self, other: Complex) -> Complex:
+        return Complex(self.re + other.re, self.im + other.im)
+
+    def __sub__(self, other: Complex) -> Complex:
+        return Complex(self.re - other.re, self.im - other.im)
+
+    def __neg__(self) -> Complex:
+        return Complex(-self.re, -self.im)
+
+    def __mul__(self, other: Complex) -> Complex:
+        re, im = self.re, self.im
+        return Complex(re * other.re - im * other.im, re * other.im + im * other.re)
+
+    def times(self, number: Any) -> Complex:
+        """Return both parts times a number."""
+        return Complex(self.re * number, self.im * number)
+
+    def square(self) -> Any:
+        """``|z|²``."""
+        return self.re * self.re + self.im * self.im
+
+    def over(self, other: Complex, divide: Any = operator.truediv) -> Complex:
+        """Return the quotient; `divide` divides the parts."""
+        size = other.square()
+        numerator = self * Complex(other.re, -other.im)
+        return Complex(divide(numerator.re, size), divide(numerator.im, size))
+
+
+def split(m: list[Any]) -> tuple[Complex, Complex]:
+    """Return ζ and w of ``M = ζ + V``, ``V = a + B``: ``w = V² = a² + B² + 2 a∧B`` is complex as well."""
     a, b = m[1:4], m[4:7]
     square = a[0] * a[0] + a[1] * a[1] + a[2] * a[2] - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
     wedge = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    return Central(m[0], m[7]), Central(square, wedge + wedge)
+    return Complex(m[0], m[7]), Complex(square, wedge + wedge)
 
 
-def join(c: Central, m: list[Any], q: Central) -> list[Any]:
-    """``c + V q`` for central c and q, V being the vector and bivector part of m; ``a I`` is a bivector."""
+def join(c: Complex, m: list[Any], q: Complex) -> list[Any]:
+    """``c + V q`` for complex c and q, V being the vector and bivector part of m; ``a I`` is a bivector."""
     vector = [a * q.re - b * q.im for a, b in zip(m[1:4], m[4:7], strict=True)]
     bivector = [b * q.re + a * q.im for a, b in zip(m[1:4], m[4:7], strict=True)]
     return [c.re, *vector, *bivector, c.im]

@@ -1,4 +1,4 @@
-"""Floating-point arrays of any library that follows the array API standard."""
+"""Arithmetic of floating-point arrays of any library that follows the array API standard."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ Array = Any
 
 
 class Numeric:
-    """What arrays of one namespace can do: NumPy, JAX, torch, CuPy, Dask and whoever follows the standard.
+    """Arithmetic of the arrays of one namespace: NumPy, JAX, torch, CuPy, Dask or any other of the standard.
 
     All arrays of a computation have one floating type: float32 stays float32. Only functions of the
-    standard are used, and components are never assigned to: they are taken apart, and stacked again.
+    standard are used, those not defined here (`sqrt`, `sin`, `reshape` ...) directly. Components are never
+    assigned to: they are separated, and stacked again.
     """
 
     exact = False
@@ -28,9 +29,12 @@ class Numeric:
         self.dtype = xp.asarray(1.0).dtype if dtype is None else dtype
         self.placed = {} if device is None else {"device": device}
 
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.xp, name)
+
     @property
     def native(self) -> bool:
-        """True of NumPy, whose float64 the compiled core takes."""
+        """Whether these are NumPy's arrays, whose float64 the compiled core takes."""
         return self.xp is np
 
     @property
@@ -41,7 +45,7 @@ class Numeric:
     # --- arrays
 
     def asarray(self, values: Any) -> Array:
-        """Numbers, nested lists and arrays as one array of this kind."""
+        """Convert numbers, nested lists and arrays to one array of this kind."""
         if isinstance(values, list | tuple):
             parts = self.xp.broadcast_arrays(*(self.asarray(value) for value in values))
             return self.xp.stack(list(parts), axis=0)
@@ -51,23 +55,15 @@ class Numeric:
         return values if values.dtype == self.dtype else self.xp.astype(values, self.dtype)
 
     def zeros(self, shape: tuple[int, ...]) -> Array:
-        """Zeros of this shape."""
+        """Return zeros of this shape."""
         return self.xp.zeros(shape, dtype=self.dtype, **self.placed)
-
-    def zeros_like(self, x: Array) -> Array:
-        """Zeros, as many as x has."""
-        return self.xp.zeros_like(x)
 
     def stack(self, components: list[Array]) -> Array:
         """Broadcast the components together and lay them along a new last axis."""
         return self.xp.stack(list(self.xp.broadcast_arrays(*components)), axis=-1)
 
-    def reshape(self, x: Array, shape: tuple[int, ...]) -> Array:
-        """The same elements in another shape."""
-        return self.xp.reshape(x, shape)
-
     def is_concrete(self, x: Array) -> bool:
-        """Whether values can be looked at: not while JAX traces, nor in a Dask graph."""
+        """Whether values are known: not while JAX traces, nor in a Dask graph."""
         library = type(x).__module__.partition(".")[0]
         if library == "dask":
             return False
@@ -75,7 +71,7 @@ class Numeric:
         return jax is None or not isinstance(x, jax.core.Tracer)
 
     def constant(self, x: Array) -> Array:
-        """The same values, as numbers that no derivative is taken of."""
+        """Return the same values as constants, with respect to which no derivative is taken."""
         library = self.xp.__name__
         if library == "jax.numpy":
             return sys.modules["jax"].lax.stop_gradient(x)
@@ -100,30 +96,6 @@ class Numeric:
         """``x/y``."""
         return x / y
 
-    def sqrt(self, x: Array) -> Array:
-        """``√x``; where x is 0 the derivative is infinite."""
-        return self.xp.sqrt(x)
-
-    def exp(self, x: Array) -> Array:
-        """``eˣ``."""
-        return self.xp.exp(x)
-
-    def log(self, x: Array) -> Array:
-        """Return the natural logarithm."""
-        return self.xp.log(x)
-
-    def sin(self, x: Array) -> Array:
-        """Return the sine."""
-        return self.xp.sin(x)
-
-    def cos(self, x: Array) -> Array:
-        """Return the cosine."""
-        return self.xp.cos(x)
-
-    def tan(self, x: Array) -> Array:
-        """Return the tangent."""
-        return self.xp.tan(x)
-
     def atan2(self, y: Array, x: Array) -> Array:
         """Return the angle of the point (x, y), in [−π, π]."""
         return self.xp.atan2(*self.xp.broadcast_arrays(y, x))
@@ -131,22 +103,26 @@ class Numeric:
     # --- sizes
 
     def scale(self, components: list[Array]) -> Array:
-        """A size to divide by so that fourth powers neither overflow nor vanish: 1 wherever they do not.
+        """Return a divisor with which fourth powers neither overflow nor vanish: 1 wherever they do not.
 
-        What is computed of the quotients is homogeneous, so the scale counts as a constant: no derivative
-        is taken of it.
+        Results are homogeneous in the quotients, so the divisor counts as a constant for derivatives.
         """
-        largest = self.xp.abs(self.constant(components[0]))
-        for x in components[1:]:
-            largest = self.xp.maximum(largest, self.xp.abs(self.constant(x)))
+        largest = self.largest(components)
         info = self.xp.finfo(self.dtype)
         bound = 2.0 ** (int(math.log2(float(info.max))) // 10)
         usual = (largest >= 1 / bound) & (largest <= bound)
         usable = (largest > 0) & (largest <= float(info.max))
         return self.where(usable & ~usual, largest, self.xp.ones_like(largest))
 
+    def largest(self, components: list[Array]) -> Array:
+        """Return the largest magnitude, as a constant."""
+        largest = self.xp.abs(self.constant(components[0]))
+        for x in components[1:]:
+            largest = self.xp.maximum(largest, self.xp.abs(self.constant(x)))
+        return largest
+
     def length(self, components: list[Array], at_zero: Array | None = None) -> Array:
-        """``√Σx²`` without overflow; at 0, where it has no derivative, that is 0, or that of `at_zero`."""
+        """``√Σx²`` without overflow; its derivative at 0, where it has none, is 0, or that of `at_zero`."""
         scale = self.scale(components)
         square = squares(self, [x / scale for x in components])
         zero = square == 0
@@ -154,7 +130,7 @@ class Numeric:
         return self.where(zero, 0.0 if at_zero is None else at_zero, root)
 
     def direction(self, components: list[Array], default: list[float]) -> list[Array]:
-        """The components divided by their length; the default, a constant, for a length of 0."""
+        """Return the components divided by their length; where that is 0, the constant default."""
         scale = self.scale(components)
         scaled = [x / scale for x in components]
         square = squares(self, scaled)
@@ -179,6 +155,17 @@ class Numeric:
         for x in components[1:]:
             ok = ok & self.xp.isfinite(x)
         self.require(ok, "a component is NaN or infinite; remove such values first")
+
+
+def components(data: Array) -> list[Array]:
+    """Return the components as a list."""
+    return [data[..., i] for i in range(data.shape[-1])]
+
+
+def require_in_range(d: Numeric, values: Array) -> None:
+    """Raise a ValueError where a value is not finite."""
+    finite = d.xp.all(d.xp.isfinite(values), axis=-1)
+    d.require(finite, "the result is beyond the range of floating point; scale the argument down")
 
 
 def squares(d: Any, components: list[Array]) -> Array:

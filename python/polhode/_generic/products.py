@@ -1,7 +1,7 @@
 """Products of multivectors as lists of terms, over arrays of any coefficients.
 
-A term ``(i, j, k, sign)`` says that component k of the result gathers ``sign · a_i · b_j``. Such a list
-serves every product of every algebra.
+A term ``(i, j, k, sign)`` adds ``sign · a_i · b_j`` to component k of the result. Every product of every
+algebra is such a list.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from polhode._generic.coefficients import Coefficients
 Array = Any
 Term = tuple[int, int, int, int]
 
-# Up to so many terms are written out as sums of component products, which compilers fuse; more are gathered
-# by index, so that what is traced does not grow with the algebra.
+# Up to this number, terms are written out as sums of component products, which compilers fuse; beyond, they
+# are gathered by index, so that the traced program does not grow with the algebra.
 _WRITTEN_OUT = 128
 
 
@@ -41,7 +41,7 @@ def _written_out(d: Coefficients, terms: Sequence[Term], count: int, a: Array, b
 
 
 def _gathered(d: Any, terms: Sequence[Term], count: int, a: Array, b: Array) -> Array:
-    """Return ``Σ_t sign · a[left] · b[right]``, the terms of each component laid along a last axis."""
+    """Return ``Σ_t sign · a[left] · b[right]``, with the terms of each component along a last axis."""
     rows: list[list[Term]] = [[] for _ in range(count)]
     for term in terms:
         rows[term[2]].append(term)
@@ -53,7 +53,7 @@ def _gathered(d: Any, terms: Sequence[Term], count: int, a: Array, b: Array) -> 
             left[k, t], right[k, t], signs[k, t] = i, j, sign
     signs_here = d.asarray(signs)
     parts = _taken(d, a, left) * _taken(d, b, right) * signs_here
-    # What only fills up a row is left out, not multiplied by 0, which would keep infinities.
+    # Padding is replaced by 0, not multiplied by 0, which would keep infinities.
     return d.xp.sum(d.where(signs_here == 0, 0.0, parts), axis=-1)
 
 

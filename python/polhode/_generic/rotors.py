@@ -1,29 +1,36 @@
 """Rotors over arrays of any coefficients: components (..., 4) over ``(1, e2e3, e3e1, e1e2)``.
 
 `R = exp(−Bθ/2)` turns by θ in the plane and sense of B. With ``q = −b`` for the bivector part b, ``(s, q)``
-is the quaternion. Derivatives are finite also at R = ±1; where the plane of a turn is not told, it is e1∧e2.
+is the quaternion. Derivatives are finite at R = ±1, too; there the plane of the turn is taken as e1∧e2.
+Functions ``_exact_…`` take one row of exact components.
 """
 
 from __future__ import annotations
 
 import math
+import operator
 from typing import Any
 
 import numpy as np
 
-from polhode._generic import exact_rotors, functions, smooth
+from polhode._generic import functions, g3_exact
 from polhode._generic.coefficients import Coefficients
-from polhode._generic.functions import by_rows, components
-from polhode._generic.layout import BIVECTOR, eight, indices
-from polhode._generic.numeric import Numeric, squares
+from polhode._generic.exact import atan2, by_rows, call, divide, is_rounding, is_symbolic, is_zero, sqrt
+from polhode._generic.layout import BIVECTOR, EVEN, eight, indices
+from polhode._generic.numeric import Numeric, components, squares
 
 Array = Any
 Parts = list[Any]
 
 _E12 = [0.0, 0.0, 1.0]
 
-# How far a matrix may be from a rotation and still be read as one: max |MᵀM − 1|.
+# How far a matrix may be from a rotation: max |M Mᵀ − 1|.
 _MATRIX_TOLERANCE = 1e-4
+
+_NO_ROTOR = "all components are zero, which is not a rotor; give the identity as 1, 0, 0, 0"
+_NO_DIRECTION = "a vector of zero length has no direction; give a nonzero one"
+_NOT_A_ROTATION = "not a rotation matrix: M Mᵀ is not 1{}; orthogonalize it first"
+_REFLECTION = "the matrix has determinant −1, a reflection; a rotation has +1; flip an axis"
 
 
 # --- constructors
@@ -31,24 +38,12 @@ _MATRIX_TOLERANCE = 1e-4
 
 def from_components(d: Coefficients, c4: Array) -> Array:
     """From components (..., 4), divided by their norm."""
-    if not isinstance(d, Numeric):
-        return by_rows(exact_rotors.unit, c4, [0, 1, 2, 3])
-    with np.errstate(all="ignore"):
-        parts = components(c4)
-        d.require_finite(parts)
-        d.require(
-            d.length(parts) > 0,
-            "all components are zero, which is no rotor; give the identity as 1, 0, 0, 0",
-        )
-        return d.stack(d.direction(parts, [math.nan] * 4))
+    return d.stack(_unit(d, c4, _NO_ROTOR))
 
 
 def from_plane_angle(d: Coefficients, plane: Array, angle: Array) -> Array:
     """``exp(−Bθ/2)`` for planes (..., 3), whose size is ignored, and angles (...)."""
-    if isinstance(d, Numeric):
-        unit = _unit(d, plane, "a bivector of zero size spans no plane; give a nonzero one")
-    else:
-        unit = components(by_rows(exact_rotors.unit_plane, plane, [0, 1, 2]))
+    unit = _unit(d, plane, "a bivector of zero size spans no plane; give a nonzero one")
     half = d.divide(angle, 2)
     sin = d.sin(half)
     return d.stack([d.cos(half), *(-(sin * x) for x in unit)])
@@ -66,7 +61,7 @@ def from_quaternion(d: Coefficients, wxyz: Array) -> Array:
 
 
 def from_vectors(d: Coefficients, a: Array, b: Array) -> Array:
-    """Turn the directions of a (..., 3) into those of b the short way.
+    """Turn the directions of a (..., 3) to those of b the short way.
 
     For unit vectors ``c = a + b`` halves the angle, and ``R = ĉ a`` reflects twice. Near a half turn c is a
     small difference: taking out its rounding along ``a − b``, to which it is perpendicular, keeps its
@@ -74,10 +69,9 @@ def from_vectors(d: Coefficients, a: Array, b: Array) -> Array:
     """
     if not isinstance(d, Numeric):
         a, b = np.broadcast_arrays(a, b)
-        return by_rows(exact_rotors.from_vectors, d.stack([*components(a), *components(b)]), [0, 1, 2, 3])
-    message = "a vector of zero length has no direction; give a nonzero one"
-    a, b = _unit(d, a, message), _unit(d, b, message)
-    c, difference = _sum(a, b), [x - y for x, y in zip(a, b, strict=True)]
+        return by_rows(_exact_from_vectors, d.stack([*components(a), *components(b)]), range(4))
+    a, b = _unit(d, a, _NO_DIRECTION), _unit(d, b, _NO_DIRECTION)
+    c, difference = ([f(x, y) for x, y in zip(a, b, strict=True)] for f in (operator.add, operator.sub))
     size = squares(d, difference)
     wide = size > 1
     excess = d.where(wide, _dot(c, difference), 0.0) / d.where(wide, size, 1.0)
@@ -90,23 +84,43 @@ def from_vectors(d: Coefficients, a: Array, b: Array) -> Array:
     return d.stack(d.direction([_dot(c, a), *_cross(c, a)], [math.nan] * 4))
 
 
+def _exact_from_vectors(pair: Parts) -> Parts:
+    """``R ∝ |a||b| + b a``, which is ``(a + b) a`` for unit vectors; opposite ones as in `from_vectors`."""
+    a, b = pair[:3], pair[3:]
+    size = sqrt(_dot(a, a) * _dot(b, b))
+    if is_zero(size):
+        raise ValueError(_NO_DIRECTION)
+    rotor = [size + _dot(b, a), *_cross(b, a)]
+    if not all(is_zero(x) for x in rotor):
+        return g3_exact.unit(rotor)
+    farthest = _smallest(a)
+    axis = [int(i == farthest) for i in range(3)]
+    return g3_exact.unit([0, *_cross(axis, a)])
+
+
+def _smallest(a: Parts) -> int:
+    """Return the place of the smallest component; among symbols, of a zero, else the first."""
+    if any(map(is_symbolic, a)):
+        return next((i for i, x in enumerate(a) if is_zero(x)), 0)
+    return min(range(3), key=lambda i: abs(a[i]))
+
+
 def from_matrix(d: Coefficients, m: Array) -> Array:
     """From rotation matrices (..., 3, 3), or the nearest to what is one within 1e-4; scalar part >= 0."""
     if not isinstance(d, Numeric):
         nine = d.reshape(m, (*m.shape[:-2], 9))
-        return by_rows(exact_rotors.from_matrix, nine, [0, 1, 2, 3])
+        return by_rows(_exact_from_matrix, nine, range(4))
     with np.errstate(all="ignore"):
         rows = [[m[..., i, j] for j in range(3)] for i in range(3)]
         d.require_finite([x for row in rows for x in row])
         for i, x in enumerate(rows):
             for j, y in enumerate(rows):
                 near = d.abs(_dot(x, y) - float(i == j)) <= _MATRIX_TOLERANCE
-                d.require(near, "not a rotation matrix: M Mᵀ is not 1 within 1e-4; orthogonalize it first")
-        proper = _dot(rows[0], _cross(rows[1], rows[2])) > 0
-        d.require(proper, "the matrix has determinant −1, a reflection; a rotation has +1; flip an axis")
+                d.require(near, _NOT_A_ROTATION.format(" within 1e-4"))
+        d.require(_dot(rows[0], _cross(rows[1], rows[2])) > 0, _REFLECTION)
         for _ in range(3):
             rows = _nearer_rotation(rows)
-        return d.stack(d.direction(_shepperd(d, rows), [math.nan] * 4))
+        return d.stack(d.direction(_largest_candidate(d, rows), [math.nan] * 4))
 
 
 def _nearer_rotation(rows: list[Parts]) -> list[Parts]:
@@ -119,9 +133,9 @@ def _nearer_rotation(rows: list[Parts]) -> list[Parts]:
     ]
 
 
-def _shepperd(d: Numeric, m: list[Parts]) -> Parts:
-    """Components times the largest, which is at least ½ of the norm: Shepperd's choice of the four."""
-    squared, candidates = exact_rotors.shepperd(m)
+def _largest_candidate(d: Numeric, m: list[Parts]) -> Parts:
+    """Return the candidate with the largest divisor; scalar part >= 0, not normalized."""
+    squared, candidates = _shepperd(m)
     best, largest = candidates[0], squared[0]
     for size, candidate in zip(squared[1:], candidates[1:], strict=True):
         larger = size > largest
@@ -131,17 +145,53 @@ def _shepperd(d: Numeric, m: list[Parts]) -> Parts:
     return [sign * x for x in best]
 
 
+def _exact_from_matrix(nine: Parts) -> Parts:
+    """From the candidate with the largest divisor; among symbols, from the first that is not 0."""
+    m = [nine[:3], nine[3:6], nine[6:]]
+    for i, x in enumerate(m):
+        for j, y in enumerate(m):
+            if not is_rounding(_dot(x, y) - int(i == j), _MATRIX_TOLERANCE):
+                raise ValueError(_NOT_A_ROTATION.format(""))
+    if not is_rounding(_dot(m[0], _cross(m[1], m[2])) - 1, _MATRIX_TOLERANCE):
+        raise ValueError(_REFLECTION)
+    squared, candidates = _shepperd(m)
+    if any(map(is_symbolic, squared)):
+        best = next(c for size, c in zip(squared, candidates, strict=True) if not is_zero(size))
+        return g3_exact.unit(best)
+    best = max(zip(squared, candidates, strict=True), key=lambda pair: pair[0])[1]
+    return g3_exact.unit([-x for x in best] if best[0] < 0 else best)
+
+
+def _shepperd(m: list[Parts]) -> tuple[Parts, list[Parts]]:
+    """Return Shepperd's four candidates for the rotor of a matrix, and their squared divisors.
+
+    The divisors are 4s, 4x, 4y, 4z for the rotor's components; the largest is at least 2.
+    """
+    (a, b, c) = m
+    trace = a[0] + b[1] + c[2]
+    squared = [1 + trace, 1 + 2 * a[0] - trace, 1 + 2 * b[1] - trace, 1 + 2 * c[2] - trace]
+    p, q, r = b[2] - c[1], c[0] - a[2], a[1] - b[0]  # of the bivector, which is minus the quaternion's axis
+    u, v, w = c[1] + b[2], a[2] + c[0], b[0] + a[1]
+    rotors = [
+        [squared[0], p, q, r],
+        [p, squared[1], w, v],
+        [q, w, squared[2], u],
+        [r, v, u, squared[3]],
+    ]
+    return squared, rotors
+
+
 # --- converters
 
 
 def to_quaternion(d: Coefficients, r: Array) -> Array:
-    """Quaternions (..., 4) in the order w, x, y, z, Hamilton's and active."""
+    """Return quaternions (..., 4) in the order w, x, y, z, Hamilton's and active."""
     s, x, y, z = components(r)
     return d.stack([s, -x, -y, -z])
 
 
 def to_matrix(d: Coefficients, r: Array) -> Array:
-    """Rotation matrices (..., 3, 3) acting on columns."""
+    """Return rotation matrices (..., 3, 3) acting on columns."""
     parts = components(r)
     columns = [_turn(parts, [int(i == j) for i in range(3)]) for j in range(3)]
     nine = d.stack([columns[j][i] for i in range(3) for j in range(3)])
@@ -149,16 +199,26 @@ def to_matrix(d: Coefficients, r: Array) -> Array:
 
 
 def to_rotation_vector(d: Coefficients, r: Array) -> Array:
-    """Vectors (..., 3) along the axis whose length is the angle, at most π."""
+    """Return vectors (..., 3) along the axis whose length is the angle, at most π."""
     if not isinstance(d, Numeric):
-        return by_rows(exact_rotors.to_rotation_vector, r, [0, 1, 2])
+        return by_rows(_exact_rotation_vector, r, range(3))
     return -2.0 * log(d, d.where(r[..., :1] < 0, -r, r))
+
+
+def _exact_rotation_vector(r: Parts) -> Parts:
+    """``−2 B/|B| artan(|B|/s)``: the shorter way round for either sign of s."""
+    s, b = r[0], r[1:]
+    size = g3_exact.length(b)
+    if is_zero(size):
+        return [0, 0, 0]
+    angle = atan2(size, 0) if is_zero(s) else call("atan", divide(size, s))
+    return [divide(-2 * angle * x, size) for x in b]
 
 
 def plane_angle(d: Coefficients, r: Array) -> tuple[Array, Array]:
     """Return unit planes (..., 3) and angles (...) in [0, 2π]; for R = ±1 the plane is e1∧e2."""
     if not isinstance(d, Numeric):
-        pairs = by_rows(exact_rotors.plane_angle, r, [0, 1, 2, 3])
+        pairs = by_rows(_exact_plane_angle, r)
         return pairs[..., :3], pairs[..., 3][()]
     s, *b = components(r)
     with np.errstate(all="ignore"):
@@ -166,18 +226,21 @@ def plane_angle(d: Coefficients, r: Array) -> tuple[Array, Array]:
         return d.stack(plane), 2.0 * d.atan2(d.length(b), s)
 
 
+def _exact_plane_angle(r: Parts) -> Parts:
+    """Return the unit plane and the angle."""
+    s, b = r[0], r[1:]
+    size = abs(g3_exact.length(b))
+    plane = [0, 0, 1] if is_zero(size) else [divide(-x, size) for x in b]
+    return [*plane, 2 * atan2(size, s)]
+
+
 def log(d: Coefficients, r: Array) -> Array:
     """Return the bivectors (..., 3) of size at most π whose exp is R."""
-    if not isinstance(d, Numeric):
-        return by_rows(exact_rotors.log, r, [0, 1, 2])
-    s, *b = components(r)
-    zero = d.zeros_like(s)
-    with np.errstate(all="ignore"):
-        return d.stack(smooth.log_even(d, [s, zero, zero, zero, *b, zero])[4:7])
+    return functions.log(d, r, EVEN)[0][..., 1:]
 
 
 def power(d: Coefficients, r: Array, n: Any) -> Array:
-    """``exp(n log R)`` for numbers n (...); whole numbers multiply exact rotors out."""
+    """``exp(n log R)`` for numbers n (...); whole powers of exact rotors by products."""
     if d.exact and isinstance(n, int):
         return _whole_power(d, r, n)
     turn = log(d, r)
@@ -223,13 +286,15 @@ def _turn(rotor: Parts, a: Parts) -> Parts:
 # --- vectors as lists of components
 
 
-def _unit(d: Numeric, vectors: Array, message: str) -> Parts:
-    """Return the components of the directions; a ValueError where there is none."""
+def _unit(d: Coefficients, data: Array, message: str) -> Parts:
+    """Return the components divided by their norm; a ValueError where it is 0."""
+    if not isinstance(d, Numeric):
+        return components(by_rows(lambda row: g3_exact.unit(row, message), data))
     with np.errstate(all="ignore"):
-        parts = components(vectors)
+        parts = components(data)
         d.require_finite(parts)
         d.require(d.length(parts) > 0, message)
-        return d.direction(parts, [math.nan] * 3)
+        return d.direction(parts, [math.nan] * len(parts))
 
 
 def _farthest(d: Numeric, a: Parts) -> Parts:
@@ -239,10 +304,6 @@ def _farthest(d: Numeric, a: Parts) -> Parts:
     second = ~first & (y <= z)
     chosen = first, second, ~(first | second)
     return [d.where(here, d.zeros_like(x) + 1.0, 0.0) for here in chosen]
-
-
-def _sum(a: Parts, b: Parts) -> Parts:
-    return [x + y for x, y in zip(a, b, strict=True)]
 
 
 def _dot(a: Parts, b: Parts) -> Any:

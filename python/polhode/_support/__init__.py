@@ -1,1 +1,1 @@
-"""What every other folder uses: arrays, files, optional libraries and memory."""
+"""Helpers for all other folders: arrays, files, optional libraries and memory."""

@@ -1,4 +1,4 @@
-"""From what people pass to arrays of float64, and on to rows for the native kernels."""
+"""Convert arguments to arrays of float64, and arrays to rows for the compiled core."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ Shape = tuple[int, ...]
 T = TypeVar("T")
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
-_LARGE = 1 << 20  # bytes; smaller ones the allocator keeps itself
+_LARGE = 1 << 20  # bytes; the allocator reuses smaller blocks itself
 
 
 def as_floats(values: Any, what: str) -> Array:
-    """Real numbers of any kind as float64; anything else is a TypeError that names it."""
+    """Convert real numbers of any kind to float64; a TypeError for anything else."""
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -41,7 +41,7 @@ def as_floats(values: Any, what: str) -> Array:
 
 
 def as_float(value: Any, what: str) -> float:
-    """Return one real number; anything else is a TypeError that names it."""
+    """Convert one real number; a TypeError for anything else."""
     array = as_floats(value, what)
     if array.ndim:
         raise TypeError(f"{what} must be one number, got shape {array.shape}")
@@ -49,14 +49,14 @@ def as_float(value: Any, what: str) -> float:
 
 
 def output_times(times: Any) -> Array:
-    """Return times (n,); a single number, which would be read as a duration, is a ValueError."""
+    """Return times (n,); a ValueError for a single number, which could be meant as a duration."""
     array = as_floats(times, "times")
     check_line(array.shape, times)
     return array
 
 
 def check_line(shape: Shape, times: Any) -> None:
-    """Raise a ValueError unless this is the shape of times (n,)."""
+    """Raise a ValueError unless the shape is (n,)."""
     if not shape:
         raise ValueError(
             f"times must be an array of output times, got the number {times}; give [T] for the state at time "
@@ -67,7 +67,7 @@ def check_line(shape: Shape, times: Any) -> None:
 
 
 def as_count(value: Any, what: str) -> int:
-    """Return a whole number; anything else is a TypeError that names it."""
+    """Convert a whole number; a TypeError for anything else."""
     try:
         return operator.index(value)
     except TypeError:
@@ -83,19 +83,19 @@ def as_components(values: Any, size: int, what: str) -> Array:
 
 
 def is_float(data: Any) -> bool:
-    """Whether these are NumPy floats, which the compiled core takes."""
+    """Whether this is a NumPy array of float64 or float32, which the compiled core accepts."""
     return isinstance(data, np.ndarray) and data.dtype in _FLOATS
 
 
 def mapped(f: Callable[[Array], Array], data: Any) -> Any:
-    """Return f of float64 rows; of float32 rows, computed in float64 and rounded."""
+    """Return f of the rows, computed in float64 and rounded to their type."""
     result = f(np.ascontiguousarray(data, dtype=np.float64))
     with np.errstate(over="ignore"):
         return result.astype(data.dtype, copy=False)
 
 
 def new(shape: Shape, dtype: Any) -> Array:
-    """Return an array to be filled; a large one in memory that is used again when it is gone."""
+    """Return an uninitialized array; a large one takes memory from a pool."""
     wanted = np.dtype(dtype)
     size = math.prod(shape)
     if size * wanted.itemsize < _LARGE:
@@ -111,9 +111,9 @@ def frozen(array: Array) -> Array:
 
 
 def copied(value: Any) -> Any:
-    """Return a copy of a NumPy array, for a caller who may change it and not the value that holds it.
+    """Return a copy of a NumPy array, which the caller may change.
 
-    Of a dictionary return one of copies; anything else as it is.
+    Of a dictionary, return a dictionary of copies; anything else unchanged.
     """
     if isinstance(value, dict):
         return {name: copied(x) for name, x in value.items()}
@@ -126,32 +126,32 @@ def copied(value: Any) -> Any:
     return copy
 
 
-class _Copied:
-    """An attribute that holds an array and gives copies of it."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def __get__(self, instance: Any, owner: Any = None) -> Any:
-        return self if instance is None else copied(instance.__dict__[self._name])
-
-    def __set__(self, instance: Any, value: Any) -> None:
-        instance.__dict__[self._name] = value
-
-
 def hands_out_copies(*names: str) -> Callable[[type[T]], type[T]]:
-    """Make these fields of a frozen dataclass, which hold arrays, give copies of them."""
+    """Make these fields of a frozen dataclass return copies of the arrays they hold."""
+
+    def copying(name: str) -> property:
+        return property(lambda self: copied(vars(self)[name]), lambda self, x: vars(self).update({name: x}))
 
     def with_copies(cls: type[T]) -> type[T]:
         for name in names:
-            setattr(cls, name, _Copied(name))
+            setattr(cls, name, copying(name))
         return cls
 
     return with_copies
 
 
+def first_index(where: Any) -> tuple[int, ...]:
+    """Return the index of the first true element."""
+    return tuple(int(i) for i in np.argwhere(where)[0])
+
+
+def at_index(index: tuple[int, ...]) -> str:
+    """Return `` at index …`` for a message; nothing for a single value."""
+    return f" at index {index}" if index else ""
+
+
 def rows(data: Array, batch: Shape) -> Array:
-    """Return data in C order with one row of components, or one for each value of the batch."""
+    """Return data in C order: one row of components, or one for each value of the batch."""
     size = data.shape[-1]
     if data.size != size and data.shape[:-1] != batch:
         data = np.broadcast_to(data, (*batch, size))
@@ -176,7 +176,7 @@ def batch_shape(shape: Any) -> Shape:
 
 
 def joined(*parts: Array) -> Array:
-    """Broadcast the batches together and lay the components side by side in the last axis."""
+    """Broadcast the batches together and concatenate the components in the last axis."""
     if len(parts) == 1:
         return np.ascontiguousarray(parts[0])
     batch = np.broadcast_shapes(*(part.shape[:-1] for part in parts))

@@ -1,4 +1,4 @@
-"""Files written whole or not at all."""
+"""Atomic writing of files, and the suffixes of output files."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pathlib import Path
 
 
 def write_atomically(contents: Mapping[Path, bytes | Path]) -> None:
-    """Write files so that at any moment each path holds the old content or all of the new.
+    """Write files atomically: each path holds either its old content or all of the new.
 
-    A content is bytes, or a file that `unfinished` made for this path. The bytes of all go to temporary
-    files beside them and reach the disk; only then do these take the names, in one step each. On any failure
-    before that no file has changed and the temporary ones are removed; the error, an OSError, names the path.
+    A content is bytes, or a file that `unfinished` yielded for this path. All contents are written to
+    temporary files in the same directories and flushed to disk; then each is renamed in one step. If writing
+    fails, no file has changed and the temporary files are removed; the error, an OSError, names the path.
     """
     with contextlib.ExitStack() as stack:
         ready = {
@@ -27,7 +27,7 @@ def write_atomically(contents: Mapping[Path, bytes | Path]) -> None:
 
 @contextlib.contextmanager
 def unfinished(target: Path) -> Iterator[Path]:
-    """Yield an empty file beside the target, for a content that grows; removed at the end if still there."""
+    """Yield a temporary file beside the target, to be filled; removed at the end if it still exists."""
     check_target(target)
     with _naming(target):
         handle, path = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
@@ -39,7 +39,7 @@ def unfinished(target: Path) -> Iterator[Path]:
             os.unlink(path)
 
 
-# Suffixes of what is written to files.
+# Suffixes of output files.
 _FORMS = {
     "a motion": ("nc",),
     "a page": ("html", "htm"),
@@ -49,7 +49,7 @@ _FORMS = {
 
 
 def form_of(path: str | os.PathLike[str], what: str) -> str:
-    """Return the suffix of a name, in lower case; a ValueError if it is not one of what is written."""
+    """Return the suffix of a path in lower case; a ValueError if this output cannot have it."""
     forms = _FORMS[what]
     form = Path(path).suffix.lower().removeprefix(".")
     if form not in forms:
@@ -60,7 +60,7 @@ def form_of(path: str | os.PathLike[str], what: str) -> str:
 
 
 def check_target(target: Path) -> None:
-    """Raise an OSError that names the path if a file could not be put there."""
+    """Raise an OSError that names the path if a file cannot be written there."""
     with _naming(target):
         if not target.parent.is_dir():
             raise OSError(f"there is no directory {target.parent}; make it first")
@@ -72,7 +72,7 @@ def check_target(target: Path) -> None:
 
 @contextlib.contextmanager
 def _temporary(target: Path, content: bytes | Path) -> Iterator[str]:
-    """Yield a file beside the target with all of the content; removed at the end if it is still there."""
+    """Yield a temporary file beside the target with the content; removed at the end if it still exists."""
     with contextlib.ExitStack() as stack:
         path = content if isinstance(content, Path) else stack.enter_context(unfinished(target))
         with _naming(target), path.open("r+b") as file:
@@ -93,7 +93,7 @@ def _naming(target: Path) -> Iterator[None]:
 
 
 def _mode(target: Path) -> int:
-    """Return the permissions of the file that is replaced, or those a new file would get."""
+    """Return the permissions of the replaced file, or those of a new file."""
     if target.exists():
         return target.stat().st_mode & 0o7777
     mask = os.umask(0)

@@ -1,4 +1,4 @@
-"""How much memory a process may still have, asked before a large result is computed."""
+"""Free memory, checked before a large result is computed."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from pathlib import Path
 
 _PROC = Path("/proc")
 _CGROUP = Path("/sys/fs/cgroup")
-_SMALL = 1 << 26  # bytes; to ask the system takes longer than to compute so many
+_SMALL = 1 << 26  # bytes; asking the system takes longer than computing a result of this size
 
 
 def available() -> int | None:
-    """Return the bytes that may still be had, None where the system does not tell.
+    """Return the number of free bytes; None where the system does not report it.
 
-    The least of what Linux says is available and of what the limits of the control groups leave. Pages of
-    files that it would give up are free.
+    The minimum of the memory that Linux reports as available and of what the control groups' limits leave;
+    cached files count as free.
     """
     return min([*_of_machine(), *_of_groups()], default=None)
 
 
 def require(bytes_wanted: int, what: str, remedy: str = "ask for fewer at a time") -> None:
-    """Raise a MemoryError if so many bytes are not to be had; ``what`` is its subject, in the plural."""
+    """Raise a MemoryError if there are fewer free bytes; ``what`` is its subject, in the plural."""
     if bytes_wanted < _SMALL:
         return
     free = available()
@@ -29,7 +29,7 @@ def require(bytes_wanted: int, what: str, remedy: str = "ask for fewer at a time
 
 
 def size(count: int) -> str:
-    """Bytes as people say them: three digits and a decimal unit."""
+    """Return a number of bytes with three digits and a decimal unit."""
     number = float(count)
     for unit in ("bytes", "kB", "MB", "GB", "TB", "PB"):
         if number < 999.5:
@@ -45,10 +45,10 @@ def _of_machine() -> Iterator[int]:
 
 
 def _of_groups() -> Iterator[int]:
-    """What is left in the group of this process and in those around it.
+    """Yield the free memory of the control group of this process and of its ancestors.
 
-    The file names a group by its path from the root of the hierarchy; in a container that root may be out of
-    sight and the mounted one is the group, so that a path that is not there is passed over.
+    The file names a group by its path from the root of the hierarchy. In a container that root may not be
+    visible and the group itself is mounted, so paths that do not exist are skipped.
     """
     for line in _lines(_PROC / "self" / "cgroup"):
         controllers, path = line.split(":", 2)[1:]
@@ -65,7 +65,7 @@ def _left(root: Path, inner: Path, names: tuple[str, str, str]) -> Iterator[int]
     limit_name, usage_name, cache_name = names
     for group in (root / inner, *(root / parent for parent in inner.parents)):
         limits, usages = _lines(group / limit_name), _lines(group / usage_name)
-        # "max" is no limit.
+        # "max" means no limit.
         if limits and usages and limits[0].strip().isdecimal():
             entries = (line.split() for line in _lines(group / "memory.stat"))
             cache = sum(int(entry[1]) for entry in entries if entry and entry[0] == cache_name)
@@ -73,7 +73,7 @@ def _left(root: Path, inner: Path, names: tuple[str, str, str]) -> Iterator[int]
 
 
 def _lines(path: Path) -> list[str]:
-    """Lines of a file; none where there is no such file."""
+    """Return the lines of a file; none if it does not exist."""
     try:
         return path.read_text().splitlines()
     except OSError:

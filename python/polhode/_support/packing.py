@@ -1,4 +1,4 @@
-"""Bytes as text for JSON: gzip in base64, which the page unpacks (`viewer/src/packed.ts`)."""
+"""Bytes as text for JSON: gzip in base64, unpacked by the page in `viewer/src/packed.ts`."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import gzip
 
 
 def packed(content: bytes) -> str:
-    """Return the text; the same for the same bytes."""
+    """Return the text of the bytes; equal bytes give equal text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode("ascii")
 
 
 def unpacked(text: str) -> bytes:
-    """Return the bytes that `packed` was given."""
+    """Return the bytes of a text from `packed`."""
     return gzip.decompress(base64.b64decode(text))

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar, dataclass_transform
 
+from polhode._generic.g3_smooth import log_even
 from polhode._generic.numeric import Numeric
-from polhode._generic.smooth import log_even
 from polhode.jax._components import (
     Four,
     Three,

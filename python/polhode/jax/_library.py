@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from polhode._algebra.coefficients import tell_jax
+from polhode._algebra.coefficients import register_pytrees
 from polhode._support.extras import optional
 
 jax: Any = optional("jax", "jax", "polhode.jax")
 jnp: Any = optional("jax.numpy", "jax", "polhode.jax")
 lax: Any = jax.lax
 
-tell_jax()
+register_pytrees()

@@ -1,23 +1,25 @@
-"""exp, log and sqrt of G3 over floating-point arrays, without a branch on values and with derivatives.
+"""Functions of G3 over floating-point arrays, without branches on values and with derivatives.
 
-``M = ζ + V``, V² = w; ζ and w are central, and V behaves like a number with the two values ±√w. With
-``λ± = ζ ± √w``, for any analytic f,
+``M = ζ + V``, V² = w; ζ and w are complex numbers ``x + yI`` (`layout.Complex`), and V behaves like a number
+with the two values ±√w. With ``λ± = ζ ± √w``, for any analytic f,
 
     f(M) = (f(λ+) + f(λ−))/2 + V (f(λ+) − f(λ−))/(2√w).
 
 Both quotients are analytic in w, but √w is not: near w = 0 they are series in w, and derivatives of all
 orders are those of the series. Even elements ``s + B`` have logarithms and roots of their own, which are
-even as well, and go over the whole double cover of rotations: ``log(−1) = π e1e2``.
+even as well, and cover both sheets of the rotations: ``log(−1) = π e1e2``.
+
+Derivatives are finite wherever the functions have them: a branch that is not taken is evaluated at a harmless
+argument, because ``0 · ∞`` is not 0.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
-from polhode._generic import central
-from polhode._generic.central import Central, choose, series
-from polhode._generic.layout import EVEN, join, split
+from polhode._generic.layout import EVEN, Complex, join, split
 from polhode._generic.numeric import Numeric, squares
 
 Components = list[Any]
@@ -29,7 +31,7 @@ SINHC = [1 / math.factorial(2 * k + 1) for k in range(11)]
 _NEAR = 1 / 16
 _ARTANHC = [1 / (2 * k + 1) for k in range(13)]
 
-_E12 = [0.0, 0.0, 1.0]  # the plane of half turns that do not tell their plane
+_E12 = [0.0, 0.0, 1.0]  # the plane taken where the value determines none
 
 
 def horner(coefficients: list[float], x: Any) -> Any:
@@ -41,11 +43,64 @@ def horner(coefficients: list[float], x: Any) -> Any:
 
 
 def singular(d: Numeric) -> float:
-    """Below this fraction of what was summed a difference is rounding."""
+    """Return the size relative to the summands below which a difference is rounding."""
     return 8 * d.eps
 
 
-# --- exp
+# --- complex numbers ``x + yI``
+
+
+def choose(d: Numeric, condition: Any, x: Complex | float, y: Complex | float) -> Complex:
+    """Take x where the condition holds, else y; real numbers count as complex."""
+    x, y = (z if isinstance(z, Complex) else Complex(z, 0.0) for z in (x, y))
+    return Complex(d.where(condition, x.re, y.re), d.where(condition, x.im, y.im))
+
+
+def series(d: Numeric, coefficients: Sequence[float], z: Complex) -> Complex:
+    """``Σ c_k z^k``, by Horner's rule."""
+    total = Complex(d.zeros_like(z.re), d.zeros_like(z.im))
+    for c in reversed(coefficients):
+        total = total * z
+        total = Complex(total.re + c, total.im)
+    return total
+
+
+def complex_exp(d: Numeric, z: Complex) -> Complex:
+    """``eᶻ``."""
+    return Complex(d.cos(z.im), d.sin(z.im)).times(d.exp(z.re))
+
+
+def complex_log(d: Numeric, z: Complex) -> Complex:
+    """Principal value, imaginary part in [−π, π]; z is not 0."""
+    return Complex(0.5 * d.log(z.square()), d.atan2(z.im, z.re))
+
+
+def complex_sqrt(d: Numeric, z: Complex) -> Complex:
+    """Principal value, real part >= 0, and 0 at 0. The larger part is a sum, so neither part cancels."""
+    zero = z.square() == 0
+    safe = choose(d, zero, 1.0, z)
+    positive = d.where(safe.re < 0, -safe.re, safe.re)
+    large = d.sqrt(0.5 * (d.sqrt(safe.square()) + positive))
+    small = 0.5 * safe.im / large
+    sign = d.where(safe.im < 0, -1.0, 1.0)
+    root = choose(d, safe.re < 0, Complex(sign * small, sign * large), Complex(large, small))
+    return choose(d, zero, 0.0, root)
+
+
+# --- inverse and exp
+
+
+def inverse(d: Numeric, m: Components, _: int) -> Components:
+    """``(ζ − V)/(ζ² − w)``; a ValueError where an eigenvalue is zero to rounding."""
+    scale = d.scale(m)
+    m = [x / scale for x in m]
+    zeta, w = split(m)
+    determinant = zeta * zeta - w
+    size = determinant.square()
+    regular = d.sqrt(size) / squares(d, m) > singular(d)
+    d.require(regular, "no inverse: the multivector is singular to rounding")
+    reciprocal = Complex(determinant.re / size, -determinant.im / size)
+    return [x / scale for x in join(zeta * reciprocal, m, -reciprocal)]
 
 
 def exp(d: Numeric, m: Components, mask: int) -> Components:
@@ -55,16 +110,16 @@ def exp(d: Numeric, m: Components, mask: int) -> Components:
         size = d.exp(m[0])
         return [size * cos, *m[1:4], *(size * (sinc * b) for b in m[4:7]), m[7]]
     scale = d.scale(m[1:7])
-    zeta, scaled = Central(m[0], m[7]), split([x / scale for x in m])[1]
+    zeta, scaled = Complex(m[0], m[7]), split([x / scale for x in m])[1]
     w = scaled.times(scale).times(scale)
     small = w.square() < 1
     near = choose(d, small, w, 0.0)
-    factor = central.exp(d, zeta)
-    root = central.sqrt(d, choose(d, small, 1.0, scaled)).times(scale)
+    factor = complex_exp(d, zeta)
+    root = complex_sqrt(d, choose(d, small, 1.0, scaled)).times(scale)
     # The exponents are added first: e^(ζ ± √w) may exist where cosh √w does not.
-    plus, minus = (central.exp(d, z).times(0.5) for z in (zeta + root, zeta - root))
+    plus, minus = (complex_exp(d, z).times(0.5) for z in (zeta + root, zeta - root))
     c = choose(d, small, factor * series(d, COSH, near), plus + minus)
-    q = choose(d, small, factor * series(d, SINHC, near), (plus - minus).over(root, d.divide))
+    q = choose(d, small, factor * series(d, SINHC, near), (plus - minus).over(root))
     return join(c, m, q)
 
 
@@ -98,18 +153,15 @@ def log(d: Numeric, m: Components, mask: int) -> Components:
     d.require(smallest > (singular(d) ** 2) * size, "no logarithm: the multivector is singular to rounding")
 
     # Near w = 0, on one side of the cut: ½ log λ+λ− = log ζ + ½ log(1 − u), and 2 artanh(√w/ζ)/2√w.
-    safe = choose(d, near, zeta, 1.0)
-    reciprocal = Central(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe, d.divide)
-    u = choose(d, near, w, 0.0) * reciprocal * reciprocal
-    rest = central.log(d, Central(1.0 - u.re, -u.im)).times(0.5)
-    mean_near = central.log(d, choose(d, turned, -safe, safe)) + rest
+    safe, reciprocal, u = _near_quotients(d, near, zeta, w)
+    rest = complex_log(d, Complex(1.0 - u.re, -u.im)).times(0.5)
+    mean_near = complex_log(d, choose(d, turned, -safe, safe)) + rest
     quotient_near = series(d, _ARTANHC, u) * reciprocal
-    # Elsewhere as it stands.
     plus, minus = choose(d, near, 4.0, plus), choose(d, near, 2.0, minus)
     root = choose(d, near, 1.0, root)
-    log_plus, log_minus = central.log(d, plus), central.log(d, minus)
+    log_plus, log_minus = complex_log(d, plus), complex_log(d, minus)
     mean = choose(d, near, mean_near, (log_plus + log_minus).times(0.5))
-    quotient = choose(d, near, quotient_near, (log_plus - log_minus).times(0.5).over(root, d.divide))
+    quotient = choose(d, near, quotient_near, (log_plus - log_minus).times(0.5).over(root))
 
     result = join(mean, m, quotient)
     result[0] = result[0] + d.log(scale)
@@ -118,9 +170,9 @@ def log(d: Numeric, m: Components, mask: int) -> Components:
 
 
 def log_even(d: Numeric, m: Components) -> Components:
-    """``log|M| + B/|B| · atan2(|B|, s)``, and at ``−|s|``, where B tells no plane, ``π e1e2``.
+    """``log|M| + B/|B| · atan2(|B|, s)``; at ``−|s|``, where B is 0, ``π e1e2``.
 
-    With t = |B|/s small it is ``B artan(t)/(t s)``, analytic also in B = 0, plus a half turn where s < 0.
+    With t = |B|/s small it is ``B artan(t)/(t s)``, analytic at B = 0 as well, plus a half turn where s < 0.
     """
     scale = d.scale([m[0], *m[4:7]])
     s, b = m[0] / scale, [x / scale for x in m[4:7]]
@@ -155,12 +207,10 @@ def sqrt(d: Numeric, m: Components, mask: int) -> Components:
     near, root = _near_and_root(d, zeta, w)
 
     # Near w = 0, on one side of the cut: √λ+ + √λ− = 2 √ζ √((1 + √(1 − u))/2), analytic in u = w/ζ².
-    safe = choose(d, near, zeta, 1.0)
-    reciprocal = Central(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe, d.divide)
-    u = choose(d, near, w, 0.0) * reciprocal * reciprocal
-    inner = central.sqrt(d, Central(1.0 - u.re, -u.im))
-    sum_near = central.sqrt(d, safe) * central.sqrt(d, Central(2.0 + 2.0 * inner.re, 2.0 * inner.im))
-    sum_far = central.sqrt(d, choose(d, near, 1.0, zeta + root)) + central.sqrt(
+    safe, _, u = _near_quotients(d, near, zeta, w)
+    inner = complex_sqrt(d, Complex(1.0 - u.re, -u.im))
+    sum_near = complex_sqrt(d, safe) * complex_sqrt(d, Complex(2.0 + 2.0 * inner.re, 2.0 * inner.im))
+    sum_far = complex_sqrt(d, choose(d, near, 1.0, zeta + root)) + complex_sqrt(
         d, choose(d, near, 1.0, zeta - root)
     )
     total = choose(d, near, sum_near, sum_far)
@@ -168,9 +218,9 @@ def sqrt(d: Numeric, m: Components, mask: int) -> Components:
     d.require(regular | zero, "no square root: the multivector is singular to rounding")
 
     safe_total = choose(d, zero, 1.0, total)
-    one = Central(d.where(zero, 0.0, 1.0), d.zeros_like(safe_total.im))
-    result = join(total.times(0.5), m, one.over(safe_total, d.divide))
-    # √−s = √s e1e2 where nothing tells another plane.
+    one = Complex(d.where(zero, 0.0, 1.0), d.zeros_like(safe_total.im))
+    result = join(total.times(0.5), m, one.over(safe_total))
+    # √−s = √s e1e2 where the value has no other plane.
     half_turn = d.sqrt(d.where(turned, -m[0], 1.0))
     result = [d.where(turned, 0.0, x) for x in result]
     result[6] = d.where(turned, half_turn, result[6])
@@ -198,17 +248,24 @@ def _sqrt_even(d: Numeric, m: Components) -> Components:
 # --- where the series hold
 
 
-def _near_and_root(d: Numeric, zeta: Central, w: Central) -> tuple[Any, Central]:
-    """Whether ``|w| < |ζ|²/16`` with λ± on one side of the cut along the negative axis; and √w."""
-    root = central.sqrt(d, w)
+def _near_and_root(d: Numeric, zeta: Complex, w: Complex) -> tuple[Any, Complex]:
+    """Return whether ``|w| < |ζ|²/16`` with λ± on one side of the cut along the negative axis, and √w."""
+    root = complex_sqrt(d, w)
     plus, minus = zeta + root, zeta - root
     turn = d.atan2(plus.im, plus.re) - d.atan2(minus.im, minus.re)
     small = w.square() < (_NEAR * zeta.square()) * (_NEAR * zeta.square())
     return small & ((d.abs(turn) < math.pi) | (w.square() == 0)), root
 
 
+def _near_quotients(d: Numeric, near: Any, zeta: Complex, w: Complex) -> tuple[Complex, Complex, Complex]:
+    """Return ζ, 1/ζ and ``u = w/ζ²`` where the series hold, 1, 1 and 0 elsewhere."""
+    safe = choose(d, near, zeta, 1.0)
+    reciprocal = Complex(safe.re * 0.0 + 1.0, safe.im * 0.0).over(safe)
+    return safe, reciprocal, choose(d, near, w, 0.0) * reciprocal * reciprocal
+
+
 def _is_negative(d: Numeric, m: Components) -> Any:
-    """Whether the value is a negative number: even, but of no plane."""
+    """Whether the value is a negative number, without a bivector part."""
     negative = m[0] < 0
     for x in m[1:]:
         negative = negative & (x == 0)

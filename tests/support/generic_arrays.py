@@ -1,4 +1,4 @@
-"""Kinds of coefficients to hold the generic algebra to, and products as lists of terms by an oracle."""
+"""Arrays for tests of the generic algebra, and products as lists of terms by an oracle."""
 
 from fractions import Fraction
 from functools import cache
@@ -70,7 +70,7 @@ FLOATING = {"numpy": np.asarray, "jax": as_jax, "array-api-strict": as_strict}
 
 @pytest.fixture(params=FLOATING)
 def floating(request):
-    """A library of floating-point arrays: a function that makes its arrays. JAX with 64 bits."""
+    """A function that makes arrays of a library of floats; JAX with 64 bits."""
     if request.param != "jax":
         yield FLOATING[request.param]
         return

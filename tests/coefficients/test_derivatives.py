@@ -1,5 +1,7 @@
 """JAX: derivatives of the functions of G3 and of rotors, above all where plain formulas divide 0 by 0."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -18,21 +20,32 @@ def _doubles():
         yield
 
 
+# Cached, so that JAX compiles each function and derivative once for all tests of this file.
+@cache
 def function(name, mask):
     """The function on single values, of its own components, compiled."""
     return jax.jit(lambda m: getattr(functions, name)(of(m), m, mask)[0])
 
 
+@cache
 def forward(f):
     return jax.jit(jax.jacfwd(f))
 
 
+@cache
 def backward(f):
     return jax.jit(jax.jacrev(f))
 
 
+@cache
 def second(f):
     return jax.jit(jax.jacfwd(jax.jacfwd(f)))
+
+
+@cache
+def second_of_log_part(mask):
+    """The second derivative of the first component of log."""
+    return second(lambda m: function("log", mask)(m)[0])
 
 
 def close(got, expected, count=16):
@@ -67,7 +80,7 @@ def test_log_and_sqrt_at_one_and_minus_one(mask, s):
         assert np.isfinite(root).all()
         if s > 0:
             assert close(root, np.eye(len(indices)) / 2)
-    curvature = second(lambda m: function("log", mask)(m)[0])(one)
+    curvature = second_of_log_part(mask)(one)
     signs = np.array([-1, -1, -1, -1, 1, 1, 1, 1])[indices]
     assert close(curvature, np.diag(signs))
     if mask == EVEN:  # of all grades it takes long to compile

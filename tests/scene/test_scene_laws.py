@@ -133,7 +133,7 @@ def test_damping_reports_the_free_motion_and_its_pace(tmp_path):
     assert "half of ω" in polhode("run", tmp_path / "a.toml").stdout
 
 
-# One closed form, one dissipative torque, one wheel and one held body; the others have the same kinds of reports.
+# A closed form, a dissipative torque, a wheel and a held body; the other laws have the same kinds of reports.
 USUAL = ("damping", "quadratic_damping", "gyrostat", "heavy")
 
 

@@ -2,8 +2,8 @@
 
 One kernel takes many steps of a large ensemble. Operations are counted in the program of a step before
 compilation: each sum, product, quotient, root, comparison and selection counts as one. The maker's peak
-performance counts a fused multiply-add as two; a step without fused operations can reach half of it. Without a
-GPU nothing is measured.
+performance counts a fused multiply-add as two; a step without fused operations can reach half of it.
+Without a GPU nothing is measured.
 """
 
 from __future__ import annotations

@@ -37,8 +37,8 @@ BITS = np.finfo(np.longdouble).nmant + 1
 LEGEND = f"""\
 One motion from 0 to t. The error is |R − R_true| of the rotor at t, half the angle in radians; the CPU time
 is that of the process, the best of several runs. Tolerances are relative and absolute; h is a fixed step.
-R_true comes from Taylor series in numbers of {BITS} bits; for the free top beyond t = {SHORT:g} from a table of 40
-digits where there is one (its 0.01 differs from the double by 5e-15), else from our closed form."""
+R_true comes from Taylor series in numbers of {BITS} bits; for the free top beyond t = {SHORT:g} from a table
+of 40 digits where there is one (its 0.01 differs from the double by 5e-15), else from our closed form."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-# make demo, make test, make bench, make docs, make lint, make wheel: each sets up what it needs.
+# Build, test and package Polhode; each target installs what it needs into .venv. CONTRIBUTING.md lists the targets.
 # Prerequisites: Python >= 3.11, Rust stable, make; for the viewer Node >= 20 and npm.
 
 PYTHON ?= python3
@@ -11,30 +11,32 @@ export PIP_QUIET := 1
 
 VIEWER := python/polhode/_viewer/viewer.js
 
-.PHONY: setup demo test lint bench docs wheel viewer check-viewer clean
+.PHONY: setup package demo test test-slow test-all lint bench docs wheel viewer check-viewer clean
 
-# Where what the viewer needs is missing, this says so, and all else goes on.
-WITH_VIEWER = @missing=$$(viewer/missing.sh) && test -n "$$missing" && \
-	echo "$$missing: the viewer was left out; all else works without it." || $(MAKE) --no-print-directory
+setup: package
+	@$(MAKE) --no-print-directory .venv/.tools
 
-setup: .venv/.built .venv/.tools
-	$(WITH_VIEWER) viewer
+# The package and the viewer, built at the same time. Without Node or the WebAssembly target the viewer is left out.
+package:
+	@missing=$$(viewer/missing.sh); test -z "$$missing" || \
+		echo "$$missing: the viewer was left out; everything else works without it."; \
+	$(MAKE) --no-print-directory -j .venv/.built $$(test -n "$$missing" || echo viewer)
 
 .venv/.python: constraints.txt pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-		{ echo "Polhode needs Python >= 3.11; say which with make PYTHON=python3.12" >&2; exit 1; }
+		{ echo "Polhode needs Python >= 3.11; choose one with make PYTHON=python3.12" >&2; exit 1; }
 	@command -v cargo >/dev/null || { echo "Polhode needs Rust: see https://rustup.rs" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install -q --upgrade pip
 	$(BIN)/python -m pip install -q --group build
 	@touch $@
 
-# Without a group named, maturin installs `dev`.
+# maturin installs the group `dev` unless another group is named.
 .venv/.built: .venv/.python $(SOURCES)
 	VIRTUAL_ENV=$(CURDIR)/.venv $(BIN)/maturin develop --release --locked --quiet --group build --extras plot
 	@touch $@
 
-# What tests, linters and guides need. They join the same environment, which holds polhode already.
+# What tests, linters and guides need, in the environment that already holds polhode.
 .venv/.tools: .venv/.python | .venv/.built
 	$(BIN)/python -m pip install -q --group dev "polhode[scipy,io,plot,progress]"
 	@touch $@
@@ -61,14 +63,23 @@ $(VIEWER): $(WASM) viewer/node_modules/.installed $(VIEWER_SOURCES)
 check-viewer: viewer/node_modules/.installed
 	cd viewer && npm run --silent check
 
-demo: .venv/.built
-	$(WITH_VIEWER) viewer
+demo: package
 	@mkdir -p build/demo
 	$(BIN)/polhode demo -o build/demo
 
+# One worker for each processor; a worker that has finished takes tests from another.
+PYTEST := $(BIN)/python -m pytest --numprocesses logical --dist worksteal
+
 test: setup
 	cargo test --quiet --locked --workspace --exclude polhode-py
-	$(BIN)/python -m pytest
+	$(PYTEST) -m "not slow"
+
+# What `make test` leaves out: further variants of what it tests.
+test-slow: setup
+	$(PYTEST) -m slow
+
+test-all: test
+	@$(MAKE) --no-print-directory test-slow
 
 lint: setup
 	cargo fmt --all --check
@@ -77,10 +88,10 @@ lint: setup
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest polhode._native --allowlist .stubtest-allowlist
-	$(WITH_VIEWER) check-viewer
+	@test -n "$$(viewer/missing.sh)" || $(MAKE) --no-print-directory check-viewer
 
-# The peers join the same environment: with constraints.txt all agree on one NumPy. A peer that is missing is an empty
-# column, so benchmarks/run.py also runs after make setup alone.
+# The libraries to compare with. constraints.txt gives all of them the same NumPy. One that is missing leaves its column
+# empty, so benchmarks/run.py also runs after make setup alone.
 .venv/.peers: .venv/.built .venv/.tools
 	$(BIN)/python -m pip install -q "polhode[bench]"
 	@touch $@
@@ -91,8 +102,8 @@ bench: .venv/.peers
 	cargo run --quiet --locked --release -p polhode-ga --example batch | tee build/bench-core.txt
 	cargo run --quiet --locked --release -p polhode-rigid --example ensemble | tee build/bench-ensembles.txt
 
-# Wheels for Linux with the viewer and the examples in them, and the source distribution. By zig they run with glibc
-# 2.17 and later, whatever this machine has.
+# Wheels for Linux with the viewer and the examples in them, and the source distribution. Built with zig, they need
+# glibc >= 2.17, whatever version this machine has.
 .venv/.wheel: .venv/.python
 	$(BIN)/python -m pip install -q --group wheel
 	@touch $@
@@ -110,7 +121,7 @@ wheel: viewer .venv/.wheel
 		fi; \
 	done; \
 	$(BIN)/maturin sdist -o dist && ls dist; \
-	test -z "$$left_out" || { echo "Left out, for want of Rust's library for it:$$left_out" >&2; exit 1; }
+	test -z "$$left_out" || { echo "No wheels, because Rust's standard library is missing:$$left_out" >&2; exit 1; }
 
 # The guides as pages, with the viewer in them, and the documentation of the core.
 .venv/.docs: .venv/.tools

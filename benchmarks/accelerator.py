@@ -1,9 +1,9 @@
-"""Body-steps a second of the kernel of `polhode.jax`: `python benchmarks/accelerator.py`.
+"""Body-steps per second of the kernel in `polhode.jax`: `python benchmarks/accelerator.py`.
 
-A large ensemble is moved by many steps in one kernel. The operations of a step are counted in its program,
-before any compiler: a sum, a product, a quotient, a root, a comparison, a choice are one each. The peak
-counts a fused product and sum as two, which is how makers count; a step that fuses nothing could reach half
-of it. Without a GPU it says so, and measures nothing.
+One kernel takes many steps of a large ensemble. Operations are counted in the program of a step before
+compilation: each sum, product, quotient, root, comparison and selection counts as one. The maker's peak
+performance counts a fused multiply-add as two; a step without fused operations can reach half of it.
+Without a GPU nothing is measured.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ import numpy as np
 
 import polhode as ph
 
-# Teraflops of the vector units in double and in single precision, as NVIDIA states them for the SXM boards.
+# Teraflops of the vector units in double and single precision, from NVIDIA's data sheets of the SXM boards.
 PEAKS = {
     "H100": {"float64": 34.0, "float32": 67.0},
     "H200": {"float64": 34.0, "float32": 67.0},
     "A100": {"float64": 9.7, "float32": 19.5},
 }
-# Moves of numbers, which are no operations.
+# Moves of data, which are not operations.
 _MOVES = {"broadcast_in_dim", "convert_element_type", "copy", "reshape", "squeeze", "stop_gradient", "split"}
 METHODS = ("rk4", "strang", "kahan_li8")
 BODIES, STEPS, ROUNDS = 1 << 20, 1000, 3
 
 
 def operations(jaxpr: Any) -> int:
-    """Count the operations on numbers in a program of single numbers; a loop's as often as it runs."""
+    """Count the operations of a program on scalars; those in a loop once for each iteration."""
     total = 0
     for equation in jaxpr.eqns:
         inner = [x for x in equation.params.values() if hasattr(x, "eqns") or hasattr(x, "jaxpr")]
@@ -42,7 +42,7 @@ def operations(jaxpr: Any) -> int:
 
 
 def of_a_step(method: str, heavy: bool) -> int:
-    """Operations of one step of one body: what a second one adds to the program of a first."""
+    """Count the operations of a step of one body: those that a second step adds to the program."""
     import jax
 
     law = ph.jax.torque.heavy([0.0, 0.0, 1.0]) if heavy else None
@@ -55,7 +55,7 @@ def of_a_step(method: str, heavy: bool) -> int:
 
 
 def measured(method: str, dtype: str, heavy: bool, bodies: int, steps: int) -> float:
-    """Return body-steps a second, the best of some runs."""
+    """Return body-steps per second, the best of several runs."""
     import jax
 
     rng = np.random.default_rng(0)
@@ -78,7 +78,7 @@ def measured(method: str, dtype: str, heavy: bool, bodies: int, steps: int) -> f
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--bodies", type=int, default=BODIES)
     parser.add_argument("--steps", type=int, default=STEPS)
@@ -91,10 +91,10 @@ def main() -> None:
     for (method, heavy), count in counts.items():
         print(f"{method}, {'heavy' if heavy else 'free'}: {count} operations in a step")
     if jax.default_backend() != "gpu":
-        print(f"no GPU here: JAX runs on {jax.default_backend()}, where there is nothing to measure")
+        print(f"no GPU found: JAX runs on {jax.default_backend()}; nothing was measured")
         return
     device = jax.devices()[0].device_kind
-    peak = next((told for name, told in PEAKS.items() if name in device), None)
+    peak = next((known for name, known in PEAKS.items() if name in device), None)
     print(f"{device}, {arguments.bodies} bodies, {arguments.steps} steps")
     for (method, heavy), count in counts.items():
         for dtype in ("float64", "float32"):

@@ -1,7 +1,7 @@
 """Full products in other signatures: the projective Cl(3,0,1) and the conformal Cl(4,1).
 
-A blade is the number whose bits are its generators; generators are ordered p of square 1, q of −1, r of 0.
-How each library orders and signs its blades is found by multiplying its basis vectors.
+The bits of a blade's index are its generators, in the order p of square 1, q of −1, r of 0. Products of basis
+vectors show the order and signs of the blades in each library.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from contest import Pace, Row
 Signature = tuple[int, int, int]
 
 SIGNATURES: dict[Signature, str] = {(3, 0, 1): "5.8 ns", (4, 1, 0): "26.5 ns"}
-IN_CACHE = 2**15  # components: three arrays of them fit in a core's second cache
+IN_CACHE = 2**15  # components: three such arrays fit in the L2 cache of a core
 
 
 def rows(rng: np.random.Generator, _: Pace) -> Iterator[Row]:
@@ -52,7 +52,7 @@ def by_hand(a: Any, b: Any, signs: Any) -> Any:
 
 
 class Blades:
-    """How a library's components stand to the blades by bits, found from products of its basis vectors."""
+    """Order and signs of a library's components, found from products of its basis vectors."""
 
     def __init__(self, vectors: list[Any], one: Any, components: Callable[[Any], Any]) -> None:
         size = 2 ** len(vectors)

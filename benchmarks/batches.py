@@ -1,7 +1,7 @@
-"""Many values in one call: how near the work comes to what memory allows.
+"""Batches: time per value, compared with the limit set by memory bandwidth.
 
-Rows without `out=` make a fresh result each time, as one does at first; fresh pages cost more than the
-arithmetic. Peers that hold one object per value get fewer of them.
+Rows without `out=` allocate a new result each time, and new pages cost more than the arithmetic. Libraries
+with one object per value get smaller batches.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import polhode as ph
 from contest import Pace, Row
 from peers import even, of_clifford, of_kingdon, of_pauli, of_quaternion, rotor_of
 
-OBJECTS = 2_000  # enough of values that are one object each
+OBJECTS = 2_000  # batch size for libraries with one object per value
 
 
 def rows(rng: np.random.Generator, pace: Pace) -> Iterator[Row]:
@@ -63,7 +63,7 @@ def product(rng: np.random.Generator, n: int) -> Row:
 
 
 def product_into(rng: np.random.Generator, n: int) -> Row:
-    """``a*b`` into an array that is there."""
+    """``a*b`` into an existing array."""
     row = Row("a*b, multivectors, out=", goal="2.5 ns", count=n, traffic=8 * 24)
     a, b = ph.multivector(rng.standard_normal((2, n, 8)))
     left, right, out = a.components, b.components, np.empty((n, 8))
@@ -103,7 +103,7 @@ def wedge(rng: np.random.Generator, n: int) -> Row:
 
 
 def wedge_into(rng: np.random.Generator, n: int) -> Row:
-    """``a∧b`` into an array that is there."""
+    """``a∧b`` into an existing array."""
     row = Row("a∧b, vectors, out=", count=n, traffic=8 * 9)
     left, right = rng.standard_normal((2, n, 3))
     out = np.empty((n, 3))
@@ -181,7 +181,7 @@ def turn(rng: np.random.Generator, n: int) -> Row:
 
 
 def turn_into(rng: np.random.Generator, n: int) -> Row:
-    """``R v ~R`` into an array that is there."""
+    """``R v ~R`` into an existing array."""
     row = Row("R v ~R, a rotor for each, out=", goal="80 % of memory", count=n, traffic=8 * 10)
     R, v, out = ph.Rotor.random(n, rng), ph.vector(rng.standard_normal((n, 3))), np.empty((n, 3))
     with row.planned():
@@ -276,13 +276,13 @@ def logarithm(rng: np.random.Generator, n: int) -> Row:
 
 
 def by_numpy(row: Row, function: Any, *arrays: Any) -> None:
-    """Enter explicit formulas in NumPy."""
+    """Add explicit formulas in NumPy."""
     names = {"f": function, "np": np, "x": arrays}
     row.enter("NumPy", "f(np, *x)", names, lambda x: x)
 
 
 def by_jax(row: Row, function: Any, *arrays: Any) -> None:
-    """Enter the same formulas compiled by JAX on the CPU, in double precision."""
+    """Add the same formulas compiled by JAX for the CPU, in double precision."""
     with row.peer("JAX"):
         import jax
 

@@ -1,7 +1,7 @@
-"""A formula as on paper, ``R v ~R + (a∧b)·c``, beside the same calls made one by one and what others compile.
+"""The formula ``R v ~R + (a∧b)·c``, compared with separate calls and with other compilers.
 
-kingdon compiles its operators to NumPy, or with numba to loops on all cores; its components lead, so that it
-reads whole arrays.
+kingdon compiles its operators to NumPy, or with numba to loops on all cores. Components are its first axis:
+it reads contiguous arrays.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def rows(rng: np.random.Generator, pace: Pace) -> Iterator[Row]:
 
 
 def batch(rng: np.random.Generator, n: int, one_core: bool = False) -> Row:
-    """Many rows, from memory."""
+    """A batch larger than the caches."""
     title, goal = (f"{TEXT}, one core", "6 ns") if one_core else (TEXT, "")
     row = Row(title, goal=goal, count=n, traffic=8 * 19, one_core=one_core)
     values = _values(rng, (n,))
@@ -70,7 +70,7 @@ def single(rng: np.random.Generator) -> Row:
 
 
 def compilation(rng: np.random.Generator) -> Row:
-    """From the text, or from Python, to the first value."""
+    """Compilation from text, or from a Python function, and the first value."""
     row = Row(f"{TEXT}, compiled and called once", unit="us")
     values = _values(rng, ())
     arrays = [np.array(value.components) for value in values.values()]
@@ -86,7 +86,7 @@ def compilation(rng: np.random.Generator) -> Row:
         import loops
 
         rowed = [x[np.newaxis] for x in arrays]
-        # Python's function under the compiled one; where compilation is switched off it is that.
+        # The Python function inside the compiled one; the function itself if compilation is disabled.
         plain = getattr(loops.turn_and_contract, "py_func", loops.turn_and_contract)
         names = {"njit": njit, "f": plain, "x": rowed, "new": np.empty_like}
         row.enter("numba", "njit(f)(*x, new(x[1]))", names, lambda x: x[0])
@@ -100,7 +100,7 @@ def compilation(rng: np.random.Generator) -> Row:
 
 
 def one_by_one(R: Any, v: Any, a: Any, b: Any, c: Any, room: Any) -> Any:
-    """The calls, each into an array that is there."""
+    """Evaluate the formula by separate calls into existing arrays."""
     turned, plane, contracted = room
     R.apply(v, out=turned)
     a.wedge(b, out=plane).dot(c, out=contracted)
@@ -114,7 +114,7 @@ def kingdon_compiled(**options: Any) -> Any:
     names = [algebra.bireflection(name="R", symbolcls=symbols)]
     names += [algebra.vector(name=name, symbolcls=symbols) for name in "vabc"]
 
-    def turn_and_contract(R: Any, v: Any, a: Any, b: Any, c: Any) -> Any:  # it needs a name
+    def turn_and_contract(R: Any, v: Any, a: Any, b: Any, c: Any) -> Any:  # kingdon needs a named function
         return (R >> v) + ((a ^ b) | c)
 
     return algebra.compile(turn_and_contract, *names, **options)
@@ -127,14 +127,14 @@ def _values(rng: np.random.Generator, shape: tuple[int, ...]) -> dict[str, Any]:
 
 
 def _ours(row: Row, values: dict[str, Any]) -> None:
-    """Enter the formula, and the calls one by one."""
+    """Add the formula and the separate calls."""
     with row.planned():
         row.enter("polhode", CALL, {"f": ph.formula(TEXT), **values}, lambda x: x.components)
     row.enter(OUR_CALLS, "R(v) + a.wedge(b).dot(c)", values, lambda x: x.components)
 
 
 def _kingdon(values: dict[str, Any]) -> list[Any]:
-    """Return the same values of kingdon's."""
+    """Return the same values in kingdon."""
     R, *vectors = (value.components for value in values.values())
     return [
         peers.kingdon(peers.even(R), "bireflection"),

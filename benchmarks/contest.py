@@ -1,4 +1,4 @@
-"""One row of the table: several libraries doing the same work, checked equal, then timed in turns."""
+"""Rows of the tables: check that libraries agree on a task, then time them in turns."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 OURS = "polhode"
-OUR_CALLS, OUR_CALLS_INTO = "calls", "calls, out="  # ours one by one, where the row is of a whole formula
+OUR_CALLS, OUR_CALLS_INTO = "calls", "calls, out="  # our separate calls, in rows for a whole formula
 Read = Callable[[Any], Any]
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How long to measure: the best of `rounds` runs of at least `span` seconds; rows in a batch.
+    """Duration of the measurements: the best of `rounds` runs of at least `span` seconds; rows in a batch.
 
-    What takes more than `limit` seconds of CPU in one run is left out where a section says so.
+    Sections with long runs skip those that would take more than `limit` seconds of CPU time.
     """
 
     span: float
@@ -34,7 +34,7 @@ QUICK = Pace(span=0.01, rounds=2, batch=100_000, limit=0.5)
 
 @contextmanager
 def noted(notes: dict[str, str], name: str) -> Iterator[None]:
-    """Whatever fails inside is a note under that name."""
+    """Record an exception in the block as a note under that name."""
     try:
         yield
     except ImportError as error:
@@ -45,7 +45,7 @@ def noted(notes: dict[str, str], name: str) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Entry:
-    """What one library runs: an expression, the names in it, and of how many results it is."""
+    """The expression that a library runs, the names in it, and the number of its results."""
 
     code: str
     names: dict[str, Any]
@@ -54,23 +54,23 @@ class Entry:
 
 @dataclass
 class Row:
-    """The same work by every library that can do it.
+    """One task, with an entry for every library that can do it.
 
-    The first entry is the reference; a later one must give the same numbers to `tolerance` times the
-    largest of them, in our conventions: `read` translates its result. What a library lacks is a note.
+    The first entry is the reference. The others must give the same numbers to `tolerance` times the largest
+    one, in our conventions: `read` converts the result. A library without an entry has a note.
 
     Attributes
     ----------
     what, goal
-        The row's title, and the figure to reach.
+        Title of the row, and the target.
     count
-        Of how many results the work is; figures are per result.
+        Number of results; times are per result.
     unit
         ``"ns"``, ``"us"`` or ``"ms"``.
     traffic
-        Bytes per result that memory must move, inputs and outputs; 0 where memory is no limit.
+        Bytes per result that memory must move, inputs and outputs; 0 where memory is not a limit.
     one_core
-        Whether all libraries are to be measured on one core.
+        Whether all libraries run on one core.
     """
 
     what: str
@@ -88,7 +88,7 @@ class Row:
     def enter(
         self, library: str, code: str, names: dict[str, Any], read: Read, count: int | None = None
     ) -> None:
-        """Add a library: `code`, over `names`, gives what `read` turns into an array (count, ...)."""
+        """Add a library: `read` converts the value of `code`, evaluated with `names`, to (count, ...)."""
         result = np.asarray(read(eval(code, dict(names))))
         if self.expected is None:
             self.expected = result
@@ -101,19 +101,19 @@ class Row:
         self.entries[library] = Entry(code, names, self.count if count is None else count)
 
     def peer(self, library: str) -> AbstractContextManager[None]:
-        """Around a peer's set-up and entry: whatever fails is a note, and its place in the table is empty."""
+        """Return a context for the set-up and entry of another library: a failure becomes a note."""
         return noted(self.notes, library)
 
     @contextmanager
     def planned(self) -> Iterator[None]:
-        """Around an entry of ours that this version may not have."""
+        """Record a feature that this version lacks as a note."""
         try:
             yield
         except (AttributeError, TypeError) as error:
             self.notes[OURS] = f"not available ({error})"
 
     def measure(self, pace: Pace) -> None:
-        """Time all entries in turns, so that a disturbance meets all alike; keep each one's best."""
+        """Time all entries in turns, so that disturbances affect all of them; keep the best time of each."""
         timers = {
             library: Timer(entry.code, globals=dict(entry.names)) for library, entry in self.entries.items()
         }
@@ -124,19 +124,19 @@ class Row:
                 self.seconds[library] = min(each, self.seconds.get(library, np.inf))
 
     def release(self) -> None:
-        """Let go of the values, which may be large; expressions and figures stay."""
+        """Release the values, which may be large; keep expressions and times."""
         self.expected = None
         self.entries = {name: replace(entry, names={}) for name, entry in self.entries.items()}
 
     def ahead(self) -> float | None:
-        """Return how many times longer the fastest peer takes than we do."""
+        """Return the time of the fastest other library divided by ours."""
         ours = (OURS, OUR_CALLS, OUR_CALLS_INTO)
         peers = [seconds for library, seconds in self.seconds.items() if library not in ours]
         return min(peers) / self.seconds[OURS] if peers and OURS in self.seconds else None
 
 
 def _enough(timer: Timer, span: float) -> int:
-    """Return how many runs last `span` seconds."""
+    """Return the number of runs that takes `span` seconds."""
     number = 1
     while (taken := timer.timeit(number)) < span / 2:
         number = max(2 * number, min(100 * number, round(number * span / max(taken, 1e-9))))

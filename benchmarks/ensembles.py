@@ -1,7 +1,7 @@
-"""Many bodies: free and heavy tops by classical Runge-Kutta steps, and free tops in closed form.
+"""Ensembles: free and heavy tops by classical Runge-Kutta steps, and free tops in closed form.
 
-Figures are per body and step, or per state. The peers' steps are the same method written out over arrays;
-MuJoCo's is its own of order 4, with all bodies in one model, or one model rolled out from many states.
+Times are per body and step, or per state. The other libraries use the same method written over arrays; MuJoCo
+uses its own method of order 4, with all bodies in one model, or one model rolled out from many states.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def stepped(rng: np.random.Generator, what: str, c: tuple[float, ...], steps: in
         f"{what}, {cores}, {n} bodies, {steps} steps",
         goal="" if any(c) else "2.5 ns" if one_core else "1.25 ns",
         count=n * steps,
-        tolerance=1e-6,  # MuJoCo turns its quaternions by exponentials, with another error of order 5
+        tolerance=1e-6,  # MuJoCo integrates quaternions by exponentials, with another error of order 5
         one_core=one_core,
     )
     rotor, omega = starts(rng, n)
@@ -106,7 +106,7 @@ def exact_outer(rng: np.random.Generator, n: int, one_core: bool) -> Row:
 
 
 def exact_paired(rng: np.random.Generator, n: int, one_core: bool) -> Row:
-    """Free bodies, each at a time of its own."""
+    """Free bodies, each at its own time."""
     cores = "one core" if one_core else "all cores"
     row = Row(
         f"exact, {n} bodies, each at its time, {cores}",
@@ -163,7 +163,7 @@ def _model(c: tuple[float, ...], bodies: int) -> Any:
     import mujoco
 
     place = np.array(c) / GRAVITY
-    central = np.array(MOMENTS) - (place @ place - place**2)  # the parallel axes' theorem
+    central = np.array(MOMENTS) - (place @ place - place**2)  # parallel axis theorem
 
     def words(numbers: Any) -> str:
         return " ".join(repr(float(x)) for x in numbers)

@@ -1,4 +1,4 @@
-"""What one writes without a library of geometric algebra: explicit formulas, ``xp`` is NumPy or JAX.
+"""Explicit formulas without a geometric algebra library; ``xp`` is NumPy or JAX.
 
 Components are over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``; rotors ``(s, b)`` have quaternions ``(s, −b)``.
 """
@@ -15,7 +15,7 @@ _PAIRS = ((0, 7), (1, 4), (2, 5), (3, 6))  # 1 and I, e1 and I e1, ...
 def product(xp: Any, a: Any, b: Any) -> Any:
     """Full products.
 
-    I commutes with all, so ``α + a + I b + I β`` is a complex scalar and a complex vector:
+    I commutes with everything, so ``α + a + I b + I β`` is a complex scalar and a complex vector:
     ``(z0 + z)(w0 + w) = z0 w0 + z·w + z0 w + w0 z + I z x w``.
     """
     z0, z = a[..., 0] + 1j * a[..., 7], a[..., 1:4] + 1j * a[..., 4:7]
@@ -27,7 +27,7 @@ def product(xp: Any, a: Any, b: Any) -> Any:
 
 
 def product_in_blocks(a: Any, b: Any, out: Any, block: int = 8192) -> Any:
-    """The same, the fastest way found in NumPy: in blocks that stay in the cache, components first."""
+    """Full products, the fastest way found in NumPy: blocks that fit in the cache, components first."""
     for start in range(0, len(out), block):
         rows = slice(start, start + block)
         A, B, C = np.ascontiguousarray(a[rows].T), np.ascontiguousarray(b[rows].T), out[rows]

@@ -1,4 +1,4 @@
-"""What `import` costs in a fresh interpreter, beyond NumPy's part of it."""
+"""Import time in a new interpreter, without that of NumPy."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PROGRAM = "import numpy, time; start = time.perf_counter(); import {}; print(tim
 
 
 def rows(_: np.random.Generator, pace: Pace) -> Iterator[Row]:
-    """Yield the one row."""
+    """Yield the row."""
     row = Row("import", goal="15 ms", unit="ms")
     for library, module in MODULES.items():
         with row.peer(library):

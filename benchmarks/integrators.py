@@ -1,7 +1,7 @@
-"""Ours and the peers that integrate a top's motion, each at several settings.
+"""Integrators of a top's motion: ours and those of other libraries, each at several settings.
 
-A generator per tool yields its settings for one top; what each needs beforehand, such as a compiled function
-or a model, is made there and not timed. Quaternions (w, x, y, z) are rotors (w, −x, −y, −z).
+Each tool has a generator that yields its settings for one top. The preparation, such as compiling a function
+or building a model, happens there and is not timed. Quaternions (w, x, y, z) are rotors (w, −x, −y, −z).
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from polhode._mechanics.simulate import METHODS
 from truth import Top
 
 TOLERANCES = (1e-6, 1e-9, 1e-12)
-STRICTEST = 3e-14  # SciPy takes no less than 100 units in the last place
+STRICTEST = 3e-14  # SciPy accepts no less than 100 units in the last place
 STEPS = (0.4, 0.2, 0.1, 0.05)
-PATIENCE = 5.0  # limits of a run, for what is worth waiting for
+PATIENCE = 5.0  # factor on the time limit of a run, for settings that matter
 Solution = tuple[Any, int]  # rotor components at the end, and the steps taken
-GRAVITY = 20.0  # of MuJoCo's world: mass 1 at c/20, so that inertia about the centre of mass stays possible
+GRAVITY = 20.0  # in MuJoCo: mass 1 at c/20, so that the inertia about the centre of mass is valid
 
 
 @dataclass(frozen=True)
 class Setting:
     """One way to run a tool: `solve` goes from time 0 to a time.
 
-    `patience` is by how much it may exceed the pace's limit of a run.
+    `patience` is the factor by which it may exceed the time limit of a run.
     """
 
     tool: str
@@ -41,7 +41,7 @@ class Setting:
 
 
 def polhode(top: Top, _: dict[str, str]) -> Iterator[Setting]:
-    """Ours: to a tolerance, in closed form where there is one, and by each method's fixed steps."""
+    """Polhode: to a tolerance, in closed form where there is one, and by fixed steps of each method."""
     body = ph.Inertia.from_principal_moments(*top.moments)
     state = ph.State(ph.Rotor.from_components(np.array(top.rotor, dtype=float)), np.array(top.omega))
     law = ph.torque.heavy(np.array(top.c)) if any(top.c) else None
@@ -63,7 +63,7 @@ def polhode(top: Top, _: dict[str, str]) -> Iterator[Setting]:
 
 
 def _runs(call: Callable[[], object]) -> bool:
-    """Whether the closed form covers this top."""
+    """Return whether there is a closed form for this top."""
     try:
         call()
     except ValueError:
@@ -72,7 +72,7 @@ def _runs(call: Callable[[], object]) -> bool:
 
 
 def rates(state: Any, top: Any) -> list[Any]:
-    """Euler's equations and a quaternion, as one writes them for an integrator of ordinary equations."""
+    """Euler's equations and the rate of a quaternion, for integrators of differential equations."""
     w, x, y, z, p, q, r = state
     (i1, i2, i3), (c1, c2, c3) = top
     u1, u2, u3 = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
@@ -100,13 +100,13 @@ def _to_rotor(quaternion: Any) -> Any:
 
 
 def scipy(top: Top, _: dict[str, str]) -> Iterator[Setting]:
-    """SciPy's method of order 8; the strictest tolerance, at which it does best, is worth waiting for."""
+    """SciPy's method of order 8; the run at the strictest tolerance, its best one, may take longer."""
     from scipy.integrate import solve_ivp
 
     start, law = _start(top), (top.moments, top.c)
 
     def right_side(_: float, state: Any) -> list[float]:
-        return rates(state.tolist(), law)  # Python's floats are faster than NumPy's
+        return rates(state.tolist(), law)  # Python floats are faster than NumPy scalars
 
     def solve(time: float, rtol: float) -> Solution:
         found = solve_ivp(right_side, (0.0, time), start, "DOP853", rtol=rtol, atol=rtol)
@@ -118,7 +118,7 @@ def scipy(top: Top, _: dict[str, str]) -> Iterator[Setting]:
 
 
 def diffrax(top: Top, notes: dict[str, str]) -> Iterator[Setting]:
-    """The method of order 8 of diffrax, compiled."""
+    """The method of order 8 in diffrax, compiled."""
     compiled, seconds = _diffrax()
     notes["diffrax"] = f"compiled in {seconds:.1f} s of CPU time, which is not counted"
     start, law = _start(top), np.array((top.moments, top.c), dtype=float)
@@ -133,7 +133,7 @@ def diffrax(top: Top, notes: dict[str, str]) -> Iterator[Setting]:
 
 @cache
 def _diffrax() -> tuple[Callable[..., Any], float]:
-    """Return the compiled solver, which serves all tops, and the seconds it took to compile."""
+    """Return the compiled solver, the same for all tops, and its compile time in s."""
     import jax
     from diffrax import Dopri8, ODETerm, PIDController, SaveAt, diffeqsolve
 
@@ -167,8 +167,8 @@ def mujoco(top: Top, _: dict[str, str]) -> Iterator[Setting]:
 
     place = np.array(top.c) / GRAVITY
     if np.count_nonzero(place) > 1:
-        raise ValueError(f"c = {top.c} is not along an axis of the body, as the model here has it")
-    central = np.array(top.moments) - (place @ place - place**2)  # the parallel axes' theorem
+        raise ValueError(f"c = {top.c} is not along an axis of the body; the model requires that")
+    central = np.array(top.moments) - (place @ place - place**2)  # parallel axis theorem
 
     def words(numbers: Any) -> str:
         return " ".join(repr(float(x)) for x in numbers)
@@ -181,7 +181,7 @@ def mujoco(top: Top, _: dict[str, str]) -> Iterator[Setting]:
             raise ArithmeticError("unstable, numbers grow without bound")
         return _to_rotor(data.qpos), round(time / step)
 
-    # It would write a file where it is called.
+    # By default MuJoCo writes a log file into the working directory.
     mujoco.set_mju_user_warning(lambda _: None)
     for integrator, step in (("RK4", 0.01), ("RK4", 0.002), ("implicitfast", 0.01)):
         model = mujoco.MjModel.from_xml_string(f"""

@@ -1,4 +1,4 @@
-"""The same work as loops over rows, compiled by numba, on all cores; results go to `out`."""
+"""The same tasks as loops over rows, compiled by numba for all cores; results go to `out`."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def turn_and_contract(R: Any, v: Any, a: Any, b: Any, c: Any, out: Any) -> Any:
 
 @njit(fastmath=True)
 def product_by_table(a: Any, b: Any, signs: Any, out: Any) -> Any:
-    """Full products in any signature, blades by bits: ``c_j = Σ_i ± a_i b_(i^j)``; few, on one core."""
+    """Full products in any signature, blades by bits: ``c_j = Σ_i ± a_i b_(i^j)``; on one core."""
     for n in range(len(out)):
         out[n] = 0
         for i in range(signs.shape[0]):

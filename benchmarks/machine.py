@@ -1,4 +1,4 @@
-"""The machine and what it allows, and which versions run on it."""
+"""Describe the machine, its memory bandwidth and the versions of the libraries."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ PINS = Path("/proc/self/task").is_dir() and hasattr(os, "sched_setaffinity")  # 
 
 
 def describe() -> dict[str, str]:
-    """Return what the figures depend on, as text by name."""
+    """Return the facts that the times depend on, as text by name."""
     load = ", ".join(f"{x:.2f}" for x in os.getloadavg()) if hasattr(os, "getloadavg") else "unknown"
     return {
         "date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
@@ -59,12 +59,12 @@ def cores() -> int:
 
 @contextmanager
 def on_one_core() -> Iterator[None]:
-    """All threads of this process, those that libraries keep and those to come, share one core."""
+    """Pin all present and future threads of this process to one core."""
     allowed = os.sched_getaffinity(0)
     _pin({min(allowed)})
     numba = sys.modules.get("numba")
     threads = numba.get_num_threads() if numba else 0
-    if numba:  # it would share the rows among as many threads as before
+    if numba:  # otherwise it divides the rows among as many threads as before
         numba.set_num_threads(1)
     try:
         yield
@@ -76,7 +76,7 @@ def on_one_core() -> Iterator[None]:
 
 def _pin(cores: set[int]) -> None:
     for thread in Path("/proc/self/task").iterdir():
-        with suppress(ProcessLookupError):  # it has ended meanwhile
+        with suppress(ProcessLookupError):  # the thread has ended
             os.sched_setaffinity(int(thread.name), cores)
 
 
@@ -122,7 +122,7 @@ def versions() -> dict[str, str]:
 
 def copy_bandwidth(threads: int, pace: Pace) -> float:
     """Return the bytes per second that NumPy's copy of large arrays reads and writes, on some cores."""
-    size = 64 * 2**20 // 8  # 64 MiB for each core and direction: beyond any cache of it
+    size = 64 * 2**20 // 8  # 64 MiB for each core and direction, larger than any cache
     pairs = [(np.ones(size), np.ones(size)) for _ in range(threads)]
     best = np.inf
     with ThreadPoolExecutor(threads) as pool:

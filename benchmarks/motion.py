@@ -1,4 +1,4 @@
-"""Motion: the heavy top by steps, the free top in closed form."""
+"""Motion: the heavy top by integration, the free top in closed form."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _free_top(rng: np.random.Generator) -> tuple[ph.Inertia, ph.Rotor, Any]:
 
 
 def free_top_setup(rng: np.random.Generator) -> Row:
-    """From inertia and state to a motion that can be asked."""
+    """Construction of a motion from inertia and state."""
     row = Row("free top, set-up", goal="5 us", unit="us")
     inertia, rotor, omega = _free_top(rng)
     names = {"new": ph.FreeMotion, "inertia": inertia, "rotor": rotor, "omega": omega}
@@ -82,7 +82,7 @@ def _last(trajectory: Any) -> Any:
 
 
 def _right_side(moments: Any, torque: Callable[[Any], Any]) -> SciPyRight:
-    """Euler's equations and a quaternion, as one writes them for SciPy; `torque` takes body axes' up."""
+    """Euler's equations and the rate of a quaternion for SciPy; `torque` takes the vertical in body axes."""
 
     def right_side(_: float, y: Any) -> Any:
         w, x, y_, z, *omega = y
@@ -96,7 +96,7 @@ def _right_side(moments: Any, torque: Callable[[Any], Any]) -> SciPyRight:
 
 
 def _dop853(row: Row, rotor: ph.Rotor, omega: Any, right_side: SciPyRight, time: float) -> None:
-    """Enter SciPy's method of order 8 at tolerances that give 1e-9 there."""
+    """Add SciPy's method of order 8 at tolerances that give an error of 1e-9."""
     from scipy.integrate import solve_ivp
 
     names = {

@@ -1,7 +1,7 @@
-"""Our values as those of the peers, and theirs as ours; docs/translations.md states the signs.
+"""Convert values to and from other libraries; docs/translations.md gives the signs.
 
 Our components are over ``1, e1, e2, e3, e2e3, e3e1, e1e2, I``; the peers write ``e13 = −e3e1``. Each library
-is imported when it is used, so that a missing one is an empty column.
+is imported when it is used, so that a missing one leaves its column empty.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import polhode as ph
 
 ROTOR = [0, 4, 5, 6]
 
-# Which of ours stands where, and with which sign, over 1, e1, e2, e3, e12, e13, e23, e123 ...
+# Index of our component, and its sign, over 1, e1, e2, e3, e12, e13, e23, e123 ...
 _CANONICAL = [0, 1, 2, 3, 6, 5, 4, 7]
 # ... and over 1, e1, e2, e12, e3, e13, e23, e123, where the bits of the index are the generators.
 _BITS = [0, 1, 2, 6, 3, 5, 4, 7]
@@ -56,7 +56,7 @@ def _to_canonical(eight: Any) -> Any:
     return np.asarray(eight)[..., _CANONICAL] * _SIGNS
 
 
-_of_canonical = _to_canonical  # swapping e12 with e23 and the sign of e13 undo themselves
+_of_canonical = _to_canonical  # an involution
 
 
 def _to_bits(eight: Any) -> Any:
@@ -85,7 +85,7 @@ def of_clifford(value: Any) -> Any:
 
 @cache
 def kingdon_algebra() -> Any:
-    """Return kingdon's algebra of 3-d space, which keeps what it has compiled."""
+    """Return kingdon's algebra of 3-d space, which caches compiled functions."""
     from kingdon import Algebra
 
     return Algebra(3)
@@ -115,7 +115,7 @@ def _galaga_algebra() -> Any:
 
 
 def galaga(eight: Any) -> Any:
-    """Return a galaga Multivector; it has no batches."""
+    """Return a galaga Multivector; galaga does not support batches."""
     from galaga import Multivector
 
     return Multivector(_galaga_algebra(), _to_bits(eight))
@@ -165,7 +165,7 @@ def of_quaternion(value: Any) -> Any:
 
 
 def of_scipy(rotation: Any, like: ph.Rotor) -> Any:
-    """Rotor components of a SciPy Rotation, which does not keep its sign, with the sign of ours."""
+    """Rotor components of a SciPy Rotation; it does not keep the sign, which is taken from `like`."""
     rotors = ph.Rotor.from_scipy(rotation).components
     return rotors * np.sign((rotors * like.components).sum(axis=-1, keepdims=True))
 

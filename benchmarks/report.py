@@ -1,4 +1,4 @@
-"""The figures as tables to read, and as data to compare with those of another day."""
+"""Format the times as tables and as JSON."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ COLUMNS = [
     "Pauli",
 ]
 LEGEND = """\
-Time per result, the best of several runs taken in turns; the results were compared before. "memory" is the
-time to move the row's inputs and outputs at the speed of NumPy's copy on all cores; "peer/ours" the fastest
-peer's time over ours. "calls" are ours made one by one. numba, NumPy and JAX are explicit formulas written
-by hand; Pauli is the same with 2×2 complex matrices. A dash is what a library does not have, or see the
+Time per result, the best of several runs in turns; all libraries gave the same results before. "memory" is
+the time to move the inputs and outputs at the speed of NumPy's copy on all cores; "peer/ours" is the time of
+the fastest other library over ours. "calls" are our separate calls. numba, NumPy and JAX are formulas written
+by hand; Pauli is the same with 2×2 complex matrices. A dash means that a library lacks the operation; see the
 notes."""
 
 
 def figure(value: float | None) -> str:
-    """Three digits, without an exponent."""
+    """Format with three digits and without an exponent."""
     return "–" if value is None else f"{value:.0f}" if value >= 99.95 else f"{value:#.3g}".rstrip(".")
 
 
 def aligned(lines: list[list[str]]) -> str:
-    """Lines of cells, the first line the head, as a table in Markdown; the first column is words."""
+    """Format lines of cells, the first line the header, as a Markdown table; the first column is text."""
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     rule = ["-" * widths[0], *("-" * (width - 1) + ":" for width in widths[1:])]
     body = [lines[0], rule, *lines[1:]]
@@ -55,7 +55,7 @@ def aligned(lines: list[list[str]]) -> str:
 
 
 def section(title: str, rows: list[Row], bandwidth: float) -> str:
-    """One table: a column for each library that is in it."""
+    """Return a table with a column for each library that has an entry."""
     held = [column for column in COLUMNS if column == OURS or any(column in row.seconds for row in rows)]
     limited = any(row.traffic for row in rows)
     lines = [["", "unit", *held, *(["memory"] if limited else []), "peer/ours", "goal"]]
@@ -71,7 +71,7 @@ def section(title: str, rows: list[Row], bandwidth: float) -> str:
 
 
 def notes(rows: list[Row]) -> str:
-    """What is missing, and why."""
+    """Return the list of missing entries with their reasons."""
     found: dict[tuple[str, str], list[str]] = {}
     for row in rows:
         for library, note in row.notes.items():
@@ -81,14 +81,14 @@ def notes(rows: list[Row]) -> str:
 
 
 def matrices(rows: list[Row]) -> str:
-    """How much slower, or faster, the Pauli matrices are than the algebra (the handout: usually slower)."""
+    """Compare Pauli matrices with the algebra; the handout says that they are usually slower."""
     both = [row for row in rows if {OURS, "Pauli"} <= row.seconds.keys()]
     ratios = [[row.what, f"{figure(row.seconds['Pauli'] / row.seconds[OURS])}×"] for row in both]
     return f"## The matrix method\n\n{aligned([['', 'time over ours'], *ratios])}\n"
 
 
 def spellings(rows: list[Row]) -> str:
-    """What was timed, as typed."""
+    """Return a table of the expressions."""
     lines = [["", "library", "expression", "results"]]
     for row in rows:
         lines += [

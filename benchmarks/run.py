@@ -1,9 +1,9 @@
-"""Ours beside the peers, in one run on this machine: `python benchmarks/run.py [--quick] [--only SECTION]`.
+"""Compare the speed with other libraries: `python benchmarks/run.py [--quick] [--only SECTION]`.
 
-Prints the tables and writes them to build/bench-COMMIT.md, the figures to build/bench-COMMIT.json, work and
-precision of motion drawn to build/bench-COMMIT-motion.png, the cost of bodies in ensembles to
-build/bench-COMMIT-ensembles.png. Ratios count; absolute times hold for this
-machine and this hour. A peer that is not installed is an empty column.
+Prints tables and writes them to build/bench-COMMIT.md, the data to build/bench-COMMIT.json, plots of work and
+precision to build/bench-COMMIT-motion.png and of the cost of ensembles to build/bench-COMMIT-ensembles.png.
+Compare ratios: absolute times depend on the machine and its load. A library that is not installed has an
+empty column.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ SEED = 1
 
 
 def measured(rows: Iterator[Row], pace: Pace) -> list[Row]:
-    """Measure each row when it is built, and let its values go before the next."""
+    """Build, measure and release one row after the other."""
     done = []
     for row in rows:
         with machine.on_one_core() if row.one_core else nullcontext():
@@ -52,9 +52,9 @@ def measured(rows: Iterator[Row], pace: Pace) -> list[Row]:
 
 
 def main() -> None:
-    """Measure, print and write."""
+    """Run the benchmarks, print the tables and write the files."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a first look: smaller batches, shorter runs")
+    parser.add_argument("--quick", action="store_true", help="use smaller batches and shorter runs")
     titles = [*SECTIONS, scaling.TITLE, work_precision.TITLE]
     parser.add_argument(
         "--only",

@@ -1,4 +1,4 @@
-"""What a body costs in an ensemble: by the number of bodies, of steps and of cores; and how much memory."""
+"""Cost of a body in an ensemble by number of bodies, steps and cores; growth of memory."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from report import aligned, figure
 TITLE = "Ensembles: cost of a body"
 MOMENTS = (1.0, 2.0, 2.5)
 STEP = 0.01
-WORK = 20_000_000  # body-steps, or states, of a measurement at most
+WORK = 20_000_000  # largest number of body-steps of a measurement
 LEGEND = """\
-Seconds of `ph.simulate` from Python, one output time, over bodies × steps (or bodies × times): with few of
-them the call itself, with many the arithmetic. Speed-up is the time on one thread over that on all cores."""
+Time of `ph.simulate` with one output time, divided by bodies × steps. With few of them it is the cost of the
+call, with many that of the arithmetic. The speed-up is the time on one thread over that on all cores."""
 
 
 @dataclass(frozen=True)
 class Point:
-    """A measurement: what was varied, bodies and steps, ns for each, and the growth of memory in MB."""
+    """A measurement: the varied quantity, bodies, steps, ns per body-step, and growth of memory in MB."""
 
     what: str
     bodies: int
@@ -37,7 +37,7 @@ class Point:
 
 
 def _cost(work: Callable[[], Any], count: int, pace: Pace) -> float:
-    """The least ns for each of so many."""
+    """Return the best time in ns, divided by `count`."""
     best, begin = np.inf, perf_counter()
     for turn in range(pace.rounds):
         if turn and perf_counter() - begin > 10 * pace.span:
@@ -63,7 +63,7 @@ def _stepped(what: str, bodies: int, steps: int, pace: Pace, **options: Any) -> 
 
 
 def points(pace: Pace) -> list[Point]:
-    """Measure everything; less for a quick look."""
+    """Measure all points; fewer at the quick pace."""
     most = 6 if pace.batch >= 1_000_000 else 4
     counts = [10**k for k in range(most + 1)]
     found = []
@@ -78,8 +78,8 @@ def points(pace: Pace) -> list[Point]:
 
 
 def section(found: list[Point]) -> str:
-    """One table."""
-    lines = [["varied", "bodies", "steps", "ns a body-step", "M body-steps/s", "memory grew by MB"]]
+    """Return the table."""
+    lines = [["varied", "bodies", "steps", "ns per body-step", "M body-steps/s", "memory growth, MB"]]
     for p in found:
         rate = 1e3 / p.nanoseconds
         lines.append(
@@ -91,12 +91,12 @@ def section(found: list[Point]) -> str:
 
 
 def data(found: list[Point]) -> list[dict[str, Any]]:
-    """Everything for JSON."""
+    """Return the points for JSON."""
     return [asdict(point) for point in found]
 
 
 def plot(found: list[Point]) -> bytes | None:
-    """Draw cost against bodies and against steps as a PNG; None without matplotlib."""
+    """Plot the cost against bodies and against steps as a PNG; None without matplotlib."""
     try:
         from matplotlib.figure import Figure
     except ImportError:
@@ -112,9 +112,7 @@ def plot(found: list[Point]) -> bytes | None:
             axes.annotate(
                 other, (getattr(p, what), p.nanoseconds), (4, 6), textcoords="offset points", fontsize=7
             )
-        axes.set(
-            xlabel=f"number of {what}", ylabel="ns a body and step", title=f"rk4, free bodies, by {what}"
-        )
+        axes.set(xlabel=f"number of {what}", ylabel="ns per body-step", title=f"rk4, free bodies, by {what}")
         axes.grid(alpha=0.3, which="both")
         axes.label_outer()
     file = BytesIO()

@@ -1,4 +1,4 @@
-"""One value at a time, as typed at the prompt: what counts is the way into the library and out again."""
+"""Single values, as at the prompt: the time is that of the call, not of the arithmetic."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def exponential(rng: np.random.Generator) -> Row:
 def logarithm(rng: np.random.Generator) -> Row:
     """``log(R)``, a bivector from a rotor."""
     row = Row("log(R), one rotor")
-    # Less than half a turn: where others have one logarithm for R and −R, it is ours.
+    # Less than half a turn, where libraries with one logarithm for R and −R agree with ours.
     R = ph.bivector(rng.uniform(-0.8, 0.8, 3)).exp()
     row.enter("polhode", "R.log()", {"R": R}, lambda x: x.components)
     with row.peer("galaga"):

@@ -1,7 +1,7 @@
-"""The motion of free and heavy tops by Taylor series in extended precision, to judge all integrators by.
+"""Reference motion of free and heavy tops by Taylor series in extended precision.
 
-Nothing of it is ours or a peer's. On x86 its numbers have 64 bits, so that rounding is 2000 times smaller
-than that of the integrators; where NumPy's `longdouble` is but a double, it is no better than they are.
+It uses none of the libraries that it judges. On x86 the numbers have 64 bits, so that rounding is 2000 times
+smaller than that of the integrators; where NumPy's `longdouble` is a double, it is as accurate as they are.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 STEP, TERMS = 0.5, 44
-SECONDS = 2.5e-3  # that a unit of time takes, about
+SECONDS = 2.5e-3  # approximate run time for a unit of time
 
 # The state is ω, γ, R and a constant 1: all its rates are sums of products of two of these.
 OMEGA, GAMMA, ROTOR, ONE = (0, 1, 2), (3, 4, 5), (6, 7, 8, 9), 10
@@ -24,7 +24,7 @@ Terms = dict[tuple[int, int, int], float]
 class Top:
     """A body held at the origin, or free where c = 0: V = c·γ, γ = ~R e3 R.
 
-    Angular velocity in body axes and rotor (1, e2e3, e3e1, e1e2), of any norm, are those at time 0.
+    `omega` (body axes) and `rotor` (1, e2e3, e3e1, e1e2; any norm) are the values at time 0.
     """
 
     name: str
@@ -67,14 +67,14 @@ def _step(state: Any, left: Any, right: Any, sums: Any) -> Any:
         products = np.vecdot(a[:, :, : k + 1], b[:, :, TERMS - 1 - k :])
         term = np.vecdot(sums, products[:, np.newaxis]) * (power / (k + 1))
         total += term
-    # What is left away is less than the last term.
+    # The truncation error is smaller than the last term.
     if not np.abs(term).max() < np.finfo(np.longdouble).eps:
         raise ValueError(f"the series' last term is {np.abs(term).max():.1e}: take a smaller step")
     return total
 
 
 def _rates(top: Top) -> Terms:
-    """Of what products, with which factors, the rates are: (rate, left, right) to factor.
+    """Return the factors of the products in the rates, by (rate, left, right).
 
     With axial vectors, R = s + b: ``i1 ω1' = (i2 − i3) ω2 ω3 + (γ x c)1``, ``γ' = γ x ω`` and, from
     ``R' = −½ R Ω``, ``s' = ½ b·ω``, ``b' = ½ (b x ω − s ω)``.

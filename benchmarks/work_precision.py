@@ -1,7 +1,7 @@
-"""Work and precision of motion: how far off the attitude is at the end, against the CPU time it took.
+"""Work-precision diagrams of motion: error of the final attitude against CPU time.
 
 Every tool goes from time 0 to the end at several settings. The error is |R − R_true| of unit rotors, half the
-angle in radians; ours must have its sign right, peers need not.
+angle in radians. Our sign must be right; for other libraries the sign of the rotor does not count.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ RIVAL = "SciPy"
 REFERENCES = machine.ROOT / "tests" / "reference" / "motion_cases.json"
 BITS = np.finfo(np.longdouble).nmant + 1
 LEGEND = f"""\
-One motion from 0 to t. Error is |R − R_true| of the rotor at t, half the angle in radians; CPU time is the
-process's, the best of several runs. Tolerances are relative and absolute, h is a fixed step. True is the
-Taylor series in numbers of {BITS} bits; of the free top beyond t = {SHORT:g}, the reference's table of
-40 digits where that is at hand (its 0.01 is not quite the double: 5e-15), else our closed form."""
+One motion from 0 to t. The error is |R − R_true| of the rotor at t, half the angle in radians; the CPU time
+is that of the process, the best of several runs. Tolerances are relative and absolute; h is a fixed step.
+R_true comes from Taylor series in numbers of {BITS} bits; for the free top beyond t = {SHORT:g} from a table
+of 40 digits where there is one (its 0.01 differs from the double by 5e-15), else from our closed form."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """One tool at one setting: the error at the end, CPU time in s, steps, which are 0 for a closed form."""
+    """A tool at one setting: final error, CPU time in s, number of steps (0 for a closed form)."""
 
     tool: str
     setting: str
@@ -59,7 +59,7 @@ class Mark:
 
 @dataclass
 class Panel:
-    """All tools on one top to one time, with notes of what is missing."""
+    """All tools for one top and one final time, with notes on missing entries."""
 
     top: Top
     time: float
@@ -68,18 +68,18 @@ class Panel:
 
     @property
     def title(self) -> str:
-        """What is moved, and to what time."""
+        """The top and the final time."""
         return f"{self.top.name}, t = {self.time:g}"
 
 
 def panels(
     pace: Pace, tops: tuple[Top, ...] = TOPS, times: tuple[float, ...] = (SHORT, LONG)
 ) -> Iterator[Panel]:
-    """Yield a panel for each top and time whose truth is known; the times rise."""
+    """Yield a panel for each top and time, in increasing order of time."""
     true = true_rotors(pace, tops, times)
     for top in tops:
         notes: dict[str, str] = {}
-        rates: dict[Setting, float] = {}  # seconds of CPU per unit of time, as far as they are known
+        rates: dict[Setting, float] = {}  # known CPU seconds per unit of time
         for tool, build in TOOLS.items():
             with noted(notes, tool):
                 rates |= dict.fromkeys(build(top, notes), 0.0)
@@ -94,14 +94,14 @@ def panels(
                 rates = {setting: mark.seconds / time for setting, mark in best.items()}
                 panel.marks = list(best.values())
             else:
-                panel.notes = {"left out": "to know the truth takes too long"}
+                panel.notes = {"skipped": "the reference motion takes too long"}
             yield panel
 
 
 def _measured(
     settings: list[Setting], time: float, true: Any, notes: dict[str, str], pace: Pace
 ) -> dict[Setting, Mark]:
-    """Run all in turns, so that a disturbance meets all alike, and keep the best; the longer, the fewer."""
+    """Run all settings in turns and keep the best times; long runs are repeated less often."""
     best: dict[Setting, Mark] = {}
     for turn in range(pace.rounds):
         again = [setting for setting, mark in best.items() if (turn + 1) * mark.seconds < 3 * pace.span]
@@ -113,7 +113,7 @@ def _measured(
 
 
 def _run(setting: Setting, time: float, true: Any, span: float) -> Mark:
-    """Run once, or as often as fits into a span, for the first of short runs finds nothing in the caches."""
+    """Run once, or repeatedly for `span` seconds: the first of short runs starts with cold caches."""
     best, begin = np.inf, process_time()
     while best == np.inf or process_time() - begin < span:
         start = process_time()
@@ -125,11 +125,11 @@ def _run(setting: Setting, time: float, true: Any, span: float) -> Mark:
 
 
 def true_rotors(pace: Pace, tops: tuple[Top, ...], times: tuple[float, ...]) -> dict[tuple[Top, float], Any]:
-    """Return rotors by top and time, without those for which the pace leaves no time.
+    """Return the reference rotors by top and time, except those that take too long.
 
-    Of the heavy tops at the long time, the series with steps of 1/2 and of 1/4 agree to 5e-13. Near its
-    separatrix the free top magnifies even this rounding, to 1e-11; there the closed form is better, and
-    40-digit tables best.
+    For the heavy tops at the long time, the series with steps of 1/2 and of 1/4 agree to 5e-13. Near its
+    separatrix the free top amplifies even this rounding to 1e-11; there the closed form is more accurate, and
+    tables of 40 digits are the most accurate.
     """
     found = {}
     free, heavy = ([top for top in tops if any(top.c) == held] for held in (False, True))
@@ -143,7 +143,7 @@ def true_rotors(pace: Pace, tops: tuple[Top, ...], times: tuple[float, ...]) -> 
 
 
 def _free_rotor(top: Top, time: float) -> Any:
-    """Return a free top's rotor from the reference motions where they have it, else from our closed form."""
+    """Return a free top's rotor from the table of reference motions, else from our closed form."""
     for case in json.loads(REFERENCES.read_text())["free_top"]:
         given = (case["inertia"], case["omega0"], case["R0"])
         if [tuple(map(float, x)) for x in given] != [top.moments, top.omega, top.rotor]:
@@ -157,7 +157,7 @@ def _free_rotor(top: Top, time: float) -> Any:
 
 
 def ahead(panel: Panel) -> list[tuple[Mark, Mark, float]]:
-    """For each setting of the rival: it, our fastest of its error or better, and the ratio of their times."""
+    """For each SciPy run return it, our fastest run of at most its error, and the ratio of the times."""
     found = []
     for rival in panel.marks:
         ours = [mark for mark in panel.marks if mark.tool == OURS and mark.error <= rival.error]
@@ -168,7 +168,7 @@ def ahead(panel: Panel) -> list[tuple[Mark, Mark, float]]:
 
 
 def section(found: list[Panel]) -> str:
-    """A table for each panel, ours against the rival, and the notes."""
+    """Return a table, the comparison with SciPy and the notes for each panel."""
     parts = [f"## {TITLE}", LEGEND]
     for panel in found:
         lines = [["tool", "setting", "error", "CPU ms", "steps"]]
@@ -188,12 +188,12 @@ def section(found: list[Panel]) -> str:
 
 
 def data(found: list[Panel]) -> list[dict[str, Any]]:
-    """Everything for JSON, times in seconds."""
+    """Return the panels for JSON, times in seconds."""
     return [asdict(panel) for panel in found]
 
 
 def plot(found: list[Panel]) -> bytes | None:
-    """Draw error against CPU time, a panel for each that has marks, as a PNG; None without matplotlib."""
+    """Plot error against CPU time as a PNG, one plot for each panel; None without matplotlib."""
     try:
         from matplotlib.figure import Figure
     except ImportError:

@@ -1,4 +1,4 @@
-"""How Sphinx makes the pages of build/docs from the guides, with the viewer in them."""
+"""Sphinx configuration: pages of the guides in build/docs, with the viewer in them."""
 
 import json
 import os
@@ -25,15 +25,15 @@ ROOT = Path(__file__).parents[1]
 
 
 class Viewer(SphinxDirective):
-    """A scene to look at: its path from the root of the repository."""
+    """Directive that shows a scene in the viewer; its argument is the path from the repository root."""
 
     required_arguments = 1
 
     def run(self):
         path = ROOT / self.arguments[0]
         self.env.note_dependency(str(path))
-        if not viewer_is_there():
-            return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were made without the viewer.")]
+        if not viewer_exists():
+            return [nodes.paragraph(text=f"{self.arguments[0]}: these pages were built without the viewer.")]
         data = json.dumps(document.of_scene(Scene.read(path))).replace("<", "\\u003c")
         script = os.path.relpath("_static/polhode-viewer.js", Path(self.env.docname).parent)
         html = (
@@ -44,21 +44,21 @@ class Viewer(SphinxDirective):
         return [nodes.raw("", html, format="html")]
 
 
-def viewer_is_there():
+def viewer_exists():
     try:
         return bundle_path().is_file()
     except FileNotFoundError:
         return False
 
 
-def with_links_inside(app, docname, source):
-    """Let links to files beside docs/ point at the pages that hold them here."""
+def resolve_conventions_link(app, docname, source):
+    """Make links to CONVENTIONS.md point to its page."""
     source[0] = source[0].replace("(../CONVENTIONS.md)", "(conventions.md)")
 
 
 def write_viewer(app, exception):
-    """Put the viewer beside the pages, as text: from disk a page may load a module by its text alone."""
-    if exception is None and viewer_is_there():
+    """Write the viewer as text in a script: a page opened from disk may not import modules from files."""
+    if exception is None and viewer_exists():
         text = json.dumps(bundle_path().read_text())
         (Path(app.outdir) / "_static/polhode-viewer.js").write_text(
             "window.polhodeViewer ??= import(URL.createObjectURL(\n"
@@ -68,5 +68,5 @@ def write_viewer(app, exception):
 
 def setup(app):
     app.add_directive("viewer", Viewer)
-    app.connect("source-read", with_links_inside)
+    app.connect("source-read", resolve_conventions_link)
     app.connect("build-finished", write_viewer)

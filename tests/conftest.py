@@ -1,7 +1,8 @@
-"""A small scene, a small viewer; and property tests that are the same on every run, each by itself."""
+"""Fixtures that tests share, and settings of the libraries that they use."""
 
 import os
 import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -9,16 +10,24 @@ from hypothesis import settings
 from command_line import SCENE
 from viewers import SCRIPT
 
-# clifford compiles its products when it is first used, for seconds; interpreted they are the same.
+ROOT = Path(__file__).parents[1]
+
+# clifford spends seconds to compile its products on first use; interpreted, they give the same numbers.
 os.environ.setdefault("NUMBA_DISABLE_JIT", "1")
 
+# JAX compiles each program once: the file cache serves all workers, child processes and later runs.
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(ROOT / "build/jax"))
+os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
+os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
+
+# Property tests draw the same examples on every run.
 settings.register_profile("polhode", derandomize=True, database=None, deadline=None, max_examples=60)
 settings.load_profile("polhode")
 
 
 @pytest.fixture
 def scene(tmp_path):
-    """The path of a scene that runs in no time."""
+    """Path of a scene that runs in milliseconds."""
     path = tmp_path / "small.toml"
     path.write_text(SCENE)
     return path
@@ -26,7 +35,7 @@ def scene(tmp_path):
 
 @pytest.fixture
 def bundle(tmp_path_factory, monkeypatch):
-    """The path of a small script, which stands for the viewer's."""
+    """Path of a short script that replaces the viewer's bundle."""
     from polhode._viewer import html
 
     path = tmp_path_factory.mktemp("viewer") / "viewer.js"
@@ -36,8 +45,8 @@ def bundle(tmp_path_factory, monkeypatch):
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _forget_what_jax_compiled():
-    """Thousands of small programs otherwise fill gigabytes."""
+def _clear_jax_caches():
+    """Release the programs that a module compiled: thousands of them fill gigabytes."""
     yield
     if "jax" in sys.modules:
         sys.modules["jax"].clear_caches()

@@ -1,4 +1,4 @@
-//! The names of the formulas: one of each kind.
+//! Names that the formulas may use: one of each kind.
 
 use polhode_ga::formula::{Meaning, Names, Space, Type, define};
 use polhode_ga::product::Grades;

@@ -1,4 +1,4 @@
-//! Any text is a formula, which prints as text that is read as the same formula, or is refused at a place in it.
+//! Parser: any text is an error at a place in it, or a formula that prints as text that parses to the same formula.
 #![no_main]
 
 mod names;
@@ -7,7 +7,7 @@ use libfuzzer_sys::fuzz_target;
 use names::BOUND;
 use polhode_ga::formula::{Error, Names, Node, Space, Span, Style, Tree, compile, parse};
 
-// The first byte says what the names are; the text follows.
+// The first byte selects the names; the rest is the text.
 fuzz_target!(|data: (u8, &str)| {
     let (choice, text) = data;
     match choice % 3 {
@@ -22,7 +22,7 @@ fn check(text: &str, names: &Names) {
         Ok(tree) => {
             tree.sides.iter().for_each(|side| check_spans(side, text));
             if tree.nodes().len() < 500 && tree.sides.iter().map(height).max() < Some(40) {
-                is_read_again(&tree, names);
+                check_round_trip(&tree, names);
             }
             if let Err(error) = compile(&tree, Space::g3(), names) {
                 check_error(&error, text);
@@ -36,8 +36,8 @@ fn height(node: &Node) -> usize {
     1 + node.children().into_iter().map(height).max().unwrap_or(0)
 }
 
-/// Far from the limits, for the canonical text may be longer and deeper than the one that was read.
-fn is_read_again(tree: &Tree, names: &Names) {
+/// Call it far from the limits only: the canonical text may be longer and deeper than the original.
+fn check_round_trip(tree: &Tree, names: &Names) {
     for style in [Style::Unicode, Style::Ascii] {
         let text = tree.text(style);
         let again = parse(&text, Space::g3(), names).unwrap_or_else(|error| panic!("{}", error.shown(&text)));

@@ -1,4 +1,4 @@
-//! A formula of many rows has the same bits as row by row, and the same error.
+//! Interpreter: a formula over many rows gives the same bits, and the same error, as over single rows.
 #![no_main]
 
 mod names;
@@ -11,17 +11,17 @@ use polhode_ga::product::Grades;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
 
-// The number of rows, where the components begin, and the text.
+// The number of rows, the seed of the components, and the text.
 fuzz_target!(|data: (u8, u64, &str)| {
     let (rows, seed, text) = data;
     let Ok(tree) = parse(text, Space::g3(), &BOUND) else { return };
     let Ok(program) = compile(&tree, Space::g3(), &BOUND) else { return };
     if program.steps.len() < 1000 {
-        agrees(&program, 1 + usize::from(rows), seed);
+        check_rows(&program, 1 + usize::from(rows), seed);
     }
 });
 
-fn agrees(program: &Program, rows: usize, mut seed: u64) {
+fn check_rows(program: &Program, rows: usize, mut seed: u64) {
     let runner = Runner::new(program).expect("a program of 3-d space");
     let inputs: Vec<Vec<f64>> = program
         .inputs
@@ -68,7 +68,7 @@ fn size(grades: Grades) -> usize {
     grades.indices(&G3).len()
 }
 
-/// From −2 to 2.
+/// A number from −2 to 2.
 fn random(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     ((*seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 4.0

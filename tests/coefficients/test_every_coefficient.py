@@ -8,7 +8,7 @@ import sympy
 from hypothesis import given
 
 import polhode as ph
-from kinds import EXACT, ROUNDING, Kind, halves, kinds
+from kinds import EXACT, ROUNDING, VARIANTS_SLOW, Kind, halves, kinds
 from naive import GRADE_SETS
 from polhode import I, e1, e2, e3
 from polhode import strategies as ga
@@ -94,6 +94,7 @@ POLYNOMIAL = {
 }
 
 
+@pytest.mark.parametrize("kind", VARIANTS_SLOW, indirect=True)
 @pytest.mark.parametrize("law", POLYNOMIAL)
 @pytest.mark.parametrize("shapes", [((), (), ()), ((2, 1), (3,), ())], ids=["single", "batches"])
 def test_polynomial_law(kind, law, shapes):
@@ -130,6 +131,7 @@ OPERATIONS = {
 }
 
 
+@pytest.mark.parametrize("kind", VARIANTS_SLOW, indirect=True)
 @pytest.mark.parametrize("grades", [(1,), (0, 2), (0, 1, 2, 3)], ids=str)
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_results_keep_the_kind_and_the_grades_of_floats(kind, name, grades):

@@ -74,7 +74,9 @@ def test_floats_are_those_of_the_core(name, floating):
             if name in ("log", "sqrt", "inverse") and mask & 0b1010
             else condition < 1e12
         )
-        data, condition = data[regular], condition[regular]
+        # As many rows for every mask: JAX compiles anew for each shape.
+        rows = np.resize(np.flatnonzero(regular), len(data))
+        data, condition = data[rows], condition[rows]
         x = floating(data)
         got, grades = call(name, of(x), x, mask)
         expected, core_grades = native(name, data, mask)

@@ -27,7 +27,7 @@ def _doubles():
 @pytest.mark.parametrize(
     ("method", "dtype", "torque"),
     [
-        ("rk4", "float64", HEAVY),
+        pytest.param("rk4", "float64", HEAVY, marks=pytest.mark.slow),
         ("strang", "float32", HEAVY),
         ("kahan_li8", "float64", None),
     ],
@@ -46,7 +46,7 @@ def test_the_kernel_takes_the_steps_of_simulate(method, dtype, torque):
         assert np.abs(a - b).max() < 4 * STEPS * np.finfo(dtype).eps
 
 
-@pytest.mark.parametrize("method", ["rk4", "strang"])
+@pytest.mark.parametrize("method", ["rk4", pytest.param("strang", marks=pytest.mark.slow)])
 def test_the_kernel_starts_at_any_time(method):
     law = laws.gravity_gradient(0.7, 0.3)
     call = MOMENTS, ROTORS, OMEGAS, 1.5, law, method
@@ -72,9 +72,9 @@ def test_it_has_the_derivatives_of_the_steps():
     assert np.abs(slope - (end(c + h * direction) - end(c - h * direction)) / (2 * h)).max() < 1e-9
 
 
-@pytest.mark.parametrize("method", ["rk4", "kahan_li8"])
+@pytest.mark.parametrize("method", ["rk4", pytest.param("kahan_li8", marks=pytest.mark.slow)])
 def test_it_is_a_kernel_for_a_gpu(method, monkeypatch):
-    """It becomes Triton's code without a GPU at hand; which of them run it is not known here."""
+    """It is lowered to Triton code, which needs no GPU; whether a GPU runs it is not tested."""
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
 
     def moved(omegas):

@@ -17,6 +17,8 @@ from viewers import needs_bundle
 MATURIN = Path(sys.executable).with_name("maturin")
 
 pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.timeout(900),
     needs_bundle,
     pytest.mark.skipif(not MATURIN.exists(), reason="maturin is not installed"),
     pytest.mark.skipif(

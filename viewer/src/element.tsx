@@ -8,7 +8,7 @@ import { paletteOf, variables } from "./model/theme.ts";
 import type { Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
-import { bindKeys, takeAtEnter } from "./panels/keys.ts";
+import { bindKeys, commitOnEnter } from "./panels/keys.ts";
 import { mayMove, openPreset, PRESETS } from "./presets/index.ts";
 import styles from "./theme.css?inline";
 
@@ -182,7 +182,7 @@ export class PolhodeViewer extends HTMLElement {
       }),
       effect(() => this.publish(model)),
       bindKeys(this, model),
-      takeAtEnter(this),
+      commitOnEnter(this),
     ];
   }
 

@@ -1,8 +1,20 @@
 import packed from "virtual:polhode-core";
 import { unpacked } from "../packed.ts";
-import { type About, type Core, type Files, type Line, type Motion, Problem } from "./core.ts";
+import {
+  type About,
+  type Core,
+  type Files,
+  type Line,
+  type Motion,
+  Problem,
+  type Quadruple,
+  type Solid,
+  type SolidKind,
+  type Surface,
+  type Triple,
+} from "./core.ts";
 
-/** What the core exports: see crates/wasm/src/exports.rs. */
+/** The exports of the core: see crates/wasm/src/exports.rs. */
 interface Exports {
   memory: WebAssembly.Memory;
   room(size: number): number;
@@ -13,42 +25,43 @@ interface Exports {
   close(handle: number): void;
   about_motion(handle: number): number;
   states(handle: number): number;
-  surface_vertices(handle: number): number;
-  surface_faces(handle: number): number;
+  surface(handle: number): number;
+  extents(handle: number): number;
   bodies(handle: number, time: number, count: number, budget: number): number;
   merge(): number;
   evaluate(): number;
+  solid(): number;
+  second_moments(): number;
+  inertia(): number;
+  attitude(): number;
 }
 
-/** How long a motion may be followed if nobody says it, in s. */
+/** Default limit on the time to solve a scene, s. */
 const BUDGET = 10;
 
-/** Loads the core that is in this bundle. */
+/** Loads the core from this bundle. */
 export async function loadCore(): Promise<Core> {
   const imports = { page: { now: () => performance.now() / 1000 } };
   const module = await WebAssembly.compile(await unpacked(packed));
   const instance = await WebAssembly.instantiate(module, imports);
-  return new Compiled(instance.exports as unknown as Exports);
+  return new WasmCore(instance.exports as unknown as Exports);
 }
 
-class Compiled implements Core {
-  constructor(private readonly exports: Exports) {}
+class WasmCore implements Core {
+  constructor(readonly exports: Exports) {}
 
   open(scene: string, { name = "scene.toml", files = new Map(), budget = BUDGET }: OpenOptions = {}): Motion {
     this.putScene(scene, name, files);
     const handle = this.checked(() => this.exports.open(budget));
     this.checked(() => this.exports.about_motion(handle));
-    return new Held(this, handle, JSON.parse(this.text()) as About);
+    return new WasmMotion(this, handle, JSON.parse(this.text()) as About);
   }
 
   recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion {
-    this.put(new Uint8Array(rows.buffer, rows.byteOffset, rows.byteLength));
+    this.put(rows);
     if (of) this.putScene(of.scene, of.name, of.files);
-    return new Held(
-      this,
-      this.checked(() => this.exports.record()),
-      JSON.parse(about) as About,
-    );
+    const handle = this.checked(() => this.exports.record());
+    return new WasmMotion(this, handle, JSON.parse(about) as About);
   }
 
   merged(scene: string, change: string): string {
@@ -64,14 +77,38 @@ class Compiled implements Core {
     return JSON.parse(this.text()) as Line[];
   }
 
-  /** Calls the core about a motion it holds; a Problem if it says so. */
-  ask(call: (exports: Exports) => number): void {
-    this.checked(() => call(this.exports));
+  solid(kind: SolidKind, lengths: Triple): Solid {
+    this.putText(kind);
+    this.put(Float64Array.from(lengths));
+    this.checked(() => this.exports.solid());
+    return JSON.parse(this.text()) as Solid;
   }
 
-  put(bytes: Uint8Array): void {
-    const place = this.exports.room(bytes.length);
-    new Uint8Array(this.exports.memory.buffer, place, bytes.length).set(bytes);
+  secondMoments(moments: Triple, frame: Quadruple): { spread: Triple; frame: Quadruple | null } {
+    const [a, b, c, ...rest] = this.numbers(this.exports.second_moments, [...moments, ...frame]);
+    return { spread: [a!, b!, c!], frame: rest.length > 0 ? (rest as Quadruple) : null };
+  }
+
+  inertia(spread: Triple, frame: Quadruple): Triple[] {
+    const rows = this.numbers(this.exports.inertia, [...spread, ...frame]);
+    return [0, 3, 6].map((k) => rows.slice(k, k + 3) as Triple);
+  }
+
+  attitude(rotor: Quadruple): { turn: number; tilt: number; roll: number } {
+    const [turn, tilt, roll] = this.numbers(this.exports.attitude, rotor) as Triple;
+    return { turn, tilt, roll };
+  }
+
+  /** Calls an export that takes numbers and replies with numbers. */
+  private numbers(call: () => number, given: number[]): number[] {
+    this.put(Float64Array.from(given));
+    this.checked(call);
+    return Array.from(this.floats());
+  }
+
+  put({ buffer, byteOffset, byteLength }: Uint8Array | Float64Array): void {
+    const place = this.exports.room(byteLength);
+    new Uint8Array(this.exports.memory.buffer, place).set(new Uint8Array(buffer, byteOffset, byteLength));
   }
 
   putText(text: string): void {
@@ -87,10 +124,10 @@ class Compiled implements Core {
     }
   }
 
-  /** A copy of the answer. */
-  bytes(): Uint8Array<ArrayBuffer> {
+  /** A copy of the reply. */
+  bytes(): ArrayBuffer {
     const { memory, reply, reply_size } = this.exports;
-    return new Uint8Array(memory.buffer.slice(reply(), reply() + reply_size()));
+    return memory.buffer.slice(reply(), reply() + reply_size());
   }
 
   text(): string {
@@ -98,11 +135,11 @@ class Compiled implements Core {
   }
 
   floats(): Float64Array {
-    return new Float64Array(this.bytes().buffer);
+    return new Float64Array(this.bytes());
   }
 
-  /** The code of a call; a Problem where it says so, or where the core itself failed, after which it is not usable. */
-  private checked(call: () => number): number {
+  /** The return code of a call. A Problem if the call reports one, or if the core crashed and cannot be used again. */
+  checked(call: () => number): number {
     let code: number;
     try {
       code = call();
@@ -116,36 +153,50 @@ class Compiled implements Core {
 
 type OpenOptions = NonNullable<Parameters<Core["open"]>[1]>;
 
-class Held implements Motion {
+class WasmMotion implements Motion {
   constructor(
-    private readonly core: Compiled,
+    private readonly core: WasmCore,
     private readonly handle: number,
     readonly about: About,
   ) {}
 
   states(times: ArrayLike<number>): Float64Array {
-    this.core.put(new Uint8Array(Float64Array.from(times).buffer));
-    this.core.ask((exports) => exports.states(this.handle));
+    this.core.put(Float64Array.from(times));
+    this.core.checked(() => this.core.exports.states(this.handle));
     return this.core.floats();
   }
 
-  surface(): { vertices: Float64Array; faces: Uint32Array } | null {
-    if (!this.about.body.mesh) return null;
-    this.core.ask((exports) => exports.surface_vertices(this.handle));
-    const vertices = this.core.floats();
-    this.core.ask((exports) => exports.surface_faces(this.handle));
-    return { vertices, faces: new Uint32Array(this.core.bytes().buffer) };
+  surface(arm: Triple): Surface {
+    this.putBody(arm);
+    const size = 3 * this.core.checked(() => this.core.exports.surface(this.handle));
+    const reply = this.core.bytes();
+    const rest = new Uint32Array(reply, 8 * size);
+    const faces = (3 * rest.length) / 4;
+    return {
+      vertices: new Float64Array(reply, 0, size),
+      faces: rest.subarray(0, faces),
+      tints: rest.subarray(faces),
+    };
+  }
+
+  extents(): Triple {
+    this.putBody([0, 0, 0]);
+    this.core.checked(() => this.core.exports.extents(this.handle));
+    return Array.from(this.core.floats()) as Triple;
   }
 
   bodies(time: number, count: number): Float64Array {
-    this.core.ask((exports) => exports.bodies(this.handle, time, count, BUDGET));
+    this.core.checked(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
     return this.core.floats();
   }
 
   close(): void {
-    this.core.ask((exports) => {
-      exports.close(this.handle);
-      return 0;
-    });
+    this.core.exports.close(this.handle);
+  }
+
+  /** Where the surface of the body is not known, it follows from these. */
+  private putBody(arm: Triple): void {
+    const { mass, moments, frame } = this.about.body;
+    this.core.put(Float64Array.from([mass ?? 1, ...moments, ...frame, ...arm]));
   }
 }

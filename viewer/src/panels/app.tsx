@@ -22,17 +22,17 @@ interface Props {
   model: Model;
   palette: ReadonlySignal<Palette>;
   compact: boolean;
-  /** Whether there is room beside the picture, so that panels may stand open. */
+  /** Whether panels fit beside the picture; they are then open by default. */
   wide: boolean;
 }
 
-/** Which panels stand open, of those that were opened or folded by hand. */
+/** Whether panels are open, for those that the user opened or folded. */
 type Folds = Map<string, boolean>;
 
-/** The page: a header, and the motion or the algebra below. */
+/** The page: the header, and the motion or the algebra below it. */
 export function App({ model, palette, compact, wide }: Props) {
   const dragged = useSignal(false);
-  // They stay as they are while the algebra is shown.
+  // Kept while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
   const folds = useMemo<Folds>(() => new Map(), []);
@@ -73,7 +73,7 @@ function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
     <main class="motion">
       <Picture model={model} palette={palette} />
       <Playback model={model} />
-      <aside class="panels" aria-label="Read-outs and controls">
+      <aside class="panels" aria-label="Values and controls">
         {known && (
           <Panel id="state" title="State" open={!compact || wide} folds={folds}>
             <Readout model={model} />
@@ -121,7 +121,7 @@ function Panel(props: {
   children: ComponentChildren;
 }) {
   const { id, folds } = props;
-  // What is folded is not drawn: read-outs change with each frame.
+  // The content of a folded panel is not rendered, because values change in every frame.
   const open = useSignal(folds.get(id) ?? props.open);
   return (
     <details
@@ -140,7 +140,7 @@ function Panel(props: {
   );
 }
 
-/** Tells those who do not see the picture when the kind of motion changes. */
+/** Announces to screen readers when the regime changes. */
 function Announcement({ model }: { model: Model }) {
   const regime = useComputed(() => regimeOf(model.about.value));
   return (

@@ -1,10 +1,10 @@
 import type { ComponentChildren } from "preact";
 import type { About, Triple } from "../core/core.ts";
+import { significant, small } from "../format/numbers.ts";
+import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
-import { significant, small } from "./format.ts";
-import { DEGREE, duration } from "./units.ts";
 
-/** What is known of the motion as a whole: its kind, its times, and how far to trust it. */
+/** Properties of the whole motion: regime, laws, periods, and accuracy. */
 export function Facts({ model }: { model: Model }) {
   const about = model.about.value;
   if (!about) return null;
@@ -39,14 +39,14 @@ export function Facts({ model }: { model: Model }) {
         </Fact>
         {about.body.mass !== null && <Fact name="Mass">{significant(about.body.mass, 5)} kg</Fact>}
         {about.ensemble !== null && <Fact name="Bodies">{about.ensemble.toLocaleString("en")}</Fact>}
-        <Fact name="Method">{trust(about)}</Fact>
+        <Fact name="Method">{methodOf(about)}</Fact>
       </dl>
       <Conserved about={about} />
     </>
   );
 }
 
-/** The laws by the names of the scene, as people call them. */
+/** Labels of the laws by their names in scenes. */
 export const LAWS: Record<string, string> = {
   gravity: "Gravity",
   heavy: "Gravity",
@@ -78,57 +78,56 @@ function Times({ free }: { free: NonNullable<About["free"]> }) {
   return (
     <>
       {free.period !== null && <Fact name="Period of Ω">{duration(free.period, 7)}</Fact>}
-      {free.flip_time !== null && <Fact name="From flip to flip">{duration(free.flip_time, 7)}</Fact>}
+      {free.flip_time !== null && <Fact name="Flip period">{duration(free.flip_time, 7)}</Fact>}
       {free.precession_period !== null && (
-        <Fact name="Precession">{duration(free.precession_period, 7)} for a turn about L</Fact>
+        <Fact name="Precession">{duration(free.precession_period, 7)} per turn about L</Fact>
       )}
       {free.modulus > 0 && <Fact name="Modulus k">{significant(free.modulus, 7)}</Fact>}
     </>
   );
 }
 
-/** How a heavy top goes round, and whether it would sleep. */
+/** Nutation and precession of a heavy top, and whether it is stable upright. */
 function Top({ top }: { top: NonNullable<About["top"]> }) {
   const [least, most] = top.tilt.map((angle) => significant(angle / DEGREE.size, 5));
   const turn = top.precession_rate && (2 * Math.PI) / Math.abs(top.precession_rate);
   return (
     <>
-      <Fact name="Tilt from up">{least === most ? `${least}°` : `${least}° to ${most}°`}</Fact>
+      <Fact name="Tilt from vertical">{least === most ? `${least}°` : `${least}° to ${most}°`}</Fact>
       {top.nutation_period !== null && (
-        <Fact name="Nutation">{duration(top.nutation_period, 7)} from low to low</Fact>
+        <Fact name="Nutation period">{duration(top.nutation_period, 7)}</Fact>
       )}
       {turn !== null && turn !== 0 && (
-        <Fact name="Precession">{duration(turn, 7)} for a turn about e₃, on average</Fact>
+        <Fact name="Precession">{duration(turn, 7)} per turn about e₃, on average</Fact>
       )}
       <Fact name="Upright">
-        {top.sleeps ? "stable" : "not stable"} with this spin; it sleeps from{" "}
-        {significant(top.critical_spin, 5)} rad/s on
+        {top.sleeps ? "stable" : "unstable"}; stable from a spin of {significant(top.critical_spin, 5)} rad/s on
       </Fact>
     </>
   );
 }
 
-/** What kind of motion it is, in words; empty where none has a name. */
+/** The regime of the motion in words; empty if it has no name. */
 export function regimeOf(about: About | null): string {
   return about?.free?.regime ?? about?.top?.regime ?? "";
 }
 
-/** Which axis Ω circles. */
+/** The principal axis that Ω circles. */
 function circled(moments: Triple, axis: 1 | 2 | 3): string {
   const which = moments[axis - 1] === Math.max(...moments) ? "largest" : "smallest";
-  return `: Ω circles axis ${axis}, that of the ${which} moment`;
+  return `: Ω circles axis ${axis}, which has the ${which} moment`;
 }
 
-/** The numbers of a law with some digits; a formula as it stands. */
+/** The arguments of a law, rounded; a formula is left as it is. */
 function shortened(text: string): string {
   if (/[^-+\d.e(), ]/.test(text)) return text;
   return text.replace(/\d[\d.]*(e[-+]?\d+)?/g, (number) => significant(Number(number), 5));
 }
 
-/** How the motion was found, and how far it may be off. */
-export function trust(about: About): string {
+/** The method and its error estimate in words. */
+export function methodOf(about: About): string {
   if (about.exact) return "exact, in closed form";
-  if (about.method === "recorded") return "recorded, interpolated for the picture";
+  if (about.method === "recorded") return "recorded, interpolated between rows";
   const steps = `${about.method}, ${about.steps.toLocaleString("en")} steps`;
   return about.error_estimate === null ? steps : `${steps}, error about ${small(about.error_estimate)}`;
 }
@@ -139,8 +138,8 @@ function Conserved({ about }: { about: About }) {
       <thead>
         <tr>
           <th scope="col">Conserved</th>
-          <th scope="col">value, SI</th>
-          <th scope="col">drift</th>
+          <th scope="col">Value, SI</th>
+          <th scope="col">Drift</th>
         </tr>
       </thead>
       <tbody>

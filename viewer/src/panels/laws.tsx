@@ -1,11 +1,11 @@
+import { PLANES } from "../format/numbers.ts";
+import { Select } from "../inputs/select.tsx";
+import { Slider } from "../inputs/slider.tsx";
 import type { Controls } from "../vary/controls.ts";
 import { AXIS, key, type LawForm, type LawName, type LawsChoice, type Parameter } from "../vary/laws.ts";
 import { LAWS } from "./facts.tsx";
-import { Slider } from "./slider.tsx";
 
-const PLANES = ["e₂∧e₃", "e₃∧e₁", "e₁∧e₂"];
-
-/** What turns the body: as the scene says, or laws that add up. */
+/** Controls of the torques: those of the scene, or a sum of laws chosen here. */
 export function LawsPanel({ controls }: { controls: Controls }) {
   const about = controls.about.value;
   const choice = controls.laws.value;
@@ -13,17 +13,16 @@ export function LawsPanel({ controls }: { controls: Controls }) {
   const own = about.laws.map(({ name }) => LAWS[name] ?? name).join(", ") || "none";
   return (
     <>
-      <div class="row">
-        <label for="laws">Torques</label>
-        <select
-          id="laws"
-          value={choice.from}
-          onChange={(event) => controls.chooseLaws(event.currentTarget.value as LawsChoice["from"])}
-        >
-          <option value="scene">{`As in the scene: ${own}`}</option>
-          <option value="here">Chosen here</option>
-        </select>
-      </div>
+      <Select
+        id="laws"
+        label="Torques"
+        value={choice.from}
+        options={[
+          ["scene", `As in the scene: ${own}`],
+          ["here", "Chosen here"],
+        ]}
+        onChange={(from) => controls.chooseLaws(from)}
+      />
       {choice.from === "here" &&
         controls.forms.value.map((law) => (
           <Law key={law.name} law={law} choice={choice} controls={controls} />
@@ -49,39 +48,17 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
       </label>
       {on &&
         law.parameters.map((parameter) => {
-          const value = choice.values[key(law, parameter)] ?? parameter.value;
-          const id = `${law.name}-${parameter.name}`.replaceAll("_", "-");
+          const common = {
+            id: `${law.name}-${parameter.name}`.replaceAll("_", "-"),
+            value: choice.values[key(law, parameter)] ?? parameter.value,
+            onChange: (value: number) => set(parameter, value),
+          };
           return parameter.name === AXIS ? (
-            <PlaneChoice key={id} id={id} value={value} onChange={(axis) => set(parameter, axis)} />
+            <Select key={common.id} label="Plane" options={PLANES.map((plane, k) => [k, plane])} {...common} />
           ) : (
-            <Slider
-              key={id}
-              id={id}
-              {...parameter}
-              value={value}
-              onChange={(value) => set(parameter, value)}
-            />
+            <Slider key={common.id} {...parameter} {...common} />
           );
         })}
-    </div>
-  );
-}
-
-function PlaneChoice(props: { id: string; value: number; onChange: (axis: number) => void }) {
-  return (
-    <div class="row">
-      <label for={props.id}>Plane</label>
-      <select
-        id={props.id}
-        value={props.value}
-        onChange={(event) => props.onChange(Number(event.currentTarget.value))}
-      >
-        {PLANES.map((plane, k) => (
-          <option value={k} key={plane}>
-            {plane}
-          </option>
-        ))}
-      </select>
     </div>
   );
 }

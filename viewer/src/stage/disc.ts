@@ -9,11 +9,11 @@ import {
   Vector3,
 } from "three";
 import type { Shown } from "../document.ts";
+import { quantity } from "../format/numbers.ts";
 import type { Palette } from "../palette.ts";
 import { Arrow } from "./arrow.ts";
 import type { Figure } from "./figure.ts";
 import type { Label, Labels } from "./labels.ts";
-import { quantity } from "./numbers.ts";
 import type { Instant, Part } from "./part.ts";
 import { Ribbon, type Screen } from "./ribbon.ts";
 import { AXES } from "./rotor.ts";

@@ -29,8 +29,10 @@ import { Poinsot } from "./poinsot.ts";
 import type { Screen } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
 
-/** This browser draws nothing in three dimensions. */
-export class NoWebGL extends Error {}
+/** WebGL 2 is not available. */
+export class NoWebGL extends Error {
+  override message = "No 3-d picture: WebGL 2 is missing or switched off in this browser. All values are shown.";
+}
 
 const LOST = "The graphics card has let go of the picture; it is drawn again as soon as that can be.";
 
@@ -85,7 +87,7 @@ export class Stage {
       antialias: true,
       powerPreference: "high-performance",
     });
-    if (!context) throw new NoWebGL("this browser draws no WebGL 2");
+    if (!context) throw new NoWebGL();
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.viewpoint = new Viewpoint(this.canvas, this.draw, this.fit);
     this.paths = new Paths(this.screen);

@@ -1,6 +1,6 @@
 import type { About, Triple } from "../core/core.ts";
-import { around, type Range } from "../panels/slider.tsx";
-import { lengthUnit, si, timeUnit, type Unit } from "../panels/units.ts";
+import { lengthUnit, si, timeUnit, type Unit } from "../format/units.ts";
+import { around, type Range } from "../inputs/range.ts";
 import { table } from "./toml.ts";
 
 /** What turns the body, as the controls have it: nothing but what the scene says, or laws that are chosen here. */

@@ -8,8 +8,8 @@ use names::BOUND;
 use polhode_ga::formula::{Given, InputKind, Program, Runner, Space, compile, parse};
 use polhode_ga::graded::Graded;
 use polhode_ga::product::Grades;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::G3;
-use polhode_ga::threads::Threads;
 
 // The number of rows, where the components begin, and the text.
 fuzz_target!(|data: (u8, u64, &str)| {

@@ -2,11 +2,11 @@
 //!
 //! `cargo run --release -p polhode-ga --example batch [rows]`
 
-use polhode_ga::batch::{Element, multiply_adds, turn};
-use polhode_ga::maps;
 use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::rows::product::{Element, multiply_adds, turn};
+use polhode_ga::rows::rotor_functions;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::{Algebra, Signature};
-use polhode_ga::threads::Threads;
 use std::time::Instant;
 
 const VECTOR: Grades = Grades(0b0010);
@@ -78,8 +78,8 @@ fn full(rows: usize, peak: f64, p: usize, q: usize, r: usize) {
 fn exp_and_log(rows: usize) {
     let mut b: Vec<f64> = numbers::<f64>(3 * rows).iter().map(|x| 4.0 * x).collect();
     let mut r = vec![1.0; 4 * rows];
-    line::<f64>("exp", rows, 3, 4, || maps::exp(Threads::ONE, &b, &mut r).expect("finite"));
-    line::<f64>("log", rows, 4, 3, || maps::log(Threads::ONE, &r, &mut b).expect("finite"));
+    line::<f64>("exp", rows, 3, 4, || rotor_functions::exp(Threads::ONE, &b, &mut r).expect("finite"));
+    line::<f64>("log", rows, 4, 3, || rotor_functions::log(Threads::ONE, &r, &mut b).expect("finite"));
 }
 
 fn main() {

@@ -4,11 +4,11 @@
 //! `cargo run --release -p polhode-ga --example formula`
 
 use polhode_ga::Graded;
-use polhode_ga::batch::turn;
 use polhode_ga::formula::{Given, Input, InputKind, Op, Program, Runner, Span, Step, Type};
 use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::rows::product::turn;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::table::Signature;
-use polhode_ga::threads::Threads;
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -1,8 +1,8 @@
 //! A single value of G3 that carries its grades: what a dynamic language holds.
 
+use crate::g3::rotor::Rotor;
+use crate::g3::values::{Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Product};
-use crate::rotor::Rotor;
-use crate::values::{Vector, geometric};
 
 /// Where each grade of G3 begins among the eight components, and where the last one ends.
 const STARTS: [usize; 5] = [0, 1, 4, 7, 8];
@@ -190,7 +190,7 @@ pub(crate) fn size(grades: Grades) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::turn;
+    use crate::rows::product::turn;
     use crate::table::G3;
 
     fn numbers(seed: usize, count: usize) -> Vec<f64> {

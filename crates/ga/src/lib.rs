@@ -14,41 +14,28 @@
 //!
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
-//! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product
-//! keeps), [`batch`] (any product over rows of numbers), [`compose`] (rotors), [`maps`] (exp, log and
-//! powers over rows), [`curve`] (functions of one number in lanes, of the arithmetic of [`lanes_math`]), [`lanes`] (bodies side by side), [`threads`], [`values`] (`Vector`, `Bivector`, `Trivector`, `Multivector`),
-//! [`graded`] (a value that carries its grades), [`rotor`] (rotations), [`functions`] (inverse, exp, log,
-//! square root), [`general`] (the same in any algebra; complements, join and meet), [`pauli`], [`formula`]
-//! (the language of the handout), [`diagnostic`] (errors that show their place in a text).
+//! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product keeps), [`graded`]
+//! (a value that carries its grades), [`g3`] (the typed values of 3-d space: `Vector`, `Bivector`, `Trivector`,
+//! `Multivector`, rotors; inverse, exp, log, square root), [`general`] (the same functions in any algebra; complements,
+//! join and meet), [`simd`] (bodies side by side, numbers of twice the precision, threads), [`rows`] (products and
+//! functions over rows of numbers), [`formula`] (the language of the handout), [`error`] (why a function has no value),
+//! [`diagnostic`] (errors that show their place in a text).
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.
 
-pub mod batch;
-mod complex;
-pub mod compose;
-pub mod curve;
 pub mod diagnostic;
+pub mod error;
 pub mod formula;
-pub mod functions;
+pub mod g3;
 pub mod general;
 pub mod graded;
-pub mod lanes;
-pub mod lanes_math;
-mod map;
-pub mod maps;
-pub mod pauli;
 pub mod product;
-mod reduction;
-pub mod rotor;
-mod simd;
-mod sweep;
+pub mod rows;
+pub mod simd;
 pub mod table;
-pub mod threads;
-mod tile;
-pub mod values;
 
-pub use functions::MathError;
+pub use error::MathError;
+pub use g3::rotor::Rotor;
+pub use g3::values::{Bivector, Multivector, Trivector, Vector};
 pub use graded::Graded;
-pub use rotor::Rotor;
-pub use values::{Bivector, Multivector, Trivector, Vector};

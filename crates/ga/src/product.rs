@@ -3,8 +3,8 @@
 //! A product of blades of grades r and s has one grade k, and the rule says whether it is kept. The
 //! handout's dot is the lowest grade, `abs(r − s)`, scalars included (`3·a = 3a`); its wedge the highest.
 
+use crate::rows::tiles::Tiles;
 use crate::table::{Algebra, G3};
-use crate::tile::Tiles;
 use std::sync::OnceLock;
 
 /// The products of the handout, and the contractions.

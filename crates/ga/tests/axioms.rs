@@ -1,7 +1,8 @@
 //! The axioms of the algebra and of rotors, over random values from the whole range of sizes.
 
+use polhode_ga::g3::pauli;
 use polhode_ga::product::Product;
-use polhode_ga::{Bivector, Multivector, Rotor, Vector, pauli};
+use polhode_ga::{Bivector, Multivector, Rotor, Vector};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 

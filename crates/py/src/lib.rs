@@ -3,36 +3,16 @@
 use pyo3::prelude::*;
 
 mod algebra;
-mod arrays;
-mod batches;
-mod bodies;
-mod calls;
-mod closed_forms;
-mod columns;
-mod draws;
-mod ensemble;
-mod flow;
 mod formula;
-mod free;
-mod laws;
-mod made;
-mod motion;
-mod multivector;
-mod operators;
-mod pool;
-mod program;
+mod mechanics;
 mod scene;
-mod signature;
-mod simulation;
-mod text;
-mod torque;
-mod value;
+mod support;
 
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::algebra::{
+    use crate::algebra::rows::{
         from_pauli, function, norm, product, rotor_apply, rotor_compose, rotor_exp, rotor_from_components,
         rotor_from_matrix, rotor_from_plane_angle, rotor_from_quaternion, rotor_from_rotation_vector,
         rotor_from_vectors, rotor_log, rotor_plane_angle, rotor_power, rotor_to_matrix, rotor_to_quaternion,
@@ -40,45 +20,45 @@ mod _native {
     };
 
     #[pymodule_export]
-    use crate::bodies::{Body, Inertia};
+    use crate::mechanics::bodies::{Body, Inertia};
     #[pymodule_export]
-    use crate::ensemble::simulate_many;
+    use crate::mechanics::ensemble::simulate_many;
     #[pymodule_export]
-    use crate::flow::{free_flow, free_flow_derivatives};
+    use crate::mechanics::flow::{free_flow, free_flow_derivatives};
     #[pymodule_export]
-    use crate::free::FreeMotion;
+    use crate::mechanics::free::FreeMotion;
     #[pymodule_export]
-    use crate::laws::{Event, Force};
+    use crate::mechanics::laws::{Event, Force};
     #[pymodule_export]
-    use crate::made::Made;
+    use crate::mechanics::made::Made;
     #[pymodule_export]
-    use crate::motion::symmetric_top;
+    use crate::mechanics::motion::symmetric_top;
     #[pymodule_export]
-    use crate::simulation::{Motion, methods, simulate};
+    use crate::mechanics::simulation::{Motion, methods, simulate};
 
     #[pymodule_export]
-    use crate::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};
+    use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};
     #[pymodule_export]
-    use crate::torque::{Law, orbit_directions, torque_at};
+    use crate::mechanics::torque::{Law, orbit_directions, torque_at};
 
     #[pymodule_export]
     use crate::formula::Formula;
     #[pymodule_export]
-    use crate::program::{Program, canonical, marked};
+    use crate::formula::program::{Program, canonical, marked};
 
     #[pymodule_export]
-    use crate::pool::{Buffer, buffer};
+    use crate::algebra::signature::{Algebra, g3_object};
     #[pymodule_export]
-    use crate::signature::{Algebra, g3_object};
+    use crate::algebra::value::{Multivector, Rotor};
     #[pymodule_export]
-    use crate::value::{Multivector, Rotor};
+    use crate::support::pool::{Buffer, buffer};
 
     #[pymodule_export]
-    use crate::draws::Draws;
+    use crate::scene::draws::Draws;
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene, scene_mesh};
     #[pymodule_export]
-    use crate::text::{diagnostic, near_unit, quantities};
+    use crate::support::text::{diagnostic, near_unit, quantities};
 
     /// The version of the package.
     #[pymodule_export]

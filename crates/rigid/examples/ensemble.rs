@@ -3,15 +3,15 @@
 //! `adaptive`.
 
 use polhode_ga::formula::Names;
-use polhode_ga::lanes::{Work, fastest};
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::lanes::{Work, fastest};
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start};
-use polhode_rigid::force::Center;
-use polhode_rigid::method::Method;
-use polhode_rigid::simulate::Options;
-use polhode_rigid::torque::{Axes, FormulaTorque, Gains, Orbit, Torque};
+use polhode_rigid::laws::torque::{Axes, FormulaTorque, Gains, Orbit, Torque};
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::Options;
+use polhode_rigid::state::center::Center;
 use std::time::Instant;
 
 /// Independent chains of products with sums.

@@ -7,7 +7,7 @@
 //!
 //! All arithmetic here is that of `+ − × ÷ √`, so that the numbers have the same bits on every machine.
 
-use crate::free::lanes::{exp_minus, horner};
+use crate::numerics::lanes::{exp_minus, horner};
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 

@@ -5,9 +5,9 @@
 //! thousandth of them.
 
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::conserved::Conserved;
-use polhode_rigid::phase::{Gyrostat, Phase};
-use polhode_rigid::torque::{Orbit, Torque, total, turn_from, wheel};
+use polhode_rigid::laws::conserved::Conserved;
+use polhode_rigid::laws::torque::{Orbit, Torque, total, turn_from, wheel};
+use polhode_rigid::state::phase::{Gyrostat, Phase};
 
 const STEP: f64 = 1e-3;
 

@@ -1,11 +1,11 @@
 //! The damped body and the sphere in a field: against reference states, and against their own laws.
 
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::damped::DampedTop;
-use polhode_rigid::free::FreeMotion;
-use polhode_rigid::larmor::LarmorSphere;
-use polhode_rigid::simulate::{Options, Problem};
-use polhode_rigid::torque::Torque;
+use polhode_rigid::exact::damped::DampedTop;
+use polhode_rigid::exact::free::FreeMotion;
+use polhode_rigid::exact::larmor::LarmorSphere;
+use polhode_rigid::laws::torque::Torque;
+use polhode_rigid::run::{Options, Problem};
 use polhode_rigid::{Inertia, SimulateError};
 
 const EPS: f64 = f64::EPSILON;

@@ -1,12 +1,12 @@
 //! Many bodies at once are as each alone.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::ensemble::{Ensemble, Failure, Outputs, Rows, Start, Summary};
-use polhode_rigid::force::Center;
-use polhode_rigid::method::Method;
-use polhode_rigid::simulate::Options;
-use polhode_rigid::torque::Torque;
+use polhode_rigid::laws::torque::Torque;
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::Options;
+use polhode_rigid::state::center::Center;
 use polhode_rigid::{Inertia, SimulateError};
 
 /// Bodies of every order of moments, symmetric ones and a sphere among them, in axes of their own.

@@ -1,12 +1,13 @@
 //! Bodies side by side, each by steps of its own.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start, Summary};
-use polhode_rigid::force::{Center, Force};
-use polhode_rigid::method::Method;
-use polhode_rigid::simulate::{Options, Progress};
-use polhode_rigid::torque::{Axes, Gains, Kind, Orbit, Table, Torque};
+use polhode_rigid::laws::force::Force;
+use polhode_rigid::laws::torque::{Axes, Gains, Kind, Orbit, Table, Torque};
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::{Options, Progress};
+use polhode_rigid::state::center::Center;
 use polhode_rigid::{Inertia, SimulateError};
 use std::sync::Arc;
 

@@ -2,16 +2,15 @@
 
 use polhode_ga::formula::{Given, Input, Meaning, Names, Type};
 use polhode_ga::product::Grades;
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
 use polhode_rigid::Inertia;
 use polhode_rigid::ensemble::{Ensemble, Outputs, Rows, Start, Summary};
-use polhode_rigid::force::Center;
-use polhode_rigid::method::Method;
-use polhode_rigid::simulate::Options;
-use polhode_rigid::torque::{
-    Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque, TorqueError,
-};
+use polhode_rigid::error::TorqueError;
+use polhode_rigid::laws::torque::{Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque};
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::Options;
+use polhode_rigid::state::center::Center;
 use std::sync::Arc;
 
 /// More than two blocks, the last not full.

@@ -1,9 +1,9 @@
 //! The free top: against states computed by other formulas to 34 digits, and against its own laws.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
-use polhode_rigid::free::{FreeMotion, TILE, Tile, Times, at_each};
-use polhode_rigid::regime::Regime;
+use polhode_rigid::exact::free::{FreeMotion, TILE, Tile, Times, at_each};
+use polhode_rigid::exact::regime::Regime;
 use proptest::prelude::*;
 
 const EPS: f64 = f64::EPSILON;

@@ -1,9 +1,9 @@
 //! Lagrange's top: against states computed by other formulas to 34 digits, and against its own laws.
 
-use polhode_ga::threads::Threads;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
-use polhode_rigid::lagrange::{LagrangeRegime, LagrangeTop};
+use polhode_rigid::exact::lagrange::{LagrangeRegime, LagrangeTop};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

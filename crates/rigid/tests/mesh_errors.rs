@@ -1,7 +1,7 @@
 //! Every way in which a mesh or its file can be wrong, with the message that it gets.
 
 use polhode_ga::Vector;
-use polhode_rigid::mesh::MeshFormat;
+use polhode_rigid::body::mesh::MeshFormat;
 use polhode_rigid::{Amount, TriangleMesh};
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! The file formats: the same box from each of their dialects, and no panic from any bytes.
 
 use polhode_ga::Vector;
-use polhode_rigid::mesh::MeshFormat;
+use polhode_rigid::body::mesh::MeshFormat;
 use polhode_rigid::{Amount, TriangleMesh};
 use proptest::prelude::*;
 use std::path::PathBuf;

@@ -1,14 +1,15 @@
 //! What each method of stepping promises by its construction: order, symmetry, what it conserves, where it refuses.
 
 use polhode_ga::{Bivector, Rotor, Vector};
-use polhode_rigid::classical::Classical;
-use polhode_rigid::dmv::MoserVeselov;
-use polhode_rigid::force::Center;
-use polhode_rigid::midpoint::Midpoint;
-use polhode_rigid::phase::{Gyrostat, Phase};
-use polhode_rigid::runge_kutta::{Carried, DOP853, RungeKutta};
-use polhode_rigid::splitting::{COMPOSITIONS, RKN6, Sequence, Splitting};
-use polhode_rigid::torque::{Orbit, Torque};
+use polhode_rigid::laws::torque::{Orbit, Torque};
+use polhode_rigid::methods::classical::Classical;
+use polhode_rigid::methods::midpoint::Midpoint;
+use polhode_rigid::methods::moser_veselov::MoserVeselov;
+use polhode_rigid::methods::runge_kutta::{DOP853, RungeKutta};
+use polhode_rigid::methods::splitting::{COMPOSITIONS, RKN6, Sequence, Splitting};
+use polhode_rigid::state::carried::Carried;
+use polhode_rigid::state::center::Center;
+use polhode_rigid::state::phase::{Gyrostat, Phase};
 
 const EPS: f64 = f64::EPSILON;
 
@@ -304,7 +305,7 @@ fn steps_that_are_too_long_are_errors() {
 
 #[test]
 fn methods_say_what_they_are_not_fit_for() {
-    use polhode_rigid::method::{Method, methods};
+    use polhode_rigid::methods::{Method, methods};
     let names: Vec<&str> = methods().map(Method::name).collect();
     assert_eq!(
         names,

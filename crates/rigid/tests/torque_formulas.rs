@@ -3,8 +3,8 @@
 use polhode_ga::formula::{Error, Given, Input, Meaning, Names, Space, Type, define};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
-use polhode_rigid::phase::{Gyrostat, Phase};
-use polhode_rigid::torque::{Axes, Dependence, FormulaTorque, Torque};
+use polhode_rigid::laws::torque::{Axes, Dependence, FormulaTorque, Torque};
+use polhode_rigid::state::phase::{Gyrostat, Phase};
 
 /// A law with a vector c, a number k, and the function `pull(a, b) = a∧b`.
 fn law(text: &str, axes: Axes) -> Result<Torque, Error> {

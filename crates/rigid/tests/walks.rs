@@ -2,12 +2,13 @@
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
-use polhode_rigid::event::{Direction, Event, Quantity};
-use polhode_rigid::force::{Center, Force};
-use polhode_rigid::method::Method;
-use polhode_rigid::point::Function;
-use polhode_rigid::simulate::{Options, Problem};
-use polhode_rigid::torque::TorqueError;
+use polhode_rigid::error::TorqueError;
+use polhode_rigid::laws::event::{Direction, Event, Quantity};
+use polhode_rigid::laws::force::Force;
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::{Options, Problem};
+use polhode_rigid::state::center::Center;
+use polhode_rigid::state::point::Function;
 
 fn problem() -> Problem {
     let inertia = Inertia::from_principal_moments([1.0, 2.0, 3.0]).unwrap();
@@ -62,7 +63,7 @@ fn functions_of_forces_and_events() {
 
 #[test]
 fn what_fails_is_told_with_its_time() {
-    let late = |seen: &polhode_rigid::point::Seen| {
+    let late = |seen: &polhode_rigid::state::point::Seen| {
         if seen.time > 0.5 { Err(TorqueError("too late".into())) } else { Ok(Vector::default()) }
     };
     let late = [Force::Function(Function::new(late))];

@@ -2,11 +2,11 @@
 
 use crate::json::Json;
 use crate::opened::Opened;
-use polhode_rigid::free::FreeMotion;
-use polhode_rigid::lagrange::{LagrangeDescription, LagrangeTop};
-use polhode_rigid::regime::FreeDescription;
+use polhode_rigid::exact::free::FreeMotion;
+use polhode_rigid::exact::lagrange::{LagrangeDescription, LagrangeTop};
+use polhode_rigid::exact::regime::FreeDescription;
+use polhode_rigid::laws::torque::{Argument, Torque};
 use polhode_rigid::scene::Law;
-use polhode_rigid::torque::{Argument, Torque};
 use polhode_rigid::{Size, Solid};
 
 fn count(n: usize) -> Json {

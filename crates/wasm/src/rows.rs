@@ -1,6 +1,6 @@
 //! States as rows of numbers, in the order of `State` in `viewer/src/core/core.ts`.
 
-use polhode_rigid::simulate::States;
+use polhode_rigid::run::States;
 
 /// Numbers in a row: time 1, R 4, Ω_B 3, Ω_S 3, L_B 3, L_S 3, energy 1, position 3, velocity 3.
 pub const ROW: usize = 24;

@@ -19,7 +19,7 @@ const ROUND = 64;
 /** What has no thickness is drawn with this part of its size. */
 const THIN = 0.03;
 
-/** The surface of a solid in its own axes, m; axes of revolution lie along e3, as in crates/rigid/src/solids.rs. */
+/** The surface of a solid in its own axes, m; axes of revolution lie along e3, as in crates/rigid/src/body/solids.rs. */
 export function surfaceOf(solid: Solid): Surface {
   switch (solid.kind) {
     case "box":

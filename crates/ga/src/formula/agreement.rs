@@ -1,11 +1,11 @@
 //! Whether the sides of an equation agree, on single values: what `polhode._formula.agreement` is for batches and for other
 //! coefficients.
 
-use super::program::{Id, Op, Program, Step};
-use super::single::Given;
-use crate::functions::Function;
+use super::compile::program::{Id, Op, Program, Step};
+use super::run::single::Given;
+use crate::g3::functions::Function;
+use crate::g3::values::norm;
 use crate::graded::Graded;
-use crate::values::norm;
 
 /// The rounding of an angle of this size makes the tolerance a thousandth; beyond it would hide any difference.
 const MOST_TURNED: f64 = 1e6;

@@ -22,49 +22,27 @@
 //! [`MAX_DEPTH`].
 
 mod agreement;
-mod beside;
-mod builder;
 mod compile;
-mod define;
-mod derivative;
-mod glyphs;
-mod indices;
-mod lanes;
-mod latex;
-mod letters;
-mod names;
-mod number;
-mod operands;
-mod parser;
 mod print;
-mod program;
-mod reading;
-mod rules;
 mod run;
-#[cfg(test)]
-mod run_tests;
-mod schedule;
-mod single;
-mod steps;
-mod token;
-mod tree;
+mod syntax;
 
 pub use agreement::Agreement;
-pub use beside::Beside;
+pub use compile::define::{define, heading};
+pub use compile::program::{Id, Input, InputKind, Op, Program, Step};
 pub use compile::{compile, types};
-pub use define::{define, heading};
-pub use names::{Definition, Meaning, Names, Type};
-pub use number::Number;
-pub use parser::parse;
 pub use print::Style;
-pub use program::{Id, Input, InputKind, Op, Program, Step};
 pub use run::RowError;
-pub use single::{Given, Runner};
-pub use token::canonical;
-pub use tree::{Kind, Named, Node, Span, Tight, Tree};
+pub use run::side_by_side::Beside;
+pub use run::single::{Given, Runner};
+pub use syntax::names::{Definition, Meaning, Names, Type};
+pub use syntax::number::Number;
+pub use syntax::parser::parse;
+pub use syntax::token::canonical;
+pub use syntax::tree::{Kind, Named, Node, Span, Tight, Tree};
 
 use crate::diagnostic::marked;
-use crate::functions::Function;
+use crate::g3::functions::Function;
 use crate::general::Calculus;
 use crate::product::Grades;
 use crate::table::{self, G3};

@@ -5,7 +5,7 @@
 //! whole space, in degenerate algebras too, where `A I⁻¹` does not exist.
 
 use super::Calculus;
-use crate::functions::MathError;
+use crate::error::MathError;
 
 impl Calculus {
     /// The right complement: linear, with `E ∧ rc(E) = I` for basis blades E.

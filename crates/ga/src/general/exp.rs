@@ -11,8 +11,8 @@
 
 use super::pair::{Pair, Ring, SPLITS};
 use super::{Calculus, add_scaled, grade, part, scaled};
-use crate::functions::MathError;
-use crate::values::{norm, scale_of};
+use crate::error::MathError;
+use crate::g3::values::{norm, scale_of};
 
 /// Beyond this `cosh` and `sinh` are exponentials that no longer nearly cancel.
 const LARGE: f64 = 1.0;

@@ -5,8 +5,8 @@
 //! `‖M‖ ‖X‖`, with the sum of magnitudes as norm, which bounds both maps.
 
 use super::{Calculus, clifford_conjugate, grade, reverse, scaled};
-use crate::functions::MathError;
-use crate::values::scale_of;
+use crate::error::MathError;
+use crate::g3::values::scale_of;
 
 /// How near to a number a product `M̄M` must be for `M̄/(M̄M)`: the refinement squares what is left.
 const NEARLY_A_NUMBER: f64 = 1e-8;

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! With up to five generators C is `x + yU` (see `pair`), and the whole walk takes a few numbers. With
-//! more it is walked in the algebra (see `roots`).
+//! more it is walked in the algebra (see `sqrt`).
 //!
 //! The walk ends at the logarithm whose numbers `x ± y√q` have imaginary parts within ±π. It has no
 //! start where one of those of C is −1 or less: there R turns by a whole turn in some plane, or boosts
@@ -17,12 +17,12 @@
 //!
 //! Every result is checked: `exp(log R)` must be R again.
 
+use super::eigen::symmetric_eigen;
 use super::exp::unit_of_grade_4;
 use super::pair::{Pair, Ring, SPLITS};
-use super::roots::symmetric_eigen;
 use super::{Calculus, SAME_DIRECTION, add_scaled, dot, grade, part, reverse, scaled};
-use crate::functions::MathError;
-use crate::values::{norm, scale_of};
+use crate::error::MathError;
+use crate::g3::values::{norm, scale_of};
 use std::f64::consts::FRAC_PI_2;
 
 /// The most that the size of a logarithm may loosen its check.

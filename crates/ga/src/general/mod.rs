@@ -10,14 +10,16 @@
 //! complements, `subspaces` the blades as subspaces: join and meet.
 
 mod duals;
+pub mod eigen;
 mod exp;
 mod inverse;
 mod log;
 mod pair;
-mod roots;
+pub(crate) mod sqrt;
 mod subspaces;
 
-use crate::functions::{Function, MathError};
+use crate::error::MathError;
+use crate::g3::functions::Function;
 use crate::product::Grades;
 use crate::table::Algebra;
 use log::Tolerances;

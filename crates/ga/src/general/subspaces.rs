@@ -4,8 +4,8 @@
 //! counts as the same direction, components are compared as lengths, basis vectors as orthonormal.
 
 use super::{Calculus, add_scaled, dot, grade, scaled};
-use crate::functions::MathError;
-use crate::values::{norm, scale_of};
+use crate::error::MathError;
+use crate::g3::values::{norm, scale_of};
 
 /// The sine of the angle below which a direction counts as lying in a subspace, and the relative part
 /// of a multivector below which it counts as a blade; 256 roundings where components are rounded more coarsely.

@@ -1,8 +1,8 @@
 //! The paths of x86-64. `gather` and `scatter` return how many rows they did; the rest is left to others.
 
+use super::lanes::Work;
 use super::squares::squares;
 use super::{Element, Kernel, Lane};
-use crate::lanes::Work;
 use std::arch::x86_64::*;
 
 #[target_feature(enable = "avx2,fma")]

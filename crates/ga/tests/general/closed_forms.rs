@@ -1,7 +1,7 @@
 //! Exponentials and logarithms with closed forms, and those at the ends of their ranges.
 
 use crate::space::*;
-use polhode_ga::functions::MathError;
+use polhode_ga::error::MathError;
 use std::f64::consts::PI;
 
 #[test]

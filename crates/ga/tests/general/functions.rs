@@ -2,7 +2,8 @@
 
 use crate::space::*;
 use polhode_ga::Multivector;
-use polhode_ga::functions::{Function, MathError};
+use polhode_ga::error::MathError;
+use polhode_ga::g3::functions::Function;
 use polhode_ga::product::Grades;
 use proptest::prelude::*;
 

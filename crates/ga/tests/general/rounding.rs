@@ -1,7 +1,7 @@
 //! Logarithms and roots of versors as rounding leaves them: in null parts, in large ones, in single precision.
 
 use crate::space::*;
-use polhode_ga::functions::MathError;
+use polhode_ga::error::MathError;
 use proptest::prelude::*;
 
 /// Algebras with null generators, up to seven generators.

@@ -1,7 +1,7 @@
 //! Complements, join and meet.
 
 use crate::space::*;
-use polhode_ga::functions::MathError;
+use polhode_ga::error::MathError;
 use proptest::prelude::*;
 
 #[test]

@@ -4,17 +4,18 @@
 //! passes, its stops at output times and where its laws are not smooth. A body that is done gives its lane to the next
 //! one, so that a hard one does not hold up the others. The last few go on in fewer lanes, to the same bits.
 
-use super::block::{Crew, Member, SIDE_BY_SIDE};
+use super::body_run::Seat;
+use super::crew::{Crew, Member, SIDE_BY_SIDE};
 use super::laws::{Laws, Nothing};
-use super::seat::Seat;
-use crate::classical::Bodies;
-use crate::exert::Exert;
-use crate::phase::Gyrostat;
-use crate::runge_kutta::{Carried, DOP853, Points, step};
-use crate::simulate::Progress;
-use crate::simulate_error::SimulateError;
-use crate::torque::Torque;
-use polhode_ga::lanes::{Lanes, Work};
+use crate::error::SimulateError;
+use crate::laws::forcing::Exert;
+use crate::laws::torque::Torque;
+use crate::methods::classical::Bodies;
+use crate::methods::runge_kutta::{DOP853, Points, step};
+use crate::run::Progress;
+use crate::state::carried::Carried;
+use crate::state::phase::Gyrostat;
+use polhode_ga::simd::lanes::{Lanes, Work};
 use std::{array, mem};
 
 /// So many lanes hold the last bodies: one register of the widest machines.

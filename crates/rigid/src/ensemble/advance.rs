@@ -1,6 +1,6 @@
 //! Equal steps of bodies side by side, one after the other.
 
-use polhode_ga::lanes::Work;
+use polhode_ga::simd::lanes::Work;
 use std::ops::Range;
 
 /// So many steps get their times at once, by one division for many.

@@ -1,12 +1,12 @@
 //! Free bodies, whose motion is known at all times.
 
-use super::block::{Crew, Member, Told};
-use crate::certificate::{Certificate, Watch, off_unit};
-use crate::closed_form::{Since, check_kept};
-use crate::free::FreeMotion;
-use crate::phase::Phase;
-use crate::simulate::check_horizons_from;
-use polhode_ga::threads::Threads;
+use super::crew::{Crew, Member, Told};
+use crate::exact::closed_form::{Since, check_kept};
+use crate::exact::free::FreeMotion;
+use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::state::checks::check_horizons_from;
+use crate::state::phase::Phase;
+use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use std::borrow::Cow;
 

@@ -1,24 +1,24 @@
 //! Equal steps of bodies side by side.
 
 use super::advance::Stretch;
-use super::block::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
+use super::crew::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
 use super::laws::{Acting, Laws};
 use super::steppers::{Components, Kicks, Stepper, of};
-use crate::certificate::{Certificate, Watch, off_unit};
-use crate::classical::Bodies;
-use crate::course::span;
-use crate::force::Center;
-use crate::kicks::fixed_momentum;
-use crate::method::{Engine, Method};
-use crate::phase::Phase;
-use crate::runge_kutta::Carried;
-use crate::simulate::Progress;
-use crate::simulate_error::SimulateError;
-use crate::splitting::turns::Turns;
-use crate::stops::{aliasing, is_aliased};
-use crate::torque::Torque;
-use crate::walk::is_finite;
-use polhode_ga::lanes::Work;
+use crate::error::SimulateError;
+use crate::laws::torque::Torque;
+use crate::methods::classical::Bodies;
+use crate::methods::kicks::fixed_momentum;
+use crate::methods::splitting::turns::Turns;
+use crate::methods::{Engine, Method};
+use crate::run::Progress;
+use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::run::limits::span;
+use crate::run::stops::{aliasing, is_aliased};
+use crate::run::sweep::is_finite;
+use crate::state::carried::Carried;
+use crate::state::center::Center;
+use crate::state::phase::Phase;
+use polhode_ga::simd::lanes::Work;
 use std::array;
 
 /// Steps between looks at whether all is finite, and whether to go on.

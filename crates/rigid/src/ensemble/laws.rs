@@ -3,12 +3,13 @@
 //! Laws of one kind whose parameters add up become one. What all bodies share at a time, as an orbit or a table, is
 //! evaluated once for all, and not again while the time stays.
 
-use crate::exert::{Exert, Place};
-use crate::formula::{Formula, Formulas};
-use crate::phase::{Gyrostat, Phase};
-use crate::torque::lanes::{Three, gradient, quadratic, seen, turn_from, vertical};
-use crate::torque::{Axes, Gains, Orbit, Table, Torque};
-use polhode_ga::lanes::{Lanes, Work, cross, fastest, mapped};
+use crate::laws::forcing::{Exert, Place};
+use crate::laws::formula::{Formula, Formulas};
+use crate::laws::torque::lanes::{Three, gradient, quadratic, seen, turn_from};
+use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
+use crate::state::phase::vertical;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::simd::lanes::{Lanes, Work, cross, fastest, mapped};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 use std::sync::Arc;

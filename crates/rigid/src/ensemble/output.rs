@@ -1,10 +1,10 @@
 //! Where the points of the motions go.
 
 use super::Failure;
-use crate::conserved::energy;
-use crate::force::Center;
-use crate::phase::{Gyrostat, Phase};
-use crate::torque::Torque;
+use crate::laws::conserved::energy;
+use crate::laws::torque::Torque;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Rotor;
 
 /// Room for the points of all bodies at all times, body by body: rows of four rotor components, of three of the angular
@@ -42,7 +42,7 @@ pub struct Summary {
     pub drifts: Vec<(&'static str, Vec<[f64; 2]>)>,
     /// By rising numbers of bodies.
     pub failures: Vec<Failure>,
-    /// Each once: see [`crate::certificate::Certificate::warnings`].
+    /// Each once: see [`crate::run::certificate::Certificate::warnings`].
     pub warnings: Vec<String>,
 }
 

@@ -1,13 +1,13 @@
 //! Methods of equal steps over bodies side by side.
 
 use super::advance::{Advance, Steps, Stretch};
-use super::block::{Member, SIDE_BY_SIDE as W};
+use super::crew::{Member, SIDE_BY_SIDE as W};
 use super::laws::{Acting, Laws, Nothing};
-use crate::classical::{self, Bodies, State};
-use crate::exert::Exert;
-use crate::phase::{Gyrostat, Phase};
-use crate::splitting::turns::{Spin, Turns};
-use polhode_ga::lanes::{Lanes, fastest};
+use crate::laws::forcing::Exert;
+use crate::methods::classical::{self, Bodies, State};
+use crate::methods::splitting::turns::{Spin, Turns};
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::simd::lanes::{Lanes, fastest};
 use polhode_ga::{Bivector, Rotor};
 use std::array;
 use std::ops::Range;

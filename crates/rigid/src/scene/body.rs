@@ -1,7 +1,7 @@
 //! The table `[body]`: what turns.
 
 use super::reader::{Form, Reader, Table, Value};
-use crate::solids::{Amount, Solid};
+use crate::body::solids::{Amount, Solid};
 use crate::units::{self, Quantity};
 use polhode_ga::Vector;
 

@@ -1,12 +1,13 @@
 //! From what a scene says of its body to the body.
 
 use super::{BodySpec, Gravity, Law, Scene};
-use crate::body::{Body, BodyError};
-use crate::inertia::Inertia;
-use crate::mesh::{MeshError, MeshProblem, TriangleMesh};
-use crate::simulate::check_moments;
-use crate::solids::{Amount, Solid};
-use crate::torque::Torque;
+use crate::body::Body;
+use crate::body::inertia::Inertia;
+use crate::body::mesh::{MeshError, MeshProblem, TriangleMesh};
+use crate::body::solids::{Amount, Solid};
+use crate::error::BodyError;
+use crate::laws::torque::Torque;
+use crate::state::checks::check_moments;
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Rotor, Vector};
 use std::path::Path;

@@ -5,9 +5,9 @@
 
 use super::{Attitudes, Ensemble, Gravity, Law, Parameter, Scene, SpinFrame, Spread};
 use crate::body::Body;
-use crate::inertia::Inertia;
+use crate::body::inertia::Inertia;
+use crate::laws::torque::Torque;
 use crate::random::{Words, normal};
-use crate::torque::Torque;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
 use std::fmt;

@@ -1,7 +1,7 @@
 //! Scenes on disk, and the bodies they make.
 
 use super::*;
-use crate::solids::Amount;
+use crate::body::solids::Amount;
 
 /// A folder of this test's own, removed at the end.
 struct Folder(PathBuf);

@@ -2,7 +2,7 @@
 
 use super::formulas;
 use super::reader::{Reader, Value};
-use crate::force::Force;
+use crate::laws::force::Force;
 use crate::units::Quantity;
 use polhode_ga::Vector;
 

@@ -10,37 +10,14 @@
 //! spin = "5 rev/s plane(n)"
 //! ```
 
+use super::definitions::Wrong;
 use super::reader::{Reader, Table, Value};
-use crate::torque::{Axes, FormulaTorque, given_names};
-use crate::units::{Quantity, Source};
-use polhode_ga::formula::{
-    Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading,
-    parse,
-};
+use crate::laws::torque::{Axes, FormulaTorque};
+use crate::units::Quantity;
+use polhode_ga::formula::heading;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Vector};
-use std::collections::BTreeMap;
-use std::ops::Range;
 use toml::de::DeValue;
-
-/// What the formulas of a scene may use.
-#[derive(Default)]
-pub struct Formulas {
-    names: Names,
-    values: BTreeMap<String, Graded>,
-}
-
-/// What is wrong with a formula, and where in its text, in bytes.
-struct Wrong {
-    message: String,
-    span: Range<usize>,
-}
-
-impl From<Error> for Wrong {
-    fn from(error: Error) -> Wrong {
-        Wrong { message: error.message, span: error.span.start..error.span.end }
-    }
-}
 
 /// Reads `[define]`: values and functions, each of which may use those before it.
 pub fn read(reader: &mut Reader, table: &Table) {
@@ -144,70 +121,4 @@ fn report(reader: &mut Reader, value: &Value, text: &str, wrong: Wrong) {
         _ => span,
     };
     reader.report(span, wrong.message);
-}
-
-/// The place in the text as it was written.
-fn placed(source: &Source, wrong: Wrong) -> Wrong {
-    Wrong { span: source.place(wrong.span), message: wrong.message }
-}
-
-impl Formulas {
-    fn bind(&mut self, name: String, value: Graded) {
-        self.names.bind(name.clone(), Meaning::Value(Type::of(value.grades())));
-        self.values.insert(name, value);
-    }
-
-    fn define(&mut self, head: &str, body: &str) -> Result<(), Wrong> {
-        let source = self.source(body, &heading(head)?.1)?;
-        define(head, &source.text, Space::g3(), &mut self.names)
-            .map_err(|error| placed(&source, error.into()))
-    }
-
-    fn value(&self, text: &str) -> Result<Graded, Wrong> {
-        let source = self.source(text, &[])?;
-        self.evaluated(&source.text).map_err(|wrong| placed(&source, wrong))
-    }
-
-    fn torque(&self, text: &str, axes: Axes) -> Result<FormulaTorque, Wrong> {
-        let given: Vec<String> = given_names().map(str::to_owned).collect();
-        let source = self.source(text, &given)?;
-        let value = |input: &Input| self.values.get(&input.name).map(|value| Given::Value(*value));
-        FormulaTorque::new(&source.text, axes, self.names.clone(), value)
-            .map_err(|error| placed(&source, error.into()))
-    }
-
-    fn evaluated(&self, text: &str) -> Result<Graded, Wrong> {
-        let space = Space::g3();
-        let whole = 0..text.len();
-        let tree = parse(text, space, &self.names)?;
-        if tree.sides.len() > 1 {
-            return Err(Wrong {
-                message: "an equation has no value, write one side".to_owned(),
-                span: whole,
-            });
-        }
-        let program = compile(&tree, space, &self.names)?;
-        let inputs = program.inputs.iter().filter_map(|input| self.values.get(&input.name));
-        let inputs: Vec<Given> = inputs.map(|value| Given::Value(*value)).collect();
-        let failed =
-            |message: &str, Span { start, end }| Wrong { message: message.to_owned(), span: start..end };
-        let Some(runner) = Runner::new(&program) else {
-            return Err(failed("no formula of 3-d space", Span::default()));
-        };
-        let values = runner
-            .value(&inputs)
-            .map_err(|(step, error)| failed(&error.to_string(), program.steps[step].span))?;
-        let value = values[program.results[0][0]];
-        if !value.components().iter().all(|x| x.is_finite()) {
-            return Err(Wrong { message: "the value is not finite".to_owned(), span: whole });
-        }
-        Ok(value)
-    }
-
-    /// The formula with numbers in SI units for its quantities; it has parameters, if it is a function's.
-    fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Wrong> {
-        let known = |name: String| self.names.get(&name).is_some() || parameters.contains(&name);
-        let is_name = |word: &str| canonical(word).is_some_and(known);
-        Source::read(text, is_name).map_err(|error| Wrong { message: error.message, span: error.span })
-    }
 }

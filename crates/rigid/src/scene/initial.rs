@@ -2,7 +2,7 @@
 
 use super::formulas;
 use super::reader::{Form, Reader, Table, Value};
-use crate::force::Center;
+use crate::state::center::Center;
 use crate::units::Quantity;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, MathError, Rotor, Vector};

@@ -62,6 +62,7 @@
 
 mod body;
 mod build;
+mod definitions;
 mod draws;
 mod ensemble;
 #[cfg(test)]
@@ -78,7 +79,7 @@ mod spread;
 mod tests;
 mod torques;
 
-use crate::force::Center;
+use crate::state::center::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;

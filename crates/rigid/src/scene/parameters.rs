@@ -1,6 +1,7 @@
 //! The numbers of laws that may differ from body to body, by their names in a scene.
 
-use crate::torque::{Gains, Orbit, Torque, TorqueError};
+use crate::error::TorqueError;
+use crate::laws::torque::{Gains, Orbit, Torque};
 use crate::units::Quantity;
 use polhode_ga::{Bivector, Vector};
 use std::f64::consts::TAU;

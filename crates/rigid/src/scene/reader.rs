@@ -1,6 +1,6 @@
 //! Walks a TOML tree and collects everything that is wrong with it.
 
-use super::formulas::Formulas;
+use super::definitions::Formulas;
 use crate::units::{self, Quantity};
 use polhode_ga::diagnostic::{alternatives, list, nearest, quote};
 use std::ops::Range;

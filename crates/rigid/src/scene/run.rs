@@ -1,7 +1,7 @@
 //! The tables `[run]` and `[method]`: for how long, and how.
 
 use super::reader::{Reader, Table, Value};
-use crate::method::methods;
+use crate::methods::methods;
 use crate::units::Quantity;
 use toml::de::DeTable;
 

@@ -2,11 +2,11 @@
 
 use super::{Law, Scene};
 use crate::body::Body;
-use crate::force::Force;
-use crate::inertia::Inertia;
-use crate::method::Method;
-use crate::simulate::{Options, Problem};
-use crate::torque::Torque;
+use crate::body::inertia::Inertia;
+use crate::laws::force::Force;
+use crate::laws::torque::Torque;
+use crate::methods::Method;
+use crate::run::{Options, Problem};
 use polhode_ga::Vector;
 
 impl Scene {

@@ -9,7 +9,8 @@
 
 use super::reader::{Reader, Table, Value};
 use super::{formulas, initial};
-use crate::torque::{self, Axes, Gains, Kind, Orbit, Torque};
+use crate::error::TorqueError;
+use crate::laws::torque::{self, Axes, Gains, Kind, Orbit, Torque};
 use crate::units::Quantity;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::f64::consts::TAU;
@@ -193,6 +194,6 @@ fn tabulated(reader: &mut Reader, value: &Value) -> Option<Torque> {
 }
 
 /// What is made of a value, or why nothing is, at its place.
-fn placed<T>(reader: &mut Reader, value: &Value, made: Result<T, torque::TorqueError>) -> Option<T> {
+fn placed<T>(reader: &mut Reader, value: &Value, made: Result<T, TorqueError>) -> Option<T> {
     made.map_err(|error| reader.report(value.span(), error.to_string())).ok()
 }

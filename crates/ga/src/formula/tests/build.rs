@@ -1,9 +1,9 @@
 //! Trees by hand and at random, for tests.
 
-use super::super::Number;
-use super::super::print::FRACTIONS;
-use super::super::tree::{Kind, Named, Node, Span, Tight, Tree};
-use crate::functions::Function;
+use crate::formula::Number;
+use crate::formula::syntax::number::FRACTIONS;
+use crate::formula::syntax::tree::{Kind, Named, Node, Span, Tight, Tree};
+use crate::g3::functions::Function;
 use crate::product::Grades;
 use proptest::prelude::*;
 

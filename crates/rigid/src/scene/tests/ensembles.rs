@@ -1,8 +1,8 @@
 //! Ensembles: what is read, what is refused, and that the bodies are distributed as the file says.
 
-use super::super::parameters::PARAMETERS;
 use super::*;
-use crate::torque::{Gains, Orbit, Torque};
+use crate::laws::torque::{Gains, Orbit, Torque};
+use crate::scene::parameters::PARAMETERS;
 
 /// The least scene with these lines in `[ensemble]`.
 fn with(ensemble: &str) -> String {

@@ -1,8 +1,8 @@
 //! `[torque]`, `[force]` and `[method]`: what they say is what is built, and what is wrong has its place.
 
 use super::*;
-use crate::force::Force;
-use crate::torque::{Kind, Orbit, Torque};
+use crate::laws::force::Force;
+use crate::laws::torque::{Kind, Orbit, Torque};
 
 /// The laws of the least scene with this table `[torque]`.
 fn laws(torque: &str) -> Vec<Torque> {
@@ -18,7 +18,7 @@ fn assert_same(found: &[Torque], expected: &[Torque]) {
 #[test]
 fn every_law_is_read_with_its_units() {
     let quarter = Rotor::from_plane_angle(Bivector([0.0, 0.0, 1.0]), FRAC_PI_2).unwrap();
-    let gains = crate::torque::Gains::new;
+    let gains = crate::laws::torque::Gains::new;
     let table = [
         ("damping = '6 1/min'", Torque::Damping(0.1)),
         ("quadratic_damping = '2 mN m s^2/rad^2'", Torque::QuadraticDamping(0.002)),
@@ -58,7 +58,7 @@ fn every_law_is_read_with_its_units() {
     let [Torque::Tabulated(table)] = &found[..] else { panic!("{found:?}") };
     assert_eq!(
         (table.times(), table.kind, table.axes),
-        (&[0.0, 60.0][..], Kind::Linear, crate::torque::Axes::Space)
+        (&[0.0, 60.0][..], Kind::Linear, crate::laws::torque::Axes::Space)
     );
     assert_eq!(table.torques(), [Bivector([0.0, 0.0, 1.0]); 2]);
 }
@@ -80,9 +80,9 @@ fn formulas_are_torques() {
     let define = "torque_space = 'V(R) - k L'\n[define]\nk = '3 s^-1'\n'V(R)' = '2 N m R e1e2 ~R'\n";
     let scene = scene(&format!("{define}{LEAST}"));
     let (body, laws) = scene.build().unwrap();
-    let gyrostat = crate::phase::Gyrostat::rigid(body.inertia.principal_moments());
+    let gyrostat = crate::state::phase::Gyrostat::rigid(body.inertia.principal_moments());
     let momentum = gyrostat.momentum(Bivector([0.0, 0.0, 1.0]));
-    let state = crate::phase::Phase { rotor: Rotor::IDENTITY, momentum, time: 0.0 };
+    let state = crate::state::phase::Phase { rotor: Rotor::IDENTITY, momentum, time: 0.0 };
     let torque = laws[0].torque.clone().in_axes(body.inertia.principal_frame());
     // 2 e1e2 − 3 L, of a turn about the principal axis whose moment is the third.
     let found = torque.value(&gyrostat, &state).unwrap().norm();

@@ -5,7 +5,7 @@ mod laws;
 mod refusals;
 
 use super::*;
-use crate::solids::{Amount, Solid};
+use crate::body::solids::{Amount, Solid};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A scene with most of what a scene may say.

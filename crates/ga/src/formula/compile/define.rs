@@ -1,0 +1,93 @@
+//! Functions and values that are defined by formulas.
+
+use crate::formula::syntax::names::{Definition, Meaning, Names, Type};
+use crate::formula::syntax::parser::parse;
+use crate::formula::syntax::token::{Lexeme, Sign, joined, tokens};
+use crate::formula::syntax::tree::{Kind, Node, Span};
+use crate::formula::{Error, Space};
+use crate::product::Grades;
+use std::collections::BTreeSet;
+
+/// Defines a function, `V(x)`, or a value, `c`, by a formula.
+///
+/// # Errors
+/// If the head is no name with parameters, the body no formula in them, or if the function would call itself.
+pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result<(), Error> {
+    let (name, parameters) = heading(head)?;
+    let any = Meaning::Value(Type::of(Grades::ALL));
+    let hidden: Vec<_> = parameters.iter().map(|name| names.bind(name.clone(), any.clone())).collect();
+    let tree = parse(body, space, names);
+    for (name, meaning) in parameters.iter().zip(hidden) {
+        names.restore(name, meaning);
+    }
+    let tree = tree?;
+    let whole = Span { start: 0, end: body.len() };
+    let [body] = <[Node; 1]>::try_from(tree.sides).map_err(|_| {
+        Error::new(whole, format!("`{head}` is defined by an equation; write the value alone"))
+    })?;
+    if calls(&body, &name, &parameters, names) {
+        return Err(Error::new(whole, format!("`{name}` would call itself; formulas have no recursion")));
+    }
+    names.bind(name, Meaning::Function(Definition { parameters, body }));
+    Ok(())
+}
+
+/// The canonical name and parameters of `c` or `V(x, y)`.
+///
+/// # Errors
+/// If it is anything else.
+pub fn heading(head: &str) -> Result<(String, Vec<String>), Error> {
+    let tokens = tokens(head)?;
+    let whole = Span { start: 0, end: head.len() };
+    let wrong = || Error::new(whole, "what is defined is a name, `c`, or a function of names, `V(x)`");
+    let name = |lexeme: &Lexeme| match lexeme {
+        Lexeme::Word(atoms) => joined(atoms),
+        _ => None,
+    };
+    let sign = |i: usize, sign: Sign| tokens.get(i).is_some_and(|token| token.lexeme == Lexeme::Sign(sign));
+    let first = tokens.first().and_then(|token| name(&token.lexeme)).ok_or_else(wrong)?;
+    let mut parameters = Vec::new();
+    if tokens.len() > 1 {
+        if !sign(1, Sign::Open('(')) || !sign(tokens.len() - 1, Sign::Close('(')) || tokens.len() % 2 == 1 {
+            return Err(wrong());
+        }
+        for i in (2..tokens.len() - 1).step_by(2) {
+            let parameter = name(&tokens[i].lexeme).ok_or_else(wrong)?;
+            let last = i + 2 == tokens.len();
+            if !last && !sign(i + 1, Sign::Comma) || parameters.contains(&parameter) {
+                return Err(wrong());
+            }
+            parameters.push(parameter);
+        }
+    }
+    Ok((first, parameters))
+}
+
+/// Whether a body calls a function, itself or through others.
+fn calls(body: &Node, name: &str, parameters: &[String], names: &Names) -> bool {
+    let mut waiting = called(body, parameters);
+    let mut seen = BTreeSet::new();
+    while let Some(other) = waiting.pop() {
+        let Some(Meaning::Function(definition)) = names.get(&other) else { continue };
+        if other == name {
+            return true;
+        }
+        if seen.insert(other) {
+            waiting.extend(called(&definition.body, &definition.parameters));
+        }
+    }
+    false
+}
+
+/// The names in a body that are no parameters.
+fn called(body: &Node, parameters: &[String]) -> Vec<String> {
+    let mut called = Vec::new();
+    body.visit(&mut |node| {
+        if let Kind::Call(other, _) | Kind::Name(other) = &node.kind
+            && !parameters.contains(other)
+        {
+            called.push(other.clone());
+        }
+    });
+    called
+}

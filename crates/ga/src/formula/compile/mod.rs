@@ -1,0 +1,461 @@
+//! A tree to a program: names get their types, grades are inferred and checked.
+
+pub(crate) mod builder;
+pub(crate) mod define;
+pub(crate) mod derivative;
+pub(crate) mod program;
+pub(crate) mod rules;
+
+use super::syntax::indices::{count_indices, indexed, permutation};
+use super::syntax::names::{Definition, Meaning, Names, Type};
+use super::syntax::number::Number;
+use super::syntax::tree::{Kind, Named, Node, Span, Tight, Tree};
+use super::{Error, MAX_NODES, Space};
+use crate::g3::functions::Function;
+use crate::product::{Grades, Product};
+use builder::{Builder, Built};
+use derivative::{Derivation, TOO_LONG};
+use program::{Id, InputKind, Op, Program};
+use std::collections::HashMap;
+
+/// Most nodes that are looked at: a node of a definition or of a sum counts each time that it is written out.
+const MOST_VISITS: usize = 20 * MAX_NODES;
+
+/// Most nodes within each other. A formula has fewer by itself, but a definition may call one that calls one ….
+const MOST_LEVELS: usize = 1000;
+
+/// What a formula does with values of these types.
+///
+/// # Errors
+/// Where grades do not fit, with the place in the text.
+pub fn compile(tree: &Tree, space: Space, names: &Names) -> Result<Program, Error> {
+    Ok(compiled(tree, space, names)?.0)
+}
+
+/// What each node of a formula is, in the order of [`Tree::nodes`]; of a node that is written out for several
+/// indices, what it is for the first.
+///
+/// # Errors
+/// As [`compile`].
+pub fn types(tree: &Tree, space: Space, names: &Names) -> Result<Vec<Option<Type>>, Error> {
+    let (_, types) = compiled(tree, space, names)?;
+    Ok(tree.nodes().into_iter().map(|node| types.get(&std::ptr::from_ref(node)).copied()).collect())
+}
+
+type Types = HashMap<*const Node, Type>;
+
+fn compiled(tree: &Tree, space: Space, names: &Names) -> Result<(Program, Types), Error> {
+    let mut compiler = Compiler {
+        steps: Builder::new(space),
+        names,
+        types: HashMap::new(),
+        frame: Frame::default(),
+        visits: MOST_VISITS,
+        depth: 0,
+    };
+    let free = compiler.free_indices(tree)?;
+    for number in 0..compiler.steps.count().pow(free.len() as u32) {
+        compiler.frame.indices = compiler.values_of(&free, number);
+        let mut sides = Vec::new();
+        for side in &tree.sides {
+            sides.push(compiler.node(side)?);
+        }
+        compiler.check_sides(tree, &sides)?;
+        compiler.steps.program.results.push(sides);
+    }
+    compiler.steps.drop_unused();
+    Ok((compiler.steps.program, compiler.types))
+}
+
+/// What names mean inside a definition, or a sum.
+#[derive(Clone, Default)]
+struct Frame {
+    /// The parameters of the definition.
+    parameters: Vec<(String, Id)>,
+    /// The values of indices.
+    indices: Vec<(char, usize)>,
+    /// The functions that are being written out.
+    active: Vec<String>,
+}
+
+struct Compiler<'a> {
+    steps: Builder<'a>,
+    names: &'a Names,
+    types: Types,
+    frame: Frame,
+    /// How many more nodes may be looked at.
+    visits: usize,
+    /// How many nodes are being looked at, each in another.
+    depth: usize,
+}
+
+impl Compiler<'_> {
+    /// Whether an argument is of these grades; of one that is not known yet, whether it may be.
+    fn fits(&self, id: Id, grades: Grades) -> bool {
+        let held = self.steps.ty(id).grades;
+        held.within(grades) || self.names.is_open() && held.0 & grades.0 != 0
+    }
+
+    fn require(&self, id: Id, grades: Grades, what: &str, node: &Node) -> Result<(), Error> {
+        if self.fits(id, grades) {
+            return Ok(());
+        }
+        let held = shown(self.steps.ty(id).grades);
+        let kind = match grades {
+            Grades::SCALAR => "a number (grade 0)",
+            Grades(0b10) => "a vector (grade 1)",
+            _ => "a bivector (grade 2)",
+        };
+        let k = grades.0.trailing_zeros();
+        let remedy = if self.steps.ty(id).grades.0 & grades.0 != 0 {
+            format!("; take its part `⟨…⟩_{k}`")
+        } else {
+            String::new()
+        };
+        Err(self.steps.error(node.span, format!("{what} needs {kind}; this has {held}{remedy}")))
+    }
+}
+
+/// `grade 1`, `grades 0, 2`.
+fn shown(grades: Grades) -> String {
+    let list: Vec<String> = (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
+    format!("grade{} {}", if list.len() == 1 { "" } else { "s" }, list.join(", "))
+}
+
+impl Compiler<'_> {
+    fn node(&mut self, node: &Node) -> Built {
+        self.visits = self.visits.checked_sub(1).ok_or_else(|| self.steps.error(node.span, TOO_LONG))?;
+        if self.depth >= MOST_LEVELS {
+            let message =
+                format!("more than {MOST_LEVELS} levels within each other, definitions written out");
+            return Err(self.steps.error(node.span, message));
+        }
+        self.depth += 1;
+        let id = self.kind(node)?;
+        self.depth -= 1;
+        if self.steps.call.is_none() {
+            let ty = self.steps.ty(id);
+            self.types.entry(std::ptr::from_ref(node)).or_insert(ty);
+        }
+        Ok(id)
+    }
+
+    fn kind(&mut self, node: &Node) -> Built {
+        let span = node.span;
+        match &node.kind {
+            Kind::Number(number) => self.steps.constant(*number, 0, span),
+            Kind::Pi => self.steps.step(Op::Pi, Type::SCALAR, span),
+            Kind::Blade(generators) => self.blade(generators, span),
+            Kind::Pseudoscalar => {
+                let all: Vec<u8> = (1..=self.steps.count() as u8).collect();
+                self.blade(&all, span)
+            }
+            Kind::Name(name) => self.name(name, span),
+            Kind::Sum(terms) => self.sum(terms, span),
+            Kind::Product(factors) => {
+                let factors = self.nodes(factors)?;
+                self.steps.chain(&factors, span)
+            }
+            Kind::Quotient(pair) => {
+                let (a, b) = (self.node(&pair.0)?, self.node(&pair.1)?);
+                self.steps.divide(a, b, span)
+            }
+            Kind::Tight(tight, operands) => self.tight(*tight, operands, span),
+            Kind::Reverse(x) => {
+                let x = self.node(x)?;
+                self.steps.reverse(x, span)
+            }
+            Kind::Power(x, n) => {
+                let x = self.node(x)?;
+                self.steps.power(x, *n, span)
+            }
+            Kind::Part(x, grades) => {
+                let x = self.node(x)?;
+                self.steps.part(x, *grades, span)
+            }
+            Kind::Function(function, x) => self.named(*function, x, span),
+            Kind::Call(name, arguments) => self.call(name, arguments, span),
+            Kind::Derivative(x) => match (Derivation { names: self.names, left: &mut self.visits }).of(x)? {
+                Some(x) => self.node(&x),
+                None => self.steps.constant(Number::whole(0), 0, span),
+            },
+            Kind::Total(index, x) => self.total(index, x, span),
+        }
+    }
+
+    fn nodes(&mut self, nodes: &[Node]) -> Result<Vec<Id>, Error> {
+        nodes.iter().map(|node| self.node(node)).collect()
+    }
+
+    fn blade(&mut self, generators: &[u8], span: Span) -> Built {
+        let algebra = self.steps.space.algebra;
+        let generator = |g: u8| algebra.blades().iter().position(|b| b.bits == 1 << (g - 1)).unwrap_or(0);
+        let (mut sign, mut index) = (1, 0);
+        for &g in generators {
+            let (s, k) = algebra.basis_product(index, generator(g));
+            (sign, index) = (sign * s, k);
+        }
+        self.steps.constant(Number::whole(i32::from(sign)), index, span)
+    }
+
+    fn name(&mut self, name: &str, span: Span) -> Built {
+        if let Some((_, id)) = self.frame.parameters.iter().find(|(parameter, _)| parameter == name) {
+            return Ok(*id);
+        }
+        let unprimed = name.trim_end_matches('\'');
+        if name != unprimed && self.frame.parameters.iter().any(|(parameter, _)| parameter == unprimed) {
+            let message = format!("`{name}`, the derivative of a parameter, has to be a parameter, too");
+            return Err(self.steps.error(span, message));
+        }
+        let ty = match self.names.get(name) {
+            Some(Meaning::Value(ty)) => *ty,
+            Some(Meaning::Function(definition)) if definition.parameters.is_empty() => {
+                return self.call(name, &[], span);
+            }
+            Some(_) => {
+                return Err(self.steps.error(span, format!("`{name}` is a function; write `{name}(…)`")));
+            }
+            None => match self.substituted(name, span)? {
+                Some(id) => return Ok(id),
+                None if self.names.is_open() => Type::of(self.steps.all()),
+                None if name.ends_with('\'') => {
+                    return Err(self
+                        .steps
+                        .error(span, format!("`{name}` has no value, and a derivative here needs it")));
+                }
+                None => return Err(self.steps.error(span, format!("`{name}` has no value"))),
+            },
+        };
+        let input = self.steps.input(name, InputKind::Value(ty));
+        self.steps.step(Op::Input(input), ty, span)
+    }
+
+    /// What a name stands for whose indices have values.
+    fn substituted(&mut self, name: &str, span: Span) -> Result<Option<Id>, Error> {
+        let Some((base, indices)) = indexed(name) else { return Ok(None) };
+        let value = |c: char| self.frame.indices.iter().rev().find(|(index, _)| *index == c).map(|(_, k)| *k);
+        let Some(values) = indices.chars().map(value).collect::<Option<Vec<usize>>>() else {
+            return Ok(None);
+        };
+        let number = match (base, &values[..]) {
+            ("δ", [i, j]) => Number::whole(i32::from(i == j)),
+            ("ε", &[i, j, k]) => Number::whole(permutation([i, j, k])),
+            ("e", &[k]) if self.names.get(&format!("e{k}")).is_none() => {
+                return self.blade(&[k as u8], span).map(Some);
+            }
+            _ => {
+                let digits: String = values.iter().map(usize::to_string).collect();
+                let primes = &name[base.len() + 1 + indices.len()..];
+                return self.name(&format!("{base}{digits}{primes}"), span).map(Some);
+            }
+        };
+        self.steps.constant(number, 0, span).map(Some)
+    }
+
+    fn sum(&mut self, terms: &[(bool, Node)], span: Span) -> Built {
+        let mut sum = None;
+        for (minus, term) in terms {
+            let id = self.node(term)?;
+            sum = Some(match sum {
+                None if *minus => self.steps.negate(id, term.span)?,
+                None => id,
+                Some(before) => self.steps.add(*minus, before, id, span.to(term.span))?,
+            });
+        }
+        sum.ok_or_else(|| self.steps.error(span, "a sum without terms"))
+    }
+
+    fn tight(&mut self, tight: Tight, operands: &[Node], span: Span) -> Built {
+        let ids = self.nodes(operands)?;
+        let product = match tight {
+            Tight::Wedge | Tight::Cross => Product::Wedge,
+            Tight::Dot => Product::Dot,
+            Tight::Commutator => Product::Commutator,
+            Tight::LeftContraction => Product::LeftContraction,
+            Tight::RightContraction => Product::RightContraction,
+        };
+        if tight == Tight::Cross {
+            if !self.steps.space.is_g3() {
+                return Err(self.steps.error(
+                    span,
+                    "the cross product is one of 3-d space; elsewhere write `a∧b` or its dual",
+                ));
+            }
+            for (node, &id) in operands.iter().zip(&ids) {
+                self.require(id, Grades(0b10), "the cross product", node)?;
+            }
+        }
+        let mut result = ids[0];
+        for &id in &ids[1..] {
+            result = self.steps.product(product, result, id, self.steps.all(), span)?;
+        }
+        if tight == Tight::Cross { self.steps.dual(result, false, span) } else { Ok(result) }
+    }
+
+    fn named(&mut self, function: Named, node: &Node, span: Span) -> Built {
+        let x = self.node(node)?;
+        match function {
+            Named::Function(Function::Inverse) => self.steps.inverse(x, span),
+            Named::Function(f) => self.steps.function(f, x, span),
+            Named::Norm => self.steps.step(Op::Norm(x), Type::SCALAR, span),
+            Named::Dual => self.steps.dual(x, false, span),
+            Named::Undual => self.steps.dual(x, true, span),
+            Named::Reverse => self.steps.reverse(x, span),
+            Named::Sin | Named::Cos | Named::Tan => {
+                self.require(x, Grades::SCALAR, &format!("`{}`", function.name()), node)?;
+                let op = match function {
+                    Named::Sin => Op::Sin(x),
+                    Named::Cos => Op::Cos(x),
+                    _ => Op::Tan(x),
+                };
+                self.steps.step(op, Type::SCALAR, span)
+            }
+        }
+    }
+
+    fn call(&mut self, name: &str, arguments: &[Node], span: Span) -> Built {
+        let ids = self.nodes(arguments)?;
+        match (self.names.get(name), &ids[..]) {
+            (Some(Meaning::Map { grade }), &[x]) => self.map(name, *grade, x, &arguments[0], span),
+            (Some(Meaning::Function(definition)), ids) => self.write_out(name, definition, ids, span),
+            (Some(Meaning::Value(_)), _) => Err(self.steps.error(span, format!("`{name}` is no function"))),
+            // Not known yet.
+            (None, &[argument]) => {
+                let input = self.steps.input(name, InputKind::Matrix { grade: 1 });
+                let ty = Type::of(self.steps.all());
+                self.steps.step(Op::Map { input, argument }, ty, span)
+            }
+            (_, ids) => {
+                let message = format!("`{name}` is a linear map, which takes 1 argument, got {}", ids.len());
+                Err(self.steps.error(span, message))
+            }
+        }
+    }
+
+    /// A linear map of each part.
+    fn map(&mut self, name: &str, grade: u8, x: Id, node: &Node, span: Span) -> Built {
+        if !self.steps.space.is_g3() {
+            return Err(self.steps.error(span, "linear maps are of 3-d space"));
+        }
+        if grade == 2 {
+            self.require(x, Grades::BIVECTOR, &format!("`{name}`, a map of bivectors,"), node)?;
+        }
+        let held = self.steps.ty(x).grades;
+        let mut sum = None;
+        for k in (0..=3).filter(|&k| held.contains(k) && (grade == 1 || k == 2)) {
+            let part = self.steps.part(x, Grades(1 << k), span)?;
+            let kind = match k {
+                0 => None,
+                3 => Some(InputKind::Determinant),
+                _ => Some(InputKind::Matrix { grade: k as u8 }),
+            };
+            let image = match kind {
+                None => part,
+                Some(kind) => {
+                    let input = self.steps.input(name, kind);
+                    self.steps.step(Op::Map { input, argument: part }, Type::of(Grades(1 << k)), span)?
+                }
+            };
+            sum = Some(match sum {
+                None => image,
+                Some(before) => self.steps.add(false, before, image, span)?,
+            });
+        }
+        sum.ok_or_else(|| self.steps.error(span, format!("`{name}` has nothing to map")))
+    }
+
+    /// The value of a definition for these arguments.
+    fn write_out(&mut self, name: &str, definition: &Definition, arguments: &[Id], span: Span) -> Built {
+        if definition.parameters.len() != arguments.len() {
+            let (count, found) = (definition.parameters.len(), arguments.len());
+            return Err(self.steps.error(span, format!("`{name}` takes {count} arguments, got {found}")));
+        }
+        if self.frame.active.iter().any(|active| active == name) {
+            return Err(self.steps.error(span, format!("`{name}` calls itself; formulas have no recursion")));
+        }
+        let before = self.steps.call;
+        let call = before.unwrap_or(span);
+        let mut active = self.frame.active.clone();
+        active.push(name.to_owned());
+        let parameters = definition.parameters.iter().cloned().zip(arguments.iter().copied()).collect();
+        let outside = std::mem::replace(&mut self.frame, Frame { parameters, indices: Vec::new(), active });
+        self.steps.call = Some(call);
+        let value = self.node(&definition.body);
+        (self.frame, self.steps.call) = (outside, before);
+        // Of definitions within each other the innermost is named.
+        value.map_err(|Error { message, .. }| {
+            let named = message.starts_with("in `");
+            Error::new(call, if named { message } else { format!("in `{name}`: {message}") })
+        })
+    }
+
+    /// `Σ_k`: the sum over all values of the index.
+    fn total(&mut self, index: &str, node: &Node, span: Span) -> Built {
+        let index = index.chars().next().unwrap_or('k');
+        let mut sum = None;
+        for k in 1..=self.steps.count() {
+            self.frame.indices.push((index, k));
+            let term = self.node(node);
+            self.frame.indices.pop();
+            let term = term?;
+            sum = Some(match sum {
+                None => term,
+                Some(before) => self.steps.add(false, before, term, span)?,
+            });
+        }
+        sum.ok_or_else(|| self.steps.error(span, "a sum over no index"))
+    }
+
+    /// The indices for whose every value an equation is to hold.
+    fn free_indices(&self, tree: &Tree) -> Result<Vec<char>, Error> {
+        let mut free = Vec::new();
+        if self.names.is_open() {
+            return Ok(Vec::new());
+        }
+        for side in &tree.sides {
+            count_indices(side, self.names, &mut free);
+        }
+        let free: Vec<char> = free.into_iter().map(|(index, _)| index).collect();
+        let whole = tree.sides[0].span;
+        match free[..] {
+            [] => Ok(free),
+            _ if free.len() > 3 => Err(Error::new(whole, "an equation has at most three free indices")),
+            [index, ..] if tree.sides.len() == 1 => Err(Error::new(
+                whole,
+                format!(
+                    "the index {index} is free: a sum is written `Σ_{index}`; only an equation holds for every value"
+                ),
+            )),
+            _ => Ok(free),
+        }
+    }
+
+    /// The values of these indices in the `number`-th case.
+    fn values_of(&self, free: &[char], mut number: usize) -> Vec<(char, usize)> {
+        let n = self.steps.count().max(1);
+        let digit = |&index: &char| {
+            let k = number % n + 1;
+            number /= n;
+            (index, k)
+        };
+        free.iter().map(digit).collect()
+    }
+
+    /// The sides of an equation must have a grade in common, unless one of them is 0.
+    fn check_sides(&self, tree: &Tree, sides: &[Id]) -> Result<(), Error> {
+        let zeros = self.steps.zeros();
+        for (i, pair) in sides.windows(2).enumerate() {
+            let (a, b) = (self.steps.ty(pair[0]).grades, self.steps.ty(pair[1]).grades);
+            if a.0 & b.0 == 0 && !zeros[pair[0]] && !zeros[pair[1]] {
+                let span = tree.sides[i].span.to(tree.sides[i + 1].span);
+                let message = format!(
+                    "the sides of the equation have no grade in common, {} and {}: they agree only if both are 0",
+                    shown(a),
+                    shown(b)
+                );
+                return Err(Error::new(span, message));
+            }
+        }
+        Ok(())
+    }
+}

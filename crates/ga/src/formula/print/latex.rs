@@ -1,0 +1,308 @@
+//! A formula in LaTeX, for amsmath, KaTeX, MathJax and Matplotlib's mathtext alike.
+//!
+//! A fraction and an exponent need no brackets inside, so that they are fewer than in a line of text. As a
+//! factor, a tight product is set close, `a{\wedge}b`, so that one sees what binds first.
+
+use super::glyphs::{core, subscript, word};
+use super::{Hold, blade};
+use crate::formula::syntax::number::FRACTIONS;
+use crate::formula::syntax::number::Number;
+use crate::formula::syntax::tree::{Kind, Named, Node, Tight, Tree};
+use crate::g3::functions::Function;
+use crate::product::Grades;
+
+impl Tree {
+    /// The formula in LaTeX's mathematics, without dollar signs.
+    pub fn latex(&self) -> String {
+        let sides: Vec<String> = self.sides.iter().map(Node::latex).collect();
+        sides.join(" = ")
+    }
+}
+
+impl Node {
+    /// This part of a formula in LaTeX's mathematics, without dollar signs.
+    pub fn latex(&self) -> String {
+        bare(self, false)
+    }
+}
+
+fn hold(node: &Node) -> Hold {
+    match &node.kind {
+        Kind::Sum(_) => Hold::Sum,
+        Kind::Product(_) | Kind::Total(..) => Hold::Product,
+        Kind::Tight(..) => Hold::Tight,
+        Kind::Number(x) if x.to_string().contains('e') => Hold::Tight,
+        Kind::Number(x) if number(x).starts_with('\\') => Hold::Prefix,
+        Kind::Quotient(_) => Hold::Prefix,
+        Kind::Power(..) | Kind::Derivative(_) => Hold::Postfix,
+        Kind::Function(Named::Function(Function::Exp | Function::Inverse), _) => Hold::Postfix,
+        Kind::Reverse(x) | Kind::Function(Named::Reverse, x) if leaves(x).is_none_or(|n| n > SHORT) => {
+            Hold::Postfix
+        }
+        _ => Hold::Primary,
+    }
+}
+
+/// With brackets round it if it holds together less firmly.
+fn part(node: &Node, least: Hold) -> String {
+    let text = bare(node, false);
+    if hold(node) < least { bracketed(&text) } else { text }
+}
+
+/// Brackets as high as what is in them.
+fn bracketed(text: &str) -> String {
+    if is_tall(text) { format!("\\left({text}\\right)") } else { format!("({text})") }
+}
+
+fn is_tall(text: &str) -> bool {
+    ["\\frac", "\\sum", "\\left"].iter().any(|command| text.contains(command))
+}
+
+/// Without brackets round it. Whether more factors follow matters to a sum over an index, which takes all of
+/// them.
+fn bare(node: &Node, followed: bool) -> String {
+    match &node.kind {
+        Kind::Number(x) => number(x),
+        Kind::Pi => "\\pi".to_owned(),
+        Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => letters(node, "").unwrap_or_default(),
+        Kind::Sum(terms) => sum(terms),
+        Kind::Product(factors) => product(factors, followed),
+        Kind::Quotient(pair) => format!("\\frac{{{}}}{{{}}}", bare(&pair.0, false), bare(&pair.1, false)),
+        Kind::Tight(product, operands) => {
+            let operands: Vec<String> = operands.iter().map(|x| part(x, Hold::Prefix)).collect();
+            operands.join(sign(*product).1)
+        }
+        Kind::Reverse(x) | Kind::Function(Named::Reverse, x) => reverse(x),
+        Kind::Power(x, n) => format!("{}^{{{n}}}", part(x, Hold::Primary)),
+        Kind::Part(x, grades) => {
+            let text = bare(x, false);
+            let (left, right) = if is_tall(&text) { ("\\left", "\\right") } else { ("", "") };
+            format!("{left}\\langle {text} {right}\\rangle{}", grades_of(*grades))
+        }
+        Kind::Function(function, x) => call_named(*function, x),
+        Kind::Call(name, arguments) if arguments.is_empty() => word(name, ""),
+        Kind::Call(name, arguments) => {
+            let arguments: Vec<String> = arguments.iter().map(|x| bare(x, false)).collect();
+            applied(&word(name, ""), &arguments.join(", "))
+        }
+        Kind::Derivative(x) => bracketed(&bare(x, false)) + "'",
+        Kind::Total(index, x) => format!("\\sum_{{{}}} {}", subscript(index), part(x, Hold::Product)),
+    }
+}
+
+fn sum(terms: &[(bool, Node)]) -> String {
+    let mut text = String::new();
+    for (i, (negative, term)) in terms.iter().enumerate() {
+        text += match (i, negative) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        };
+        text += &part(term, Hold::Product);
+    }
+    text
+}
+
+/// Letters stand side by side; what is wider has a thin space round it, also lest `R (x)` be a function of x.
+fn product(factors: &[Node], followed: bool) -> String {
+    let mut text = String::new();
+    for (i, factor) in factors.iter().enumerate() {
+        let followed = followed || i + 1 < factors.len();
+        let mut next = match &factor.kind {
+            Kind::Total(..) if !followed => bare(factor, false),
+            Kind::Tight(..) => close(factor),
+            _ => part(factor, Hold::Tight),
+        };
+        if i > 0 {
+            if next.starts_with(|c: char| c.is_ascii_digit()) {
+                next = bracketed(&next);
+            }
+            text += if is_narrow(&factors[i - 1]) && is_narrow(factor) { " " } else { "\\," };
+        }
+        text += &next;
+    }
+    text
+}
+
+/// A tight product without the space round its sign.
+fn close(node: &Node) -> String {
+    let Kind::Tight(product, operands) = &node.kind else { return part(node, Hold::Tight) };
+    let operands: Vec<String> = operands.iter().map(|x| part(x, Hold::Prefix)).collect();
+    operands.join(sign(*product).0)
+}
+
+/// The sign set close and with space.
+fn sign(product: Tight) -> (&'static str, &'static str) {
+    match product {
+        Tight::Wedge => ("{\\wedge}", " \\wedge "),
+        Tight::Dot => ("{\\cdot}", " \\cdot "),
+        Tight::Commutator => ("{\\times}", " \\times "),
+        Tight::Cross => ("{\\boldsymbol{\\times}}", " \\boldsymbol{\\times} "),
+        Tight::LeftContraction => ("{\\rfloor}", " \\,\\rfloor\\, "),
+        Tight::RightContraction => ("{\\lfloor}", " \\,\\lfloor\\, "),
+    }
+}
+
+/// Whether it is about as wide as a letter.
+fn is_narrow(node: &Node) -> bool {
+    match &node.kind {
+        Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar => true,
+        Kind::Name(name) => core(name).chars().count() == 1 && !name.contains('('),
+        Kind::Reverse(x) | Kind::Power(x, _) => is_narrow(x),
+        Kind::Quotient(_) => true,
+        _ => false,
+    }
+}
+
+fn call_named(function: Named, x: &Node) -> String {
+    match function {
+        Named::Function(Function::Exp) => format!("e^{{{}}}", bare(x, false)),
+        Named::Function(Function::Sqrt) => format!("\\sqrt{{{}}}", bare(x, false)),
+        Named::Function(Function::Inverse) => part(x, Hold::Primary) + "^{-1}",
+        Named::Norm => format!("\\left\\Vert {} \\right\\Vert", bare(x, false)),
+        Named::Function(Function::Log) | Named::Sin | Named::Cos | Named::Tan => {
+            applied(&format!("\\{}", function.name()), &bare(x, false))
+        }
+        _ => applied(&format!("\\operatorname{{{}}}", function.name()), &bare(x, false)),
+    }
+}
+
+/// A function's value; the braces keep high brackets close to its name.
+fn applied(function: &str, arguments: &str) -> String {
+    let brackets = bracketed(arguments);
+    if is_tall(arguments) { format!("{function}{{{brackets}}}") } else { function.to_owned() + &brackets }
+}
+
+/// The most letters under one tilde.
+const SHORT: usize = 3;
+
+/// How many letters it is made of, if of nothing else.
+fn leaves(node: &Node) -> Option<usize> {
+    match &node.kind {
+        Kind::Name(_) | Kind::Blade(_) | Kind::Pseudoscalar => Some(1),
+        Kind::Product(parts) | Kind::Tight(_, parts) => parts.iter().map(leaves).sum(),
+        _ => None,
+    }
+}
+
+/// A tilde over one letter, with its indices beside it; over a few letters; after a bracket.
+fn reverse(x: &Node) -> String {
+    let tilde = if is_narrow(x) { "\\tilde" } else { "\\widetilde" };
+    if let Some(text) = letters(x, tilde) {
+        return text;
+    }
+    let text = bare(x, false);
+    let short = leaves(x).is_some_and(|n| n <= SHORT);
+    if short { format!("\\widetilde{{{text}}}") } else { bracketed(&text) + "^{\\sim}" }
+}
+
+/// A name or a blade, with an accent over what stands before its indices.
+fn letters(node: &Node, accent: &str) -> Option<String> {
+    match &node.kind {
+        Kind::Name(name) => Some(word(name, accent)),
+        Kind::Blade(generators) => Some(word(&blade(generators), accent)),
+        Kind::Pseudoscalar => Some(word("I", accent)),
+        _ => None,
+    }
+}
+
+fn number(x: &Number) -> String {
+    if let Some((n, d)) = x.ratio.filter(|ratio| FRACTIONS.iter().any(|(_, n, d)| (*n, *d) == *ratio)) {
+        return format!("\\frac{{{n}}}{{{d}}}");
+    }
+    let text = x.to_string();
+    match text.split_once('e') {
+        Some(("1", exponent)) => format!("10^{{{}}}", exponent.trim_start_matches('+')),
+        Some((digits, exponent)) => {
+            format!("{digits} {{\\times}} 10^{{{}}}", exponent.trim_start_matches('+'))
+        }
+        None => text,
+    }
+}
+
+fn grades_of(grades: Grades) -> String {
+    let list: Vec<String> = (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
+    if list == ["0"] { String::new() } else { format!("_{{{}}}", list.join(",")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Function, Named, Node, Tight};
+    use crate::formula::tests::build::*;
+
+    #[track_caller]
+    fn check(node: Node, latex: &str) {
+        assert_eq!(node.latex(), latex);
+    }
+
+    #[test]
+    fn names_have_indices_primes_and_accents() {
+        for (name, latex) in [
+            ("Ω_B", "\\Omega_{B}"),
+            ("a1", "a_{1}"),
+            ("f_k'", "f_{k}'"),
+            ("omega_body", "\\mathrm{omega}_{\\mathrm{body}}"),
+            ("a∥", "a_{\\parallel}"),
+            ("R(0)", "R(0)"),
+            ("I(Ω_B')", "I(\\Omega_{B}')"),
+            ("a\u{302}\u{20d7}_k", "\\vec{\\hat{a}}_{k}"),
+            ("T_a_b", "T_{a,b}"),
+            ("ω''", "\\omega''"),
+        ] {
+            check(x(name), latex);
+        }
+        check(x("I"), "I");
+        check(x("e12"), "e_{12}");
+    }
+
+    #[test]
+    fn a_tilde_stands_over_the_letter_or_after_the_bracket() {
+        check(reverse(x("R_1'")), "\\tilde{R}_{1}'");
+        check(derivative(reverse(x("R"))), "(\\tilde{R})'");
+        check(reverse(x("spin")), "\\widetilde{\\mathrm{spin}}");
+        check(reverse(product([x("e1"), x("e2")])), "\\widetilde{e_{1} e_{2}}");
+        check(reverse(plus(x("a"), x("b"))), "(a + b)^{\\sim}");
+        check(power(reverse(plus(x("a"), x("b"))), 2), "((a + b)^{\\sim})^{2}");
+        check(power(reverse(x("R")), 2), "\\tilde{R}^{2}");
+    }
+
+    #[test]
+    fn tight_products_are_set_close_beside_other_factors() {
+        let (a, b) = (|| x("a"), || x("b"));
+        check(wedge(a(), b()), "a \\wedge b");
+        check(minus(product([x("I"), wedge(a(), b())])), "-I\\,a{\\wedge}b");
+        let turned = product([x("R"), tight(Tight::Dot, [x("x"), x("Ω")]), reverse(x("R"))]);
+        check(turned, "R\\,x{\\cdot}\\Omega\\,\\tilde{R}");
+        let crossed = tight(Tight::Cross, [a(), wedge(a(), b())]);
+        check(crossed, "a \\boldsymbol{\\times} (a \\wedge b)");
+        check(product([x("R"), plus(a(), b()), x("spin")]), "R\\,(a + b)\\,\\mathrm{spin}");
+    }
+
+    #[test]
+    fn fractions_and_exponents_need_no_brackets() {
+        let sum = || plus(x("a"), x("b"));
+        check(over(sum(), product([x("2"), x("c")])), "\\frac{a + b}{2 c}");
+        check(minus(product([x("½"), x("Ω_S"), x("R")])), "-\\frac{1}{2} \\Omega_{S} R");
+        check(exp(minus(over(x("θ"), x("2")))), "e^{-\\frac{\\theta}{2}}");
+        check(power(exp(x("a")), 2), "(e^{a})^{2}");
+        check(power(over(x("a"), x("b")), 2), "\\left(\\frac{a}{b}\\right)^{2}");
+        check(function(Named::Function(Function::Inverse), sum()), "(a + b)^{-1}");
+        check(function(Named::Function(Function::Sqrt), sum()), "\\sqrt{a + b}");
+        check(function(Named::Sin, over(x("θ"), x("2"))), "\\sin{\\left(\\frac{\\theta}{2}\\right)}");
+        check(function(Named::Dual, x("B")), "\\operatorname{dual}(B)");
+        check(function(Named::Norm, minus(x("a"))), "\\left\\Vert -a \\right\\Vert");
+    }
+
+    #[test]
+    fn numbers_grades_and_sums_over_an_index() {
+        check(product([x("2"), x("3"), x("a")]), "2 (3) a");
+        check(product([x("1.5e-7"), x("a")]), "1.5 {\\times} 10^{-7} a");
+        check(part(over(x("A"), x("B")), 4), "\\left\\langle \\frac{A}{B} \\right\\rangle_{2}");
+        check(part(x("A"), 5), "\\langle A \\rangle_{0,2}");
+        let sum = total("k", product([x("ω_k"), x("I"), x("e_k")]));
+        check(product([sum, x("a")]), "\\left(\\sum_{k} \\omega_{k} I e_{k}\\right)\\,a");
+        let equation = tree([x("a"), x("b"), x("c")]);
+        assert_eq!(equation.latex(), "a = b = c");
+    }
+}

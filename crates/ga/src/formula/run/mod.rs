@@ -1,0 +1,291 @@
+//! A program over many rows: each block of rows goes through all its steps before the next one is read.
+
+pub(crate) mod lanes;
+pub(crate) mod schedule;
+pub(crate) mod side_by_side;
+pub(crate) mod single;
+pub(crate) mod steps;
+#[cfg(test)]
+mod tests;
+
+use super::InputKind;
+use super::compile::program::Id;
+use crate::MathError;
+use crate::graded::{Graded, size};
+use crate::simd::threads::{Threads, for_each};
+use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
+use crate::simd::{Element, Lane, Path};
+use schedule::{Schedule, Task};
+use single::{Given, Runner};
+use std::ops::{ControlFlow, Range};
+use std::sync::{Mutex, PoisonError};
+use steps::Work;
+
+/// Below so many rows, turning them into lanes does not pay.
+const FEW: usize = 8;
+
+/// From so many bytes on, inputs and results together, the results go past the caches: earlier than those of
+/// a single product, for what is read comes from all inputs at once.
+const STREAMED: usize = 8 << 20;
+
+/// So many lanes of 128 rows leave room in the first-level cache. Each step of a block costs some nanoseconds
+/// besides the arithmetic, so that large blocks are faster.
+const FEW_LANES: usize = 24;
+
+/// So many lanes of 64 rows still fit it.
+const MANY_LANES: usize = 64;
+
+/// How many bytes before the next block lines are asked for.
+const AHEAD: usize = 2048;
+
+/// The first row that has no value, and the first of its steps that has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowError {
+    /// Its number.
+    pub row: usize,
+    /// The step.
+    pub step: Id,
+    /// Why.
+    pub error: MathError,
+}
+
+/// A value of some row of an input.
+fn given<T: Element>(kind: InputKind, numbers: &[T]) -> Given {
+    match kind {
+        InputKind::Value(ty) => Given::Value(Graded::from_fn(ty.grades, |k| numbers[k].into())),
+        InputKind::Matrix { .. } => Given::Matrix(std::array::from_fn(|k| numbers[k].into())),
+        InputKind::Determinant => Given::Determinant(numbers[0].into()),
+    }
+}
+
+impl Runner {
+    /// Runs some rows of all: each input has one row for all, or one for each. The results, in the order of
+    /// the program, are written to the same rows of the outputs. Each row has the bits of
+    /// [`Runner::value`], on any machine and by any number of threads. After an error the outputs are of
+    /// no use.
+    ///
+    /// # Panics
+    /// If the numbers of rows do not fit together.
+    pub fn run<T: Element>(
+        &self,
+        threads: Threads,
+        inputs: &[&[T]],
+        outputs: &mut [&mut [T]],
+        rows: Range<usize>,
+    ) -> Result<(), RowError> {
+        self.run_on(Path::best(), threads, inputs, outputs, rows)
+    }
+
+    pub(super) fn run_on<T: Element>(
+        &self,
+        path: Path,
+        threads: Threads,
+        inputs: &[&[T]],
+        outputs: &mut [&mut [T]],
+        rows: Range<usize>,
+    ) -> Result<(), RowError> {
+        assert_eq!((inputs.len(), outputs.len()), (self.inputs.len(), self.results.len()), "all that are");
+        let total = outputs[0].len() / self.size_of_result(0);
+        let factors = self.inputs.iter().zip(inputs);
+        let factors = factors.map(|(&kind, data)| Factor::new(data, kind.size(), total));
+        let bytes: usize = inputs.iter().map(|x| size_of_val(*x)).sum::<usize>()
+            + outputs.iter().map(|x| size_of_val(*x)).sum::<usize>();
+        let mut targets: Vec<Target<T>> = Vec::with_capacity(outputs.len());
+        for (k, data) in outputs.iter_mut().enumerate() {
+            let size = self.size_of_result(k);
+            assert_eq!(data.len(), total * size, "an output has the wrong length");
+            targets.push(Target { data: &mut data[rows.start * size..rows.end * size], size, at: 0 });
+        }
+        let first = rows.start;
+        let factors: Vec<Factor<T>> = factors.map(|factor| factor.piece(rows.clone())).collect();
+        let late = |error: RowError| RowError { row: first + error.row, ..error };
+        if rows.len() < FEW {
+            return self.by_rows(&factors, &mut targets, rows.len()).map_err(late);
+        }
+        let fixed = self.fixed(&factors.iter().map(|factor| factor.one).collect::<Vec<_>>());
+        let maps: Vec<Option<Vec<f64>>> = self
+            .inputs
+            .iter()
+            .zip(&factors)
+            .map(|(kind, factor)| {
+                let map = factor.one && !matches!(kind, InputKind::Value(_));
+                map.then(|| factor.rows(0, 1).iter().map(|&x| x.into()).collect())
+            })
+            .collect();
+        let of_first = |i: usize| given(self.inputs[i], factors[i].rows(0, 1));
+        let Ok(values) = self.values(of_first, |id| fixed[id]) else {
+            // Some step before it may fail in the first row, too.
+            return self.by_rows(&factors, &mut targets, 1).map_err(late);
+        };
+        let schedule = self.schedule(&fixed, &values, &maps);
+        targets.iter_mut().zip(&schedule.results).for_each(|(target, &at)| target.at = at);
+        let streamed = path.streams() && bytes >= STREAMED;
+        let sweep = Sweep { runner: self, schedule, path, streamed, failure: Mutex::new(None) };
+        match sweep.schedule.lanes {
+            // Small blocks mix reading and writing memory with the arithmetic more finely.
+            0..=FEW_LANES if !streamed => sweep.run::<T, 128>(threads, &factors, targets, rows.len()),
+            0..=MANY_LANES => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
+            _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
+        }
+        let failure = sweep.failure.into_inner().unwrap_or_else(PoisonError::into_inner);
+        failure.map_or(Ok(()), |error| Err(late(error)))
+    }
+
+    pub(super) fn size_of_result(&self, k: usize) -> usize {
+        size(self.steps[self.results[k]].grades)
+    }
+
+    /// Row by row, the first so many.
+    fn by_rows<T: Element>(
+        &self,
+        factors: &[Factor<T>],
+        targets: &mut [Target<T>],
+        count: usize,
+    ) -> Result<(), RowError> {
+        for row in 0..count {
+            let values = self.row(factors, row)?;
+            for (target, &id) in targets.iter_mut().zip(&self.results) {
+                let out = &mut target.data[row * target.size..(row + 1) * target.size];
+                out.iter_mut().zip(values[id].components()).for_each(|(out, &x)| *out = T::nearest(x));
+            }
+        }
+        Ok(())
+    }
+
+    /// The values of all steps for one row.
+    fn row<T: Element>(&self, factors: &[Factor<T>], row: usize) -> Result<Vec<Graded>, RowError> {
+        let values = self.values(|i| given(self.inputs[i], factors[i].rows(row, 1)), |_| true);
+        values.map_err(|(step, error)| RowError { row, step, error })
+    }
+
+    /// How much there is to do for a row, in units of reading or writing a number; several threads pay from
+    /// a million units on.
+    pub fn weight(&self) -> usize {
+        let of_step = |work: &Work| if matches!(work, Work::Function(_)) { 300 } else { 2 };
+        self.inputs.iter().map(|&kind| kind.size()).sum::<usize>()
+            + self.steps.iter().map(|step| of_step(&step.work)).sum::<usize>()
+    }
+}
+
+/// A sweep over all rows.
+struct Sweep<'a> {
+    runner: &'a Runner,
+    schedule: Schedule,
+    path: Path,
+    streamed: bool,
+    failure: Mutex<Option<RowError>>,
+}
+
+impl Sweep<'_> {
+    fn run<T: Element, const W: usize>(
+        &self,
+        threads: Threads,
+        factors: &[Factor<T>],
+        mut targets: Vec<Target<T>>,
+        total: usize,
+    ) {
+        let pieces = threads.ranges(total, SHARED / self.runner.weight());
+        let pieces = pieces.map(|rows| {
+            let piece: Vec<_> = targets.iter_mut().map(|target| target.split_off(rows.len())).collect();
+            (rows, piece)
+        });
+        for_each(pieces, |(rows, mut targets)| {
+            let factors: Vec<_> = factors.iter().map(|factor| factor.piece(rows.clone())).collect();
+            if let Err(error) = self.piece::<T, W>(&factors, &mut targets, rows.len()) {
+                let error = RowError { row: rows.start + error.row, ..error };
+                let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+                if failure.is_none_or(|earlier| error.row < earlier.row) {
+                    *failure = Some(error);
+                }
+            }
+        });
+    }
+
+    /// All rows of a piece, up to the first that has no value.
+    fn piece<T: Element, const W: usize>(
+        &self,
+        factors: &[Factor<T>],
+        targets: &mut [Target<T>],
+        total: usize,
+    ) -> Result<(), RowError> {
+        // What lies beyond the last rows is computed too; few functions have difficulties with 1.
+        let mut lanes = vec![Lane::<W>::filled(1.0); self.schedule.lanes];
+        for (first, numbers) in &self.schedule.fixed {
+            lanes[*first..].iter_mut().zip(numbers).for_each(|(lane, &x)| *lane = Lane::filled(x));
+        }
+        let ahead = self.ahead::<T, W>(factors);
+        let mut result = Ok(());
+        by_blocks((self.path, self.streamed), total, &mut lanes, targets, |first, count, lanes| {
+            if !self.block(factors, &ahead, first, count, lanes) {
+                result = (first..first + count).try_for_each(|row| self.runner.row(factors, row).map(drop));
+            }
+            if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        result
+    }
+
+    /// Beyond the caches, the cache lines of a block that each task asks for ahead, of some inputs. Memory
+    /// answers only so many at a time, and would wait while the arithmetic is done.
+    fn ahead<T: Element, const W: usize>(&self, factors: &[Factor<T>]) -> Vec<Vec<(usize, Range<usize>)>> {
+        let tasks = self.schedule.tasks.len();
+        let lines = |factor: &Factor<T>| W * size_of_val(factor.rows(0, 1)) / 64;
+        let rows = factors.iter().enumerate().filter(|(_, factor)| self.streamed && !factor.one);
+        let lines: Vec<_> =
+            rows.flat_map(|(i, factor)| (0..lines(factor)).map(move |line| (i, line))).collect();
+        let share = |task: usize| {
+            let share = &lines[task * lines.len() / tasks..(task + 1) * lines.len() / tasks];
+            let of_inputs = share.chunk_by(|s, t| s.0 == t.0);
+            of_inputs.map(|lines| (lines[0].0, lines[0].1..lines[0].1 + lines.len())).collect()
+        };
+        (0..tasks).map(share).collect()
+    }
+
+    /// A block of rows; false if perhaps one has no value.
+    fn block<T: Element, const W: usize>(
+        &self,
+        factors: &[Factor<T>],
+        ahead: &[Vec<(usize, Range<usize>)>],
+        first: usize,
+        count: usize,
+        lanes: &mut [Lane<W>],
+    ) -> bool {
+        let mut known = true;
+        for (task, ahead) in self.schedule.tasks.iter().zip(ahead) {
+            for (input, lines) in ahead {
+                let row = factors[*input].rows(first, 1);
+                let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
+                self.path.prefetch(block, lines.clone());
+            }
+            match task {
+                Task::Read { input, to } => {
+                    self.path.gather(factors[*input].rows(first, count), &mut lanes[to.clone()]);
+                }
+                Task::Do { step, operands, to } => {
+                    let step = &self.runner.steps[*step];
+                    let of = self.runner.steps[step.operands[0]].grades;
+                    known &= step.block(self.path, of, count, apart(lanes, operands, to));
+                }
+            }
+        }
+        known
+    }
+}
+
+/// The lanes of two operands to read, and others to write.
+pub(super) fn apart<'a, const W: usize>(
+    lanes: &'a mut [Lane<W>],
+    [a, b]: &[Range<usize>; 2],
+    to: &Range<usize>,
+) -> (&'a [Lane<W>], &'a [Lane<W>], &'a mut [Lane<W>]) {
+    let (before, rest) = lanes.split_at_mut(to.start);
+    let (out, after) = rest.split_at_mut(to.len());
+    let (before, after) = (&*before, &*after);
+    let place = |range: &Range<usize>| {
+        if range.end <= to.start {
+            &before[range.clone()]
+        } else {
+            &after[range.start - to.end..range.end - to.end]
+        }
+    };
+    (place(a), place(b), out)
+}

@@ -1,0 +1,137 @@
+//! Names in indices, as in `ω_k I e_k` and `f_k = R e_k ~R`.
+
+use super::names::Names;
+use super::tree::{Kind, Node};
+use crate::formula::Error;
+
+/// The letters that count from 1 to the number of generators where they stand as subscripts.
+pub(crate) const INDICES: &str = "ijklmn";
+
+/// The base of a name in indices, and the indices, each in its place: `ω_k`, `ε_ijk`.
+pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
+    let plain = name.trim_end_matches('\'');
+    let (base, indices) = plain.split_once('_')?;
+    let some = !indices.is_empty() && indices.len() <= 3 && indices.chars().all(|c| INDICES.contains(c));
+    (some && !base.is_empty()).then_some((base, indices))
+}
+
+/// Whether a name in indices has a value of its own for each of them: `e_k`, `δ_ij`, `ε_ijk`.
+pub(crate) fn is_built_in(name: &str) -> bool {
+    let constant =
+        |(base, indices): (&str, &str)| matches!((base, indices.len()), ("e", 1) | ("δ", 2) | ("ε", 3));
+    !name.ends_with('\'') && indexed(name).is_some_and(constant)
+}
+
+/// Sums over indices that are repeated, as on paper: an index that stands twice or more in every term that has
+/// it is summed over in each, `ε_ijk e_k`; one that stands once in some term is free, `L_k = i_k ω_k`.
+pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<Node>, Error> {
+    if names.is_open() {
+        return Ok(sides);
+    }
+    let mut counts: Vec<Vec<(char, usize)>> = Vec::new();
+    for_each_term(&mut sides, &mut |term| {
+        counts.push(indices_in(term, names));
+        Ok(())
+    })?;
+    let free = |index: char| counts.iter().flatten().any(|&(c, count)| c == index && count == 1);
+    let mut next = counts.iter();
+    for_each_term(&mut sides, &mut |term| {
+        let mut repeated = next.next().into_iter().flatten().filter(|&&(index, _)| !free(index));
+        repeated.try_for_each(|&(index, _)| sum_over(index, term, names))
+    })?;
+    Ok(sides)
+}
+
+/// Puts the sum around the smallest part that has the index all the times, each term of a sum for itself:
+/// `(a_k b_k + 1)²` is `(Σ_k a_k b_k + 1)²`.
+fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
+    let count =
+        |node: &Node| indices_in(node, names).iter().find(|(c, _)| *c == index).map_or(0, |(_, n)| *n);
+    if let Kind::Sum(terms) = &mut node.kind {
+        let mut with = terms.iter_mut().filter(|(_, term)| count(term) > 0);
+        return with.try_for_each(|(_, term)| sum_over(index, term, names));
+    }
+    let counts: Vec<usize> = node.children().into_iter().map(count).collect();
+    let with: Vec<usize> = (0..counts.len()).filter(|&i| counts[i] > 0).collect();
+    if let [child] = with[..] {
+        return sum_over(index, node.children_mut().swap_remove(child), names);
+    }
+    if counts.iter().any(|&n| n > 1) {
+        let message = format!(
+            "{index} stands here {} times, so that it is not clear what is summed; write `Σ_{index}`, or \
+             another index in one pair",
+            counts.iter().sum::<usize>()
+        );
+        return Err(Error::new(node.span, message));
+    }
+    let inner = std::mem::replace(&mut node.kind, Kind::Pi);
+    node.kind = Kind::Total(index.to_string(), Box::new(Node::new(inner, node.span)));
+    Ok(())
+}
+
+/// The terms of the sums that the sides are.
+fn for_each_term(
+    sides: &mut [Node],
+    f: &mut impl FnMut(&mut Node) -> Result<(), Error>,
+) -> Result<(), Error> {
+    for side in sides {
+        match &mut side.kind {
+            Kind::Sum(terms) => terms.iter_mut().try_for_each(|(_, term)| f(term))?,
+            _ => f(side)?,
+        }
+    }
+    Ok(())
+}
+
+fn indices_in(node: &Node, names: &Names) -> Vec<(char, usize)> {
+    let mut found = Vec::new();
+    count_indices(node, names, &mut found);
+    found
+}
+
+/// The indices in the names of a tree that are not bound, and how often each stands there. Those of a sum are
+/// its own.
+pub(crate) fn count_indices(node: &Node, names: &Names, found: &mut Vec<(char, usize)>) {
+    if let Kind::Name(name) = &node.kind
+        && names.get(name).is_none()
+        && let Some((_, indices)) = indexed(name)
+    {
+        for index in indices.chars().filter(|&c| INDICES.contains(c)) {
+            add(found, index, 1);
+        }
+    }
+    let mut inner: Vec<(char, usize)> = Vec::new();
+    for child in node.children() {
+        for (index, count) in indices_in(child, names) {
+            let before = inner.iter_mut().find(|(c, _)| *c == index);
+            match before {
+                None => inner.push((index, count)),
+                // In a sum each term has the index for itself; it is repeated if it is in all that have it.
+                Some((_, least)) if matches!(node.kind, Kind::Sum(_)) => *least = count.min(*least),
+                Some((_, total)) => *total += count,
+            }
+        }
+    }
+    if let Kind::Total(index, _) = &node.kind {
+        inner.retain(|(c, _)| !index.contains(*c));
+    }
+    for (index, count) in inner {
+        add(found, index, count);
+    }
+}
+
+fn add(found: &mut Vec<(char, usize)>, index: char, count: usize) {
+    match found.iter_mut().find(|(c, _)| *c == index) {
+        Some((_, total)) => *total += count,
+        None => found.push((index, count)),
+    }
+}
+
+/// The sign of a permutation of 1, 2, 3; 0 of anything else.
+pub(crate) fn permutation([i, j, k]: [usize; 3]) -> i32 {
+    match (i, j, k) {
+        (1, 2, 3) | (2, 3, 1) | (3, 1, 2) => 1,
+        (3, 2, 1) | (2, 1, 3) | (1, 3, 2) => -1,
+        _ => 0,
+    }
+}

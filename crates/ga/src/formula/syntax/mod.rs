@@ -1,0 +1,11 @@
+//! From the text of a formula to its tree.
+
+pub(crate) mod indices;
+pub(crate) mod letters;
+pub(crate) mod names;
+pub(crate) mod number;
+pub(crate) mod operands;
+pub(crate) mod parser;
+pub(crate) mod reading;
+pub(crate) mod token;
+pub(crate) mod tree;

@@ -1,0 +1,206 @@
+//! Numbers as they are written: `2`, `0.25`, `1e-3`, `½`.
+
+use std::fmt;
+
+/// A number, with its exact value where that is a ratio of two whole numbers of 64 bits.
+///
+/// Over floats `value` counts; over fractions and symbols `0.1` is the tenth that was written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    /// The nearest float.
+    pub value: f64,
+    /// Numerator and denominator, in lowest terms, the denominator positive.
+    pub ratio: Option<(i64, i64)>,
+}
+
+impl Number {
+    /// The ratio of two whole numbers; `None` if the second is 0 or the lowest terms need more than 64 bits.
+    pub fn ratio(numerator: i128, denominator: i128) -> Option<Number> {
+        if denominator == 0 {
+            return None;
+        }
+        let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()) as i128;
+        let (n, d) = (numerator / divisor * denominator.signum(), (denominator / divisor).abs());
+        let (n, d) = (i64::try_from(n).ok()?, i64::try_from(d).ok()?);
+        // The quotient of two floats is the nearest to the ratio only where both are exact.
+        let exact = n.unsigned_abs() <= 1 << 53 && d <= 1 << 53;
+        exact.then(|| Number { value: n as f64 / d as f64, ratio: Some((n, d)) })
+    }
+
+    /// A whole number.
+    pub fn whole(n: i32) -> Number {
+        Number { value: f64::from(n), ratio: Some((i64::from(n), 1)) }
+    }
+
+    /// A float that is not taken for a ratio, such as π.
+    pub fn float(value: f64) -> Number {
+        Number { value, ratio: None }
+    }
+
+    /// What the text of a decimal number stands for; `None` if it is none, or beyond the floats.
+    pub fn decimal(text: &str) -> Option<Number> {
+        let value: f64 = text.parse().ok().filter(|x: &f64| x.is_finite())?;
+        if value == 0.0 {
+            let digits = text.split(['e', 'E']).next()?;
+            return (!digits.contains(|c: char| ('1'..='9').contains(&c))).then_some(Number::whole(0));
+        }
+        let ratio = decimal_ratio(text).and_then(|n| n.ratio);
+        Some(Number { value, ratio })
+    }
+
+    /// The number with the other sign.
+    pub fn negated(self) -> Number {
+        Number { value: -self.value, ratio: self.ratio.map(|(n, d)| (-n, d)) }
+    }
+
+    /// The product of two numbers.
+    pub fn times(self, other: Number) -> Number {
+        let exact = self.ratio.zip(other.ratio).and_then(|((a, b), (c, d))| {
+            Number::ratio(i128::from(a) * i128::from(c), i128::from(b) * i128::from(d))
+        });
+        exact.unwrap_or(Number::float(self.value * other.value))
+    }
+
+    /// The quotient of two numbers; `None` if the second is 0.
+    pub fn over(self, other: Number) -> Option<Number> {
+        if other.value == 0.0 {
+            return None;
+        }
+        let exact = self.ratio.zip(other.ratio).and_then(|((a, b), (c, d))| {
+            Number::ratio(i128::from(a) * i128::from(d), i128::from(b) * i128::from(c))
+        });
+        Some(exact.unwrap_or(Number::float(self.value / other.value)))
+    }
+}
+
+/// As it is written again: the fewest digits that give the same number, with the same exact value.
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shortest = self.shortest();
+        if Number::decimal(&shortest).is_some_and(|number| number.ratio == self.ratio) {
+            return f.write_str(&shortest);
+        }
+        match self.ratio.map(exact_digits) {
+            Some(digits) => f.write_str(&digits.unwrap_or(shortest)),
+            None => f.write_str(&with_exponent(format!("{:.*e}", MOST_DIGITS, self.value))),
+        }
+    }
+}
+
+impl Number {
+    /// The fewest digits that give the same float.
+    fn shortest(&self) -> String {
+        match self.ratio {
+            Some((n, 1)) => n.to_string(),
+            _ if self.value == 0.0 || (1e-5..1e16).contains(&self.value.abs()) => self.value.to_string(),
+            _ => with_exponent(format!("{:e}", self.value)),
+        }
+    }
+}
+
+/// An exponent has its sign, for `2e1` is 2 times the basis vector.
+fn with_exponent(text: String) -> String {
+    if text.contains("e-") { text } else { text.replace('e', "e+") }
+}
+
+/// A ratio as a decimal fraction that ends, if it is one.
+fn exact_digits((n, d): (i64, i64)) -> Option<String> {
+    let places = (0..=38).find(|&k| 10i128.pow(k) % i128::from(d) == 0)?;
+    let digits = i128::from(n).checked_mul(10i128.pow(places) / i128::from(d))?;
+    let (sign, places) = (if n < 0 { "-" } else { "" }, places as usize);
+    let padded = format!("{:0>1$}", digits.unsigned_abs(), places + 1);
+    let (whole, part) = padded.split_at(padded.len() - places);
+    Some(format!("{sign}{whole}.{part}"))
+}
+
+/// Decimal numbers of more digits are floats only.
+const MOST_DIGITS: usize = 17;
+
+/// The exact value of decimal digits, where it has few enough.
+fn decimal_ratio(text: &str) -> Option<Number> {
+    let (digits, exponent) = match text.split_once(['e', 'E']) {
+        Some((digits, exponent)) => (digits, exponent.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+    let digits = format!("{whole}{part}");
+    if digits.trim_start_matches('0').len() > MOST_DIGITS {
+        return None;
+    }
+    let numerator: i128 = digits.parse().ok()?;
+    let power = exponent.checked_sub(i32::try_from(part.len()).ok()?)?;
+    let ten = 10i128.checked_pow(power.unsigned_abs())?;
+    if power >= 0 { Number::ratio(numerator.checked_mul(ten)?, 1) } else { Number::ratio(numerator, ten) }
+}
+
+fn gcd(mut a: u128, mut b: u128) -> u128 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a.max(1)
+}
+
+/// The ratios that are written as one character; fifths and tenths are shorter as decimals.
+pub(crate) const FRACTIONS: [(char, i64, i64); 11] = [
+    ('½', 1, 2),
+    ('⅓', 1, 3),
+    ('⅔', 2, 3),
+    ('¼', 1, 4),
+    ('¾', 3, 4),
+    ('⅙', 1, 6),
+    ('⅚', 5, 6),
+    ('⅛', 1, 8),
+    ('⅜', 3, 8),
+    ('⅝', 5, 8),
+    ('⅞', 7, 8),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_exact_where_they_can_be() {
+        let ratio = |text| Number::decimal(text).unwrap().ratio;
+        assert_eq!(ratio("0.25"), Some((1, 4)));
+        assert_eq!(ratio("12"), Some((12, 1)));
+        assert_eq!(ratio("1e-3"), Some((1, 1000)));
+        assert_eq!(ratio("1.5e+2"), Some((150, 1)));
+        assert_eq!(ratio("1e-30"), None);
+        assert_eq!(Number::decimal("1e999"), None);
+        assert_eq!(Number::decimal("1e-999"), None);
+        assert_eq!(ratio("0.0e+999"), Some((0, 1)));
+        assert_eq!(Number::decimal("1e-3").unwrap().value, 0.001);
+    }
+
+    #[test]
+    fn ratios_are_in_lowest_terms() {
+        assert_eq!(Number::ratio(6, -4).unwrap().ratio, Some((-3, 2)));
+        assert_eq!(Number::ratio(1, 0), None);
+        let half = Number::ratio(1, 2).unwrap();
+        assert_eq!(half.times(Number::whole(4)).ratio, Some((2, 1)));
+        assert_eq!(Number::whole(1).over(Number::whole(3)).unwrap().ratio, Some((1, 3)));
+        assert_eq!(half.over(Number::whole(0)), None);
+    }
+
+    #[test]
+    fn numbers_print_so_that_they_are_read_again() {
+        for x in [0.1, 1.0 / 3.0, 1e-7, 1.5e300, 5e-324, f64::MAX, 2f64.powi(60)] {
+            let text = Number::float(x).to_string();
+            assert_eq!(Number::decimal(&text).unwrap().value, x, "{text}");
+        }
+        assert_eq!(Number::float(1e20).to_string(), "1e+20");
+        // The first is the shortest text of the float, and another decimal fraction; the last are no ratios.
+        for text in [
+            "8.000000000000002",
+            "8.000000000000001",
+            "0.1",
+            "0.100000000000000000001",
+            "9007199254740993",
+            "0",
+        ] {
+            let number = Number::decimal(text).unwrap();
+            assert_eq!(Number::decimal(&number.to_string()).unwrap(), number, "{text}");
+        }
+    }
+}

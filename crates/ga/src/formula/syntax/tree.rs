@@ -1,0 +1,262 @@
+//! What a formula is once it is read: a tree whose nodes know the text they come from.
+
+use super::number::Number;
+use crate::g3::functions::Function;
+use crate::product::Grades;
+
+/// A piece of the text, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Span {
+    /// Where it begins.
+    pub start: usize,
+    /// Where it has ended.
+    pub end: usize,
+}
+
+impl Span {
+    /// From the beginning of the one to the end of the other.
+    pub fn to(self, other: Span) -> Span {
+        Span { start: self.start.min(other.start), end: self.end.max(other.end) }
+    }
+}
+
+/// A formula: one side, or the sides of an equation `lhs = rhs`, which may go on, `a = b = c`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tree {
+    /// At least one.
+    pub sides: Vec<Node>,
+}
+
+impl Tree {
+    /// Every node, each before those it is made of.
+    pub fn nodes(&self) -> Vec<&Node> {
+        let mut nodes = Vec::new();
+        for side in &self.sides {
+            side.visit(&mut |node| nodes.push(node));
+        }
+        nodes
+    }
+}
+
+/// A part of a formula. Brackets leave no node; they are the shape of the tree.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// What it is.
+    pub kind: Kind,
+    /// Where it stands, without brackets around it.
+    pub span: Span,
+}
+
+/// Two nodes are equal if they are the same formula, wherever it stands.
+impl PartialEq for Node {
+    fn eq(&self, other: &Node) -> bool {
+        self.kind == other.kind
+    }
+}
+
+impl Node {
+    /// A node.
+    pub fn new(kind: Kind, span: Span) -> Node {
+        Node { kind, span }
+    }
+
+    /// Calls a function with the node and all it is made of.
+    pub(crate) fn visit<'n>(&'n self, f: &mut impl FnMut(&'n Node)) {
+        f(self);
+        for child in self.children() {
+            child.visit(f);
+        }
+    }
+
+    /// The nodes it is made of, from left to right.
+    pub fn children(&self) -> Vec<&Node> {
+        match &self.kind {
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
+            Kind::Sum(terms) => terms.iter().map(|(_, term)| term).collect(),
+            Kind::Product(factors) | Kind::Call(_, factors) => factors.iter().collect(),
+            Kind::Tight(_, operands) => operands.iter().collect(),
+            Kind::Quotient(pair) => vec![&pair.0, &pair.1],
+            Kind::Reverse(x)
+            | Kind::Power(x, _)
+            | Kind::Part(x, _)
+            | Kind::Function(_, x)
+            | Kind::Derivative(x)
+            | Kind::Total(_, x) => vec![x],
+        }
+    }
+
+    /// The same, to change them.
+    pub(crate) fn children_mut(&mut self) -> Vec<&mut Node> {
+        match &mut self.kind {
+            Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
+            Kind::Sum(terms) => terms.iter_mut().map(|(_, term)| term).collect(),
+            Kind::Product(factors) | Kind::Call(_, factors) => factors.iter_mut().collect(),
+            Kind::Tight(_, operands) => operands.iter_mut().collect(),
+            Kind::Quotient(pair) => vec![&mut pair.0, &mut pair.1],
+            Kind::Reverse(x)
+            | Kind::Power(x, _)
+            | Kind::Part(x, _)
+            | Kind::Function(_, x)
+            | Kind::Derivative(x)
+            | Kind::Total(_, x) => vec![x],
+        }
+    }
+}
+
+/// The kinds of nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// `2`, `0.5`, `½`; never negative.
+    Number(Number),
+    /// `π`
+    Pi,
+    /// `e1`, `e12`: the generators in the order written, from 1.
+    Blade(Vec<u8>),
+    /// `I`, the product of all generators.
+    Pseudoscalar,
+    /// A value, by its canonical name.
+    Name(String),
+    /// `a + b − c`, or `−a` alone: for each term, whether it is subtracted.
+    Sum(Vec<(bool, Node)>),
+    /// The geometric product of two or more factors.
+    Product(Vec<Node>),
+    /// `A/B`, that is `A B⁻¹`.
+    Quotient(Box<(Node, Node)>),
+    /// A product that binds tighter; `∧` of two or more operands, the others of two.
+    Tight(Tight, Vec<Node>),
+    /// `~A`
+    Reverse(Box<Node>),
+    /// `Aⁿ`
+    Power(Box<Node>, i32),
+    /// `⟨A⟩_k`
+    Part(Box<Node>, Grades),
+    /// `exp(A)`
+    Function(Named, Box<Node>),
+    /// A linear map or a defined function, by its canonical name.
+    Call(String, Vec<Node>),
+    /// `(…)'`, the derivative by the product rule from primed names.
+    Derivative(Box<Node>),
+    /// `Σ_k A`: the sum over the index from 1 to the number of generators.
+    Total(String, Box<Node>),
+}
+
+/// The products that bind tighter than the geometric product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Tight {
+    /// `A∧B`
+    Wedge,
+    /// `A·B`
+    Dot,
+    /// `A×B = ½(AB − BA)`
+    Commutator,
+    /// `a⨯b = dual(a∧b)`, of vectors of 3-d space
+    Cross,
+    /// `A⌋B`
+    LeftContraction,
+    /// `A⌊B`
+    RightContraction,
+}
+
+impl Tight {
+    /// Every one.
+    pub const ALL: [Tight; 6] = [
+        Tight::Wedge,
+        Tight::Dot,
+        Tight::Commutator,
+        Tight::Cross,
+        Tight::LeftContraction,
+        Tight::RightContraction,
+    ];
+
+    /// The sign on paper.
+    pub fn symbol(self) -> char {
+        match self {
+            Tight::Wedge => '∧',
+            Tight::Dot => '·',
+            Tight::Commutator => '×',
+            Tight::Cross => '⨯',
+            Tight::LeftContraction => '⌋',
+            Tight::RightContraction => '⌊',
+        }
+    }
+
+    /// The function of this name that it is, too: the one way to write it in ASCII but for `^` and `|`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Tight::Wedge => "wedge",
+            Tight::Dot => "dot",
+            Tight::Commutator => "commutator",
+            Tight::Cross => "cross",
+            Tight::LeftContraction => "left_contraction",
+            Tight::RightContraction => "right_contraction",
+        }
+    }
+}
+
+/// The functions of one argument that have a name of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Named {
+    /// `exp`, `log`, `sqrt`, `inverse`.
+    Function(Function),
+    /// `norm(A) = √⟨A ~A⟩`
+    Norm,
+    /// `dual(A) = A I⁻¹`
+    Dual,
+    /// `undual(A) = A I`
+    Undual,
+    /// `reverse(A)`, which is written `~A` again.
+    Reverse,
+    /// `sin` of a scalar.
+    Sin,
+    /// `cos` of a scalar.
+    Cos,
+    /// `tan` of a scalar.
+    Tan,
+}
+
+impl Named {
+    /// Every one.
+    pub const ALL: [Named; 11] = [
+        Named::Function(Function::Exp),
+        Named::Function(Function::Log),
+        Named::Function(Function::Sqrt),
+        Named::Function(Function::Inverse),
+        Named::Norm,
+        Named::Dual,
+        Named::Undual,
+        Named::Reverse,
+        Named::Sin,
+        Named::Cos,
+        Named::Tan,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Named::Function(f) => f.name(),
+            Named::Norm => "norm",
+            Named::Dual => "dual",
+            Named::Undual => "undual",
+            Named::Reverse => "reverse",
+            Named::Sin => "sin",
+            Named::Cos => "cos",
+            Named::Tan => "tan",
+        }
+    }
+
+    /// The function of this name.
+    pub fn from_name(name: &str) -> Option<Named> {
+        Named::ALL.into_iter().find(|f| f.name() == name)
+    }
+}
+
+/// Whether it is made of numbers alone.
+pub(crate) fn is_numeric(node: &Node) -> bool {
+    match &node.kind {
+        Kind::Number(_) | Kind::Pi => true,
+        Kind::Sum(_) | Kind::Product(_) | Kind::Quotient(_) | Kind::Power(..) => {
+            node.children().into_iter().all(is_numeric)
+        }
+        _ => false,
+    }
+}

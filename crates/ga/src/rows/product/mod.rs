@@ -1,0 +1,202 @@
+//! Functions of two rows over many rows: any product, and `R X ~R`.
+//!
+//! Each function says what it does to a row, and the same arithmetic as one loop over the lanes of a block
+//! of rows, which compilers vectorise.
+
+use crate::g3::rotor::Rotor;
+use crate::g3::values::{Vector, geometric};
+use crate::product::{Engine, Grades, Plan, Term};
+use crate::simd::threads::Threads;
+use crate::simd::traverse::{beyond_caches, sweep};
+use crate::simd::{ByRow, Kernel, LANES, Lane, Path};
+pub use crate::simd::{Element, multiply_adds};
+
+impl ByRow for Plan {
+    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for term in &self.terms {
+            out[term.out] += f64::from(term.sign) * a[term.a] * b[term.b];
+        }
+    }
+}
+
+impl<const W: usize> Kernel<W> for Plan {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        out.fill(Lane::filled(0.0));
+        // The terms come in order of `out`; up to eight of a lane are added at a time, in registers.
+        for terms in self.terms.chunk_by(|s, t| s.out == t.out).flat_map(|terms| terms.chunks(8)) {
+            let lane = &mut out[terms[0].out];
+            match terms.len() {
+                1 => add::<1, W>(terms, a, b, lane),
+                2 => add::<2, W>(terms, a, b, lane),
+                3 => add::<3, W>(terms, a, b, lane),
+                4 => add::<4, W>(terms, a, b, lane),
+                5 => add::<5, W>(terms, a, b, lane),
+                6 => add::<6, W>(terms, a, b, lane),
+                7 => add::<7, W>(terms, a, b, lane),
+                _ => add::<8, W>(terms, a, b, lane),
+            }
+        }
+    }
+}
+
+/// Adds `N` terms to a lane of the product.
+#[inline(always)]
+fn add<const N: usize, const W: usize>(terms: &[Term], a: &[Lane<W>], b: &[Lane<W>], out: &mut Lane<W>) {
+    let signs: [f64; N] = std::array::from_fn(|t| f64::from(terms[t].sign));
+    let xs: [&Lane<W>; N] = std::array::from_fn(|t| &a[terms[t].a]);
+    let ys: [&Lane<W>; N] = std::array::from_fn(|t| &b[terms[t].b]);
+    // A copy, which the compiler knows to be apart from the factors.
+    let mut sums = out.0;
+    for l in 0..W {
+        for t in 0..N {
+            sums[l] += signs[t] * xs[t].0[l] * ys[t].0[l];
+        }
+    }
+    out.0 = sums;
+}
+
+/// The geometric product of all grades in 3-d space, written out.
+pub(crate) struct Geometric<'a>(pub &'a Plan);
+
+impl ByRow for Geometric<'_> {
+    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        self.0.row(a, b, out);
+    }
+}
+
+impl<const W: usize> Kernel<W> for Geometric<'_> {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        let (a, b, out) = (&a[..8], &b[..8], &mut out[..8]);
+        for l in 0..W {
+            let row = |lanes: &[Lane<W>]| std::array::from_fn(|k| lanes[k].0[l]);
+            let product = geometric(row(a), row(b));
+            for k in 0..8 {
+                // A sum that begins with 0, as in the plan, is never −0.
+                out[k].0[l] = product[k] + 0.0;
+            }
+        }
+    }
+}
+
+/// `R X ~R` for X that holds some grades: vector and bivector turn as three numbers each, scalar and
+/// trivector stay.
+pub(crate) struct Turn(pub Grades);
+
+impl Turn {
+    /// Where each part begins, and how many numbers it has.
+    fn parts(&self) -> impl Iterator<Item = (usize, usize)> {
+        let present = (0..4).filter(|&k| self.0.contains(k));
+        present.map(|k| if k % 3 == 0 { 1 } else { 3 }).scan(0, |next, width| {
+            *next += width;
+            Some((*next - width, width))
+        })
+    }
+}
+
+impl ByRow for Turn {
+    const FAST_ROWS: bool = true;
+
+    fn row(&self, rotor: &[f64], value: &[f64], out: &mut [f64]) {
+        let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotor[k]));
+        for (at, width) in self.parts() {
+            if width == 1 {
+                out[at] = value[at];
+            } else {
+                let turned = rotor.apply(Vector([value[at], value[at + 1], value[at + 2]]));
+                out[at..at + 3].copy_from_slice(&turned.0);
+            }
+        }
+    }
+}
+
+impl<const W: usize> Kernel<W> for Turn {
+    #[inline(always)]
+    fn block(&self, rotors: &[Lane<W>], values: &[Lane<W>], out: &mut [Lane<W>]) {
+        let rotors = &rotors[..4];
+        for (at, width) in self.parts() {
+            if width == 1 {
+                out[at] = values[at];
+                continue;
+            }
+            let (values, out) = (&values[at..at + 3], &mut out[at..at + 3]);
+            for l in 0..W {
+                let rotor = Rotor::from_unit_components(std::array::from_fn(|k| rotors[k].0[l]));
+                let turned = rotor.apply(Vector([values[0].0[l], values[1].0[l], values[2].0[l]]));
+                for k in 0..3 {
+                    out[k].0[l] = turned.0[k];
+                }
+            }
+        }
+    }
+}
+
+impl Plan {
+    /// Multiplies row by row into `out`. A factor of a single row meets every row of the other.
+    ///
+    /// # Panics
+    /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
+    pub fn run<T: Element>(&self, a: &[T], b: &[T], out: &mut [T]) {
+        self.run_threads(Threads::ONE, a, b, out);
+    }
+
+    /// [`Plan::run`] by several threads, where there are enough rows for it to pay.
+    ///
+    /// # Panics
+    /// As [`Plan::run`].
+    pub fn run_threads<T: Element>(&self, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
+        self.run_on(Path::best(), threads, a, b, out);
+    }
+
+    fn run_on<T: Element>(&self, path: Path, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
+        let (na, nb, nout) = self.sizes;
+        let large = beyond_caches(a, b, out);
+        let (a, b, out) = ((a, na), (b, nb), (out, nout));
+        match &self.engine {
+            Engine::Terms => sweep::<_, LANES, _>(path, threads, self, a, b, out),
+            // Small blocks mix reading and writing memory with the arithmetic more finely.
+            Engine::Geometric if large => sweep::<_, 32, _>(path, threads, &Geometric(self), a, b, out),
+            Engine::Geometric => sweep::<_, 64, _>(path, threads, &Geometric(self), a, b, out),
+            // Blocks of more rows leave the first-level cache; of few rows, one of eight is enough.
+            Engine::Tiles(tiles) if out.0.len() > 8 * nout => {
+                sweep::<_, 16, _>(path, threads, tiles, a, b, out)
+            }
+            Engine::Tiles(tiles) => sweep::<_, 8, _>(path, threads, tiles, a, b, out),
+        }
+    }
+}
+
+/// `R X ~R` for rows of rotor components and rows of values that hold `grades`. Scalar and trivector
+/// stay; vector and bivector each turn as three numbers. One row of either meets every row of the other.
+///
+/// # Panics
+/// If there are no grades, or the numbers of rows do not fit together.
+pub fn turn<T: Element>(rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
+    turn_threads(Threads::ONE, rotors, values, grades, out);
+}
+
+/// [`turn`] by several threads, where there are enough rows for it to pay.
+///
+/// # Panics
+/// As [`turn`].
+pub fn turn_threads<T: Element>(threads: Threads, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
+    turn_on(Path::best(), threads, rotors, values, grades, out);
+}
+
+fn turn_on<T: Element>(
+    path: Path,
+    threads: Threads,
+    rotors: &[T],
+    values: &[T],
+    grades: Grades,
+    out: &mut [T],
+) {
+    let turn = Turn(grades);
+    let size = turn.parts().map(|(_, width)| width).sum();
+    sweep::<_, LANES, _>(path, threads, &turn, (rotors, 4), (values, size), (out, size));
+}
+
+#[cfg(test)]
+mod tests;

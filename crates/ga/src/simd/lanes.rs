@@ -1,0 +1,326 @@
+//! Some numbers worked on together, one in each lane: the arithmetic of many bodies side by side.
+//!
+//! All is plain loops over lanes, which the compiler turns into the widest instructions where it may: inside
+//! [`fastest`]. `FUSED` says whether a product and a sum are one instruction, rounded once; then results differ from
+//! those of one lane alone, which is not fused, by roundings. What is in one lane never depends on the others.
+//!
+//! Closures do not inherit the instructions of the function around them, so that arithmetic is written in loops.
+
+use super::Path;
+use super::double;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// `W` numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lanes<const W: usize, const FUSED: bool>(pub [f64; W]);
+
+/// One number, as of a single body.
+pub type One = Lanes<1, false>;
+
+/// Work that is compiled for each set of instructions and done by the best one that this machine has.
+pub trait Work {
+    /// What it gives.
+    type Output;
+
+    /// Does it. `#[inline(always)]`, as is all arithmetic that it calls; `FUSED` for [`Lanes`].
+    fn run<const FUSED: bool>(self) -> Self::Output;
+}
+
+/// Does the work by the widest instructions of this machine.
+pub fn fastest<T: Work>(work: T) -> T::Output {
+    Path::best().run(work)
+}
+
+impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
+    /// 0 in each.
+    pub const ZERO: Self = Lanes([0.0; W]);
+
+    /// The same number in each.
+    #[inline(always)]
+    pub fn all(x: f64) -> Self {
+        Lanes([x; W])
+    }
+
+    /// `self · b + c`.
+    #[inline(always)]
+    pub fn times_plus(self, b: Self, c: Self) -> Self {
+        let mut result = c;
+        for l in 0..W {
+            result.0[l] = if FUSED { self.0[l].mul_add(b.0[l], c.0[l]) } else { self.0[l] * b.0[l] + c.0[l] };
+        }
+        result
+    }
+
+    /// `c − self · b`.
+    #[inline(always)]
+    pub fn times_from(self, b: Self, c: Self) -> Self {
+        let mut result = c;
+        for l in 0..W {
+            result.0[l] =
+                if FUSED { (-self.0[l]).mul_add(b.0[l], c.0[l]) } else { c.0[l] - self.0[l] * b.0[l] };
+        }
+        result
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        let mut result = self;
+        for x in &mut result.0 {
+            *x = x.sqrt();
+        }
+        result
+    }
+
+    /// Magnitudes.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        let mut result = self;
+        for x in &mut result.0 {
+            *x = x.abs();
+        }
+        result
+    }
+
+    /// The angle in [0, π/2] whose tangent is `self/|s|`, for `self >= 0` and not both 0: to some roundings of it, however
+    /// small.
+    #[inline(always)]
+    pub fn angle(self, s: Self) -> Self {
+        let mut result = self;
+        for l in 0..W {
+            result.0[l] = double::angle(self.0[l], s.0[l]);
+        }
+        result
+    }
+
+    /// The larger of two; a NaN of `self` is lost.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        let mut result = other;
+        for l in 0..W {
+            result.0[l] = if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] };
+        }
+        result
+    }
+
+    /// `self` where the mask says so, else `other`.
+    #[inline(always)]
+    pub fn or(self, mask: &[bool; W], other: Self) -> Self {
+        let mut result = other;
+        for l in 0..W {
+            result.0[l] = if mask[l] { self.0[l] } else { other.0[l] };
+        }
+        result
+    }
+}
+
+impl One {
+    /// Some numbers, each a lane of its own.
+    #[inline(always)]
+    pub fn each<const N: usize>(numbers: [f64; N]) -> [One; N] {
+        numbers.map(|x| Lanes([x]))
+    }
+
+    /// The inverse of [`One::each`].
+    #[inline(always)]
+    pub fn alone<const N: usize>(lanes: [One; N]) -> [f64; N] {
+        lanes.map(|Lanes([x])| x)
+    }
+}
+
+macro_rules! lane_by_lane {
+    ($($trait:ident $method:ident $sign:tt),*) => { $(
+        impl<const W: usize, const FUSED: bool> $trait for Lanes<W, FUSED> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let mut result = self;
+                for l in 0..W {
+                    result.0[l] = self.0[l] $sign other.0[l];
+                }
+                result
+            }
+        }
+    )* };
+}
+
+lane_by_lane!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl<const W: usize, const FUSED: bool> AddAssign for Lanes<W, FUSED> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const W: usize, const FUSED: bool> Neg for Lanes<W, FUSED> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        let mut result = self;
+        for x in &mut result.0 {
+            *x = -*x;
+        }
+        result
+    }
+}
+
+/// The dot product of two vectors, or of two axial ones.
+#[inline(always)]
+pub fn dot<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3], b: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
+    a[2].times_plus(b[2], a[1].times_plus(b[1], a[0] * b[0]))
+}
+
+/// The cross product: `a∧b` by its components.
+#[inline(always)]
+pub fn cross<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3], b: &[Lanes<W, F>; 3]) -> [Lanes<W, F>; 3] {
+    [
+        a[2].times_from(b[1], a[1] * b[2]),
+        a[0].times_from(b[2], a[2] * b[0]),
+        a[1].times_from(b[0], a[0] * b[1]),
+    ]
+}
+
+/// `S R` of even elements by their components `(1, e2e3, e3e1, e1e2)`.
+#[inline(always)]
+pub fn composed<const W: usize, const F: bool>(
+    s: &[Lanes<W, F>; 4],
+    r: &[Lanes<W, F>; 4],
+) -> [Lanes<W, F>; 4] {
+    // The planes are the negatives of the quaternion units: `B1 B2 = −B3`.
+    [
+        s[3].times_from(r[3], s[2].times_from(r[2], s[1].times_from(r[1], s[0] * r[0]))),
+        s[3].times_plus(r[2], s[2].times_from(r[3], s[1].times_plus(r[0], s[0] * r[1]))),
+        s[1].times_plus(r[3], s[3].times_from(r[1], s[2].times_plus(r[0], s[0] * r[2]))),
+        s[2].times_plus(r[1], s[1].times_from(r[2], s[3].times_plus(r[0], s[0] * r[3]))),
+    ]
+}
+
+/// The matrix of a rotor, `(R e_j ~R)·e_i` in row i and column j; of any even element times its squared norm.
+#[inline(always)]
+pub fn matrix<const W: usize, const F: bool>(r: &[Lanes<W, F>; 4]) -> [[Lanes<W, F>; 3]; 3] {
+    let [s, x, y, z] = *r;
+    let two = Lanes::all(2.0);
+    // With `B = (x, y, z)`: `(s² − B²) v + 2 (B·v) B − 2 s (B × v)` for the axial vector B.
+    let (s2, x2, y2, z2) = (s * s, x * x, y * y, z * z);
+    let (xy, yz, zx) = (x * y, y * z, z * x);
+    [
+        [(s2 + x2) - (y2 + z2), two * s.times_plus(z, xy), two * s.times_from(y, zx)],
+        [two * s.times_from(z, xy), (s2 + y2) - (z2 + x2), two * s.times_plus(x, yz)],
+        [two * s.times_plus(y, zx), two * s.times_from(x, yz), (s2 + z2) - (x2 + y2)],
+    ]
+}
+
+/// A matrix times a vector.
+#[inline(always)]
+pub fn mapped<const W: usize, const F: bool>(
+    m: &[[Lanes<W, F>; 3]; 3],
+    v: &[Lanes<W, F>; 3],
+) -> [Lanes<W, F>; 3] {
+    [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
+}
+
+/// The transpose of a matrix times a vector: what a rotation does backwards.
+#[inline(always)]
+pub fn mapped_back<const W: usize, const F: bool>(
+    m: &[[Lanes<W, F>; 3]; 3],
+    v: &[Lanes<W, F>; 3],
+) -> [Lanes<W, F>; 3] {
+    [
+        dot(&[m[0][0], m[1][0], m[2][0]], v),
+        dot(&[m[0][1], m[1][1], m[2][1]], v),
+        dot(&[m[0][2], m[1][2], m[2][2]], v),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Bivector, Rotor, Vector};
+
+    fn rotors() -> [[f64; 4]; 2] {
+        [[0.5, -0.25, 0.75, 1.0], [-0.3, 0.8, 0.1, -0.6]]
+            .map(|c| Rotor::from_components(c).unwrap().components())
+    }
+
+    /// The work of the tests, by each path: all products of two rotors and two vectors.
+    #[derive(Clone, Copy)]
+    struct Products;
+
+    const VECTORS: [[f64; 3]; 2] = [[0.3, -1.25, 2.0], [1.5, 0.2, -0.7]];
+
+    impl Work for Products {
+        type Output = Vec<[f64; 16]>;
+
+        #[inline(always)]
+        fn run<const FUSED: bool>(self) -> Vec<[f64; 16]> {
+            let [s, r] = rotors().map(|r| r.map(Lanes::<16, FUSED>::all));
+            let [a, b] = VECTORS.map(|v| v.map(Lanes::<16, FUSED>::all));
+            let m = matrix(&s);
+            let mut all = composed(&s, &r).to_vec();
+            all.extend(mapped(&m, &a));
+            all.extend(mapped_back(&m, &a));
+            all.extend(cross(&a, &b));
+            all.push(dot(&a, &b));
+            all.iter().map(|lanes| lanes.0).collect()
+        }
+    }
+
+    /// On every path they are those of the typed values, to a few roundings.
+    #[test]
+    fn products_are_those_of_single_values() {
+        let [s, r] = rotors().map(Rotor::from_unit_components);
+        let [a, b] = VECTORS.map(Vector);
+        let mut expected = (s * r).components().to_vec();
+        expected.extend(s.apply(a).0);
+        expected.extend(s.reverse().apply(a).0);
+        expected.extend(a.wedge(b).0);
+        expected.push(a.dot(b));
+        assert_eq!(s.apply_bivector(Bivector(a.0)).0, s.apply(a).0);
+        for path in Path::available() {
+            for (lanes, x) in path.run(Products).iter().zip(&expected) {
+                assert!(
+                    lanes.iter().all(|y| (y - x).abs() <= 16.0 * f64::EPSILON),
+                    "{path:?}: {x} {lanes:?}"
+                );
+            }
+        }
+    }
+
+    /// On every path within 2 ulps of the library's, from no angle to a quarter turn, and none for NaN.
+    #[test]
+    fn angles_are_those_of_the_library() {
+        #[derive(Clone, Copy)]
+        struct Angles([f64; 16], [f64; 16]);
+
+        impl Work for Angles {
+            type Output = [f64; 16];
+
+            #[inline(always)]
+            fn run<const FUSED: bool>(self) -> [f64; 16] {
+                Lanes::<16, FUSED>(self.0).angle(Lanes(self.1)).0
+            }
+        }
+
+        let mut sizes: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
+        sizes.extend([1e-300, 1e-160, 1e-20, 1e-9, 1e-4, 1e3, 1e20, f64::NAN]);
+        for scalar in [1.0, -1.0, 0.3, -1e-3, 1e-12] {
+            for sizes in sizes.chunks(16) {
+                let mut lanes = [1.0; 16];
+                lanes[..sizes.len()].copy_from_slice(sizes);
+                for path in Path::available() {
+                    for (angle, size) in path.run(Angles(lanes, [scalar; 16])).iter().zip(lanes) {
+                        let exact = size.atan2(f64::abs(scalar));
+                        let near = (angle - exact).abs() <= 2.0 * f64::EPSILON * exact;
+                        assert!(
+                            near || angle.is_nan() && size.is_nan(),
+                            "{path:?}: {size}, {scalar}: {angle}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,393 @@
+//! Lanes: rows of numbers turned so that each component is contiguous, and the widest instructions of
+//! the machine to work on them.
+//!
+//! The arithmetic of a `Kernel` is plain loops over lanes, compiled once for each `Path`. None fuses
+//! a product with a sum unless a kernel asks for it (see `Kernel::fused_block`), so all give the same
+//! numbers bit for bit, on any machine; only that of large algebras asks where it changes the result: the
+//! portable path rounds once more at each term. Only the turning of rows into lanes and back is written by
+//! hand, because compilers do it badly.
+//!
+//! This module holds all the unsafe code of the crate.
+#![allow(unsafe_code)]
+
+pub mod double;
+pub mod lanes;
+pub(crate) mod map;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+pub(crate) mod payne_hanek;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod squares;
+pub mod threads;
+pub(crate) mod traverse;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use lanes::Work;
+use map::BUILT_WITH_FMA;
+use std::ops::Range;
+
+#[cfg(target_arch = "aarch64")]
+use neon::Registers;
+#[cfg(target_arch = "x86_64")]
+use x86::Registers;
+
+/// No registers by hand.
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+pub trait Registers {}
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+impl Registers for f32 {}
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+impl Registers for f64 {}
+
+/// Rows in a block: three operands of eight lanes stay in the first-level cache.
+pub(crate) const LANES: usize = 64;
+
+/// One component of a block of `W` rows, a multiple of eight.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Lane<const W: usize = LANES>(pub [f64; W]);
+
+impl<const W: usize> Lane<W> {
+    /// The same number in every row.
+    pub const fn filled(x: f64) -> Lane<W> {
+        const { assert!(W.is_multiple_of(8), "lanes are whole registers") };
+        Lane([x; W])
+    }
+
+    /// Room for as many numbers as the lanes hold.
+    pub fn flat<T: Element>(lanes: &mut [Lane<W>]) -> &mut [T] {
+        let count = lanes.len() * W;
+        // SAFETY: a lane is an array of `W` numbers and nothing else; a `T` is no larger, and any bits
+        // are one.
+        unsafe { std::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), count) }
+    }
+}
+
+/// What rows are made of: `f64`, or `f32`, which is widened as it is read and rounded as it is written.
+/// The arithmetic between is that of `f64`.
+pub trait Element: Copy + Send + Sync + Into<f64> + Registers {
+    /// The nearest of its numbers.
+    fn nearest(x: f64) -> Self;
+}
+
+impl Element for f64 {
+    fn nearest(x: f64) -> f64 {
+        x
+    }
+}
+
+impl Element for f32 {
+    fn nearest(x: f64) -> f32 {
+        x as f32
+    }
+}
+
+/// A function of two rows, one by one: the numbers that it gives as a `Kernel`.
+pub(crate) trait ByRow: Sync {
+    /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
+    const FAST_ROWS: bool = false;
+
+    /// Below so many rows, turning them into lanes does not pay.
+    const FEW: usize = 8;
+
+    /// One row. `out` may hold anything before.
+    fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]);
+}
+
+/// A function of two rows over lanes.
+pub(crate) trait Kernel<const W: usize = LANES>: Sync {
+    /// A block of rows. Implementations are `#[inline(always)]` down to the arithmetic, so that each path
+    /// compiles them for its own instructions.
+    fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]);
+
+    /// The same where `mul_add` is one instruction; elsewhere it is a call, a hundred times slower. For sums
+    /// of many terms, and for kernels that find by it what they find otherwise in more steps: the rounding
+    /// errors of products.
+    #[cfg_attr(target_family = "wasm", allow(dead_code))] // which has no such instruction
+    #[inline(always)]
+    fn fused_block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        self.block(a, b, out);
+    }
+}
+
+/// `N` independent chains of products and sums, as fast as the machine can.
+struct Chains<const N: usize>;
+
+impl<const N: usize> Chains<N> {
+    const LENGTH: usize = 1000;
+
+    #[inline(always)]
+    fn run(start: f64, multiply_add: impl Fn(f64) -> f64) -> f64 {
+        let mut chains: [f64; N] = std::array::from_fn(|i| start + i as f64);
+        for _ in 0..Self::LENGTH {
+            for x in &mut chains {
+                *x = multiply_add(*x);
+            }
+        }
+        chains.iter().sum()
+    }
+}
+
+impl<const N: usize> Kernel<8> for Chains<N> {
+    #[inline(always)]
+    fn block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
+        let (x, y) = (a[0].0[0], b[0].0[0]);
+        out[0].0[0] = Self::run(x, |z| z * x + y);
+    }
+
+    #[inline(always)]
+    fn fused_block(&self, a: &[Lane<8>], b: &[Lane<8>], out: &mut [Lane<8>]) {
+        let (x, y) = (a[0].0[0], b[0].0[0]);
+        out[0].0[0] = Self::run(x, |z| z.mul_add(x, y));
+    }
+}
+
+/// For measuring what a machine can do at most: does independent multiply-adds in registers, and says how
+/// many. Few enough chains fit the registers of AVX2, many enough hide the latency of AVX-512.
+#[doc(hidden)]
+pub fn multiply_adds(many: bool) -> usize {
+    fn run<const N: usize>() -> usize {
+        let (a, mut out) = (std::hint::black_box([Lane::filled(0.999)]), [Lane::filled(0.0)]);
+        Path::best().apply(&Chains::<N>, &a, &a, &mut out);
+        std::hint::black_box(out);
+        N * Chains::<N>::LENGTH
+    }
+    if many { run::<96>() } else { run::<48>() }
+}
+
+/// A set of instructions that this machine has. There is no other way to make one than to detect it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Path(Level);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Level {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+    #[cfg(target_arch = "aarch64")]
+    Neon,
+}
+
+impl Path {
+    /// The paths this machine can take, the widest last.
+    pub fn available() -> impl DoubleEndedIterator<Item = Path> {
+        [
+            Some(Level::Portable),
+            #[cfg(target_arch = "x86_64")]
+            (std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma"))
+                .then_some(Level::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            (std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("fma"))
+                .then_some(Level::Avx512),
+            #[cfg(target_arch = "aarch64")]
+            std::arch::is_aarch64_feature_detected!("neon").then_some(Level::Neon),
+        ]
+        .into_iter()
+        .flatten()
+        .map(Path)
+    }
+
+    /// The widest instructions of this machine.
+    pub fn best() -> Path {
+        Path::available().next_back().unwrap_or(Path(Level::Portable))
+    }
+
+    /// Whether rows are turned into lanes by hand.
+    pub fn is_portable(self) -> bool {
+        self.0 == Level::Portable
+    }
+
+    /// Whether it can write past the caches.
+    pub fn streams(self) -> bool {
+        match self.0 {
+            Level::Portable => false,
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 | Level::Avx512 => true,
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => false,
+        }
+    }
+
+    /// Applies a kernel to a block.
+    pub fn apply<const W: usize, K: Kernel<W>>(
+        self,
+        kernel: &K,
+        a: &[Lane<W>],
+        b: &[Lane<W>],
+        out: &mut [Lane<W>],
+    ) {
+        match self.0 {
+            Level::Portable => kernel.block(a, b, out),
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::apply_avx2(kernel, a, b, out) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::apply_avx512(kernel, a, b, out) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::apply_neon(kernel, a, b, out) },
+        }
+    }
+
+    /// Does work that is compiled for this path.
+    pub fn run<T: Work>(self, work: T) -> T::Output {
+        match self.0 {
+            Level::Portable => work.run::<BUILT_WITH_FMA>(),
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::run_avx2(work) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::run_avx512(work) },
+            // SAFETY: the instructions were detected.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::run_neon(work) },
+        }
+    }
+
+    /// Turns at most `W` rows of `lanes.len()` numbers into lanes. Places beyond the rows keep what
+    /// they held.
+    pub fn gather<T: Element, const W: usize>(self, rows: &[T], lanes: &mut [Lane<W>]) {
+        assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
+        let done = match self.0 {
+            Level::Portable => 0,
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::gather_avx2(rows, lanes) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::gather_avx512(rows, lanes) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::gather_neon(rows, lanes) },
+        };
+        let size = lanes.len();
+        for (row, values) in rows[done * size..].chunks_exact(size).enumerate() {
+            for (lane, &x) in lanes.iter_mut().zip(values) {
+                lane.0[done + row] = x.into();
+            }
+        }
+    }
+
+    /// Asks for some cache lines, counted from an address on: a hint, wherever it leads.
+    #[inline(always)]
+    pub fn prefetch<T>(self, from: *const T, lines: Range<usize>) {
+        #[cfg(target_arch = "x86_64")]
+        lines.for_each(|line| x86::prefetch(from.wrapping_byte_add(64 * line)));
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = (from, lines);
+    }
+
+    /// Turns lanes into rows: the inverse of [`Path::gather`].
+    pub fn scatter<T: Element, const W: usize>(self, lanes: &[Lane<W>], rows: &mut [T]) {
+        assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
+        let done = match self.0 {
+            Level::Portable => 0,
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::scatter_avx2(lanes, rows) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::scatter_avx512(lanes, rows) },
+            // SAFETY: the instructions were detected, and the numbers fit the lanes.
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => unsafe { neon::scatter_neon(lanes, rows) },
+        };
+        let size = lanes.len();
+        for (row, values) in rows[done * size..].chunks_exact_mut(size).enumerate() {
+            for (x, lane) in values.iter_mut().zip(lanes) {
+                *x = T::nearest(lane.0[done + row]);
+            }
+        }
+    }
+
+    /// Copies whole cache lines past the caches, where the path can: faster for what would be driven out
+    /// of them before it is read. [`Path::fence`] completes it.
+    pub fn stream<T: Element>(self, from: &[T], to: &mut [T]) {
+        assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
+        match self.0 {
+            Level::Portable => to.copy_from_slice(from),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon => to.copy_from_slice(from),
+            // SAFETY: the instructions were detected; lengths and alignment are as they must be.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => unsafe { x86::stream_avx2(from, to) },
+            // SAFETY: the instructions were detected; lengths and alignment are as they must be.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => unsafe { x86::stream_avx512(from, to) },
+        }
+    }
+
+    /// Completes what was streamed, before anything that follows.
+    pub fn fence(self) {
+        #[cfg(target_arch = "x86_64")]
+        x86::fence();
+    }
+}
+
+/// Numbers in a cache line.
+pub(crate) const fn in_line<T>() -> usize {
+    64 / size_of::<T>()
+}
+
+/// How many numbers stand before the next cache line begins.
+pub(crate) fn to_next_line<T>(numbers: &[T]) -> usize {
+    (numbers.as_ptr().addr() / size_of::<T>()).wrapping_neg() % in_line::<T>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn round_trip<T: Element + PartialEq + std::fmt::Debug, const W: usize>() {
+        for path in Path::available() {
+            for size in (1..=20).chain([32, 64]) {
+                for rows in (0..20).chain([31, 32, 33, 56, 57, 63, 64]).filter(|&rows| rows <= W) {
+                    let numbers: Vec<T> = (0..rows * size).map(|i| T::nearest(i as f64)).collect();
+                    let mut lanes = vec![Lane::<W>::filled(-1.0); size];
+                    path.gather(&numbers, &mut lanes);
+                    for (k, lane) in lanes.iter().enumerate() {
+                        for (row, &x) in lane.0.iter().enumerate() {
+                            let expected = if row < rows { (row * size + k) as f64 } else { -1.0 };
+                            assert_eq!(x, expected, "{path:?}, {rows} rows of {size}");
+                        }
+                    }
+                    let mut back = vec![T::nearest(f64::NAN); rows * size];
+                    path.scatter(&lanes, &mut back);
+                    assert_eq!(back, numbers, "{path:?}, {rows} rows of {size}");
+                }
+            }
+        }
+    }
+
+    /// Numbers of rows around the widths of the registers, and every number of components.
+    #[test]
+    fn lanes_hold_the_rows_and_give_them_back() {
+        round_trip::<f64, 64>();
+        round_trip::<f32, 64>();
+        round_trip::<f64, 8>();
+        round_trip::<f32, 32>();
+    }
+
+    fn streamed<T: Element + PartialEq + std::fmt::Debug>() {
+        let numbers: Vec<T> = (0..100).map(|i| T::nearest(f64::from(i))).collect();
+        for path in Path::available() {
+            let mut to = vec![T::nearest(0.0); 100];
+            let first = to_next_line(&to);
+            path.stream(&numbers[1..81], &mut to[first..first + 80]);
+            path.fence();
+            assert_eq!(to[first..first + 80], numbers[1..81]);
+            assert!(to[..first].iter().chain(&to[first + 80..]).all(|&x| x.into() == 0.0));
+        }
+    }
+
+    #[test]
+    fn streams_copy() {
+        streamed::<f64>();
+        streamed::<f32>();
+    }
+}

@@ -1,0 +1,7 @@
+//! Multivectors, rotors and their arrays.
+
+pub(crate) mod multivector;
+pub(crate) mod operators;
+pub(crate) mod rows;
+pub(crate) mod signature;
+pub(crate) mod value;

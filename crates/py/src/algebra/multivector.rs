@@ -1,0 +1,344 @@
+//! The type of all values in Python: the methods of its native half.
+
+use super::operators::{equal, function, infix, infix_right, named, sum, turned};
+use super::signature::{Algebra, g3};
+use super::value::{Held, Multivector, Object, Rotor, held, number, one, row, unit_rotor, wrap};
+use numpy::PyArray1;
+use polhode_ga::g3::functions::Function;
+use polhode_ga::product::{Grades, Product};
+use polhode_ga::{Graded, Multivector as FullMultivector};
+use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyInt, PyType};
+
+#[pymethods]
+impl Multivector {
+    #[new]
+    #[classmethod]
+    #[pyo3(signature = (*_values, **_named))]
+    fn new(
+        cls: &Bound<'_, PyType>,
+        _values: &Bound<'_, PyAny>,
+        _named: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Multivector> {
+        Err(not_made_directly(cls))
+    }
+
+    /// Wraps an array (…, K) that nobody else writes to; K components of these grades, as bits.
+    #[staticmethod]
+    #[pyo3(signature = (data, grades, algebra=None))]
+    fn _of<'py>(
+        py: Python<'py>,
+        data: Bound<'py, PyAny>,
+        grades: u16,
+        algebra: Option<Py<Algebra>>,
+    ) -> Object<'py> {
+        wrap(py, held(py, data, Grades(grades), algebra)?, false)
+    }
+
+    /// The components of the grades present: of a single value a new array.
+    #[getter]
+    fn _data<'py>(&self, py: Python<'py>) -> Object<'py> {
+        match &self.held {
+            Held::One(graded) => Ok(PyArray1::from_slice(py, graded.components()).into_any()),
+            Held::Many { data, .. } => Ok(data.bind(py).clone()),
+        }
+    }
+
+    /// The grades it may hold, as bits.
+    #[getter]
+    fn _mask(&self) -> u16 {
+        match &self.held {
+            Held::One(graded) => graded.grades().0,
+            Held::Many { grades, .. } => grades.0,
+        }
+    }
+
+    /// A single value of 3-d space from a list or tuple of as many floats, or integers that floats hold, as the
+    /// grades have components; None of anything else.
+    #[staticmethod]
+    fn _of_numbers<'py>(py: Python<'py>, numbers: &Bound<'py, PyAny>, grades: u16) -> Object<'py> {
+        match row(numbers).and_then(|(row, count)| Graded::new(&row[..count], Grades(grades))) {
+            Some(value) => one(py, value),
+            None => Ok(py.None().into_bound(py)),
+        }
+    }
+
+    /// The norm of a single value.
+    fn _norm_of_one(&self) -> f64 {
+        self.single().map_or(f64::NAN, |value| FullMultivector(value.full()).norm())
+    }
+
+    /// Whether it is a single value of 3-d space over float64, held inline.
+    #[getter]
+    fn _is_one(&self) -> bool {
+        self.single().is_some()
+    }
+
+    /// The algebra it belongs to.
+    #[getter]
+    fn algebra(&self, py: Python<'_>) -> PyResult<Py<Algebra>> {
+        match &self.held {
+            Held::One(_) => Ok(g3(py)?.clone_ref(py)),
+            Held::Many { algebra, .. } => Ok(algebra.clone_ref(py)),
+        }
+    }
+
+    fn __mul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        infix(slf, Product::Geometric, other)
+    }
+
+    fn __rmul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        infix_right(slf, Product::Geometric, other)
+    }
+
+    /// ``A^B``, the wedge; but Python binds ``^`` looser than ``+`` and ``*``, on paper it binds tighter.
+    ///
+    /// ``a + b ^ c`` is ``(a + b) ^ c``, and ``I * a ^ b`` is ``(I * a) ^ b``. Put brackets around it, or call
+    /// the method that the operator stands for: ``A.wedge(B)``.
+    #[pyo3(signature = (other, /))]
+    fn _xor<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        infix(slf, Product::Wedge, other)
+    }
+
+    fn __rxor__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        infix_right(slf, Product::Wedge, other)
+    }
+
+    /// ``A|B``, the dot; but Python binds ``|`` looser than ``+``, ``*`` and ``^``, on paper it binds tighter.
+    ///
+    /// ``a + b | c`` is ``(a + b) | c``, and ``a | B * c`` is ``a | (B * c)``. Put brackets around it, or call
+    /// the method that the operator stands for: ``A.dot(B)``.
+    #[pyo3(signature = (other, /))]
+    fn _or<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        infix(slf, Product::Dot, other)
+    }
+
+    fn __ror__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        infix_right(slf, Product::Dot, other)
+    }
+
+    fn __add__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        sum(slf, other, "_add", |x, y| x + y)
+    }
+
+    fn __radd__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        sum(slf, other, "_add", |x, y| y + x)
+    }
+
+    fn __sub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        sum(slf, other, "_subtract", |x, y| x - y)
+    }
+
+    fn __rsub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        sum(slf, other, "_subtract_from", |x, y| y - x)
+    }
+
+    fn __truediv__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        match (slf.get().single(), number(other)) {
+            (Some(a), Some(x)) if x != 0.0 => one(slf.py(), a.map(|y| y / x)),
+            _ => slf.call_method1(intern!(slf.py(), "_divide"), (other,)),
+        }
+    }
+
+    fn __neg__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        match slf.get().single() {
+            Some(a) => wrap(slf.py(), Held::One(a.map(|x| -x)), slf.get().unit),
+            None => slf.call_method0(intern!(slf.py(), "_negated")),
+        }
+    }
+
+    fn __invert__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        Self::reverse(slf)
+    }
+
+    /// ``~A``: reverses the order of all products; grades 2 and 3 change sign (handout eq. 1.28).
+    fn reverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        match slf.get().single() {
+            Some(a) => wrap(slf.py(), Held::One(a.reverse()), slf.get().unit),
+            None => slf.call_method0(intern!(slf.py(), "_reversed")),
+        }
+    }
+
+    /// Return the part of grade k; zero if it holds none.
+    fn grade<'py>(slf: &Bound<'py, Self>, k: &Bound<'py, PyAny>) -> Object<'py> {
+        let whole: Option<u16> = k.cast_exact::<PyInt>().ok().and_then(|k| k.extract().ok());
+        match (slf.get().single(), whole) {
+            (Some(value), Some(k @ 0..=3)) => one(slf.py(), value.with_grades(Grades(1 << k))),
+            _ => slf.call_method1(intern!(slf.py(), "_grade"), (k,)),
+        }
+    }
+
+    /// Exact equality of all components: a bool, or an array of the batch shape.
+    fn __eq__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        match equal(slf, other) {
+            Some(same) => Ok(PyBool::new(slf.py(), same).to_owned().into_any()),
+            None => slf.call_method1(intern!(slf.py(), "_equals"), (other,)),
+        }
+    }
+
+    fn __ne__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
+        match equal(slf, other) {
+            Some(same) => Ok(PyBool::new(slf.py(), !same).to_owned().into_any()),
+            None => slf.call_method1(intern!(slf.py(), "_differs"), (other,)),
+        }
+    }
+
+    /// ``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``).
+    fn inverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Inverse)
+    }
+
+    /// ``exp A``; of a bivector of 3-d space it is a `Rotor`, ``exp(−Bθ/2)`` turning by θ in the plane B.
+    ///
+    /// A value such as ``e1*e2``, whose scalar is exactly 0, counts as a bivector.
+    fn exp<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Exp)
+    }
+
+    /// Return a logarithm: ``exp(log A) = A``.
+    ///
+    /// Even elements (scalar and bivector) have an even one, so that ``log(−1) = π e1∧e2``; others the
+    /// principal one. A ValueError, with the batch index, where A is singular. In other algebras: of
+    /// rotors and motors, times a positive number.
+    fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Log)
+    }
+
+    /// Return a square root; of an even element the half-way one, ``√(−1) = e1∧e2``.
+    fn sqrt<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        function(slf, Function::Sqrt)
+    }
+
+    /// ``A B``, the geometric product by name.
+    ///
+    /// `out` is a writable float array in C order of the shape of the result's components (..., K), which
+    /// they are written to; the result is a view of it. It may not overlap the factors.
+    #[pyo3(signature = (other, *, out=None))]
+    fn geometric_product<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::Geometric, other, out)
+    }
+
+    /// ``A∧B``, the highest grade r + s of the product (handout eq. 1.10). `out` as in `geometric_product`.
+    #[pyo3(signature = (other, *, out=None))]
+    fn wedge<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::Wedge, other, out)
+    }
+
+    /// ``A·B``, the lowest grade abs(r − s) of the product, scalars included: ``3·a = 3a``.
+    #[pyo3(signature = (other, *, out=None))]
+    fn dot<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::Dot, other, out)
+    }
+
+    /// ``A×B = ½(AB − BA)``; not the vector cross product, which is `cross`.
+    #[pyo3(signature = (other, *, out=None))]
+    fn commutator<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::Commutator, other, out)
+    }
+
+    /// ``A⌋B``, grade s − r; zero where r > s.
+    #[pyo3(signature = (other, *, out=None))]
+    fn left_contraction<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::LeftContraction, other, out)
+    }
+
+    /// ``A⌊B``, grade r − s; zero where r < s.
+    #[pyo3(signature = (other, *, out=None))]
+    fn right_contraction<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::RightContraction, other, out)
+    }
+
+    /// ``⟨AB⟩``, grade 0.
+    #[pyo3(signature = (other, *, out=None))]
+    fn scalar_product<'py>(
+        slf: &Bound<'py, Self>,
+        other: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        named(slf, Product::Scalar, other, out)
+    }
+}
+
+#[pymethods]
+impl Rotor {
+    #[new]
+    #[classmethod]
+    #[pyo3(signature = (*_values, **_named))]
+    fn new(
+        cls: &Bound<'_, PyType>,
+        _values: &Bound<'_, PyAny>,
+        _named: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyClassInitializer<Rotor>> {
+        Err(not_made_directly(cls))
+    }
+
+    /// Wraps rows (…, 4) of rotor components, of norm 1, that nobody else writes to.
+    #[staticmethod]
+    fn _from_rows<'py>(py: Python<'py>, data: Bound<'py, PyAny>) -> Object<'py> {
+        wrap(py, held(py, data, Grades::EVEN, None)?, true)
+    }
+
+    /// Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``.
+    fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
+        match slf.as_super().get().single() {
+            Some(value) => {
+                let log = Graded::new(&unit_rotor(value).log().0, Grades::BIVECTOR);
+                one(slf.py(), log.unwrap_or_default())
+            }
+            None => slf.call_method0(intern!(slf.py(), "_log")),
+        }
+    }
+
+    fn __call__<'py>(slf: &Bound<'py, Self>, x: &Bound<'py, PyAny>) -> Object<'py> {
+        turned(slf, x).unwrap_or_else(|| slf.call_method1(intern!(slf.py(), "_turn"), (x,)))
+    }
+
+    /// ``R X ~R``: turns a value of any grade (handout eq. 2.4, 2.6); scalars and trivectors stay.
+    ///
+    /// `out` is a writable float array in C order of the shape of the result's components, which they are
+    /// written to; the result is a view of it. It may not overlap the operands.
+    #[pyo3(signature = (x, *, out=None))]
+    fn apply<'py>(
+        slf: &Bound<'py, Self>,
+        x: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> Object<'py> {
+        let here = if out.is_none() { turned(slf, x) } else { None };
+        here.unwrap_or_else(|| slf.call_method1(intern!(slf.py(), "_turn"), (x, out)))
+    }
+}
+
+fn not_made_directly(cls: &Bound<'_, PyType>) -> PyErr {
+    let name = cls.name().map_or_else(|_| "Multivector".into(), |name| name.to_string());
+    let makers = match &*name {
+        "Rotor" => "Rotor.from_components, Rotor.from_plane_angle, or another of its from_… constructors",
+        _ => "ph.scalar, ph.vector, ph.bivector, ph.trivector or ph.multivector",
+    };
+    PyTypeError::new_err(format!("{name} is not made directly; use {makers}"))
+}

@@ -1,0 +1,155 @@
+//! The algebra of a signature: its basis, its products over arrays.
+
+use crate::support::arrays::bad;
+use polhode_ga::g3::functions::Function;
+use polhode_ga::general::Calculus;
+use polhode_ga::product::{Grades, Plan, Product};
+use polhode_ga::table::{self, Signature};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock};
+
+type Key = (Product, Grades, Grades);
+
+/// The geometric algebra Cl(p, q, r).
+#[pyclass(frozen, subclass, module = "polhode")]
+pub(crate) struct Algebra {
+    pub table: table::Algebra,
+    plans: Mutex<HashMap<Key, Arc<Plan>>>,
+    calculus: OnceLock<Calculus>,
+    single_calculus: OnceLock<Calculus>,
+}
+
+/// A term of a product: components of the left factor, the right factor and the product, and the sign.
+type Term = (usize, usize, usize, i8);
+
+static G3: PyOnceLock<Py<Algebra>> = PyOnceLock::new();
+
+/// The algebra of 3-d space.
+#[pyfunction(name = "g3")]
+pub(crate) fn g3_object(py: Python<'_>) -> PyResult<Py<Algebra>> {
+    Ok(g3(py)?.clone_ref(py))
+}
+
+/// The algebra of 3-d space.
+pub(crate) fn g3(py: Python<'_>) -> PyResult<&Py<Algebra>> {
+    G3.get_or_try_init(py, || Py::new(py, Algebra::new(3, 0, 0)?))
+}
+
+/// An algebra of as many generators as there are.
+pub(crate) fn largest(py: Python<'_>) -> PyResult<&Py<Algebra>> {
+    static LARGEST: PyOnceLock<Py<Algebra>> = PyOnceLock::new();
+    LARGEST.get_or_try_init(py, || Py::new(py, Algebra::new(table::MAX_GENERATORS, 0, 0)?))
+}
+
+impl Algebra {
+    /// The plan of a product, made once.
+    pub fn plan(&self, name: &str, ga: u16, gb: u16) -> PyResult<Arc<Plan>> {
+        let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
+        self.plan_of(product, self.check(ga)?, self.check(gb)?)
+    }
+
+    /// The plan of a product for grades of this algebra, made once.
+    pub fn plan_of(&self, product: Product, ga: Grades, gb: Grades) -> PyResult<Arc<Plan>> {
+        let mut plans = self.plans.lock().map_err(bad)?;
+        let plan = plans
+            .entry((product, ga, gb))
+            .or_insert_with(|| Arc::new(Plan::new(&self.table, product, ga, gb)));
+        Ok(Arc::clone(plan))
+    }
+
+    /// The functions of this algebra, whose tables are made once.
+    pub fn calculus(&self) -> &Calculus {
+        self.calculus.get_or_init(|| Calculus::new(&self.table))
+    }
+
+    /// The same functions, of components that were rounded to float32.
+    pub fn single_calculus(&self) -> &Calculus {
+        self.single_calculus.get_or_init(|| self.calculus().clone().rounded_to(f32::EPSILON.into()))
+    }
+
+    /// Whether it is the algebra of 3-d space.
+    pub fn is_g3(&self) -> bool {
+        self.table.signature() == table::G3.signature()
+    }
+
+    /// A set of grades of this algebra.
+    pub fn check(&self, grades: u16) -> PyResult<Grades> {
+        let n = self.table.signature().generators();
+        if usize::from(grades) >> (n + 1) != 0 {
+            return Err(bad(format!("an algebra of {n} generators has grades 0 to {n}, got {grades:#b}")));
+        }
+        Ok(Grades(grades))
+    }
+}
+
+#[pymethods]
+impl Algebra {
+    #[new]
+    fn new(p: usize, q: usize, r: usize) -> PyResult<Algebra> {
+        let signature = Signature { p, q, r };
+        let n = p.saturating_add(q).saturating_add(r);
+        let table = if n > table::MAX_GENERATORS { None } else { table::Algebra::new(signature) };
+        let Some(table) = table else {
+            return Err(bad(format!(
+                "an algebra has at most {} generators, got {p} + {q} + {r}",
+                table::MAX_GENERATORS
+            )));
+        };
+        Ok(Algebra {
+            table,
+            plans: Mutex::default(),
+            calculus: OnceLock::new(),
+            single_calculus: OnceLock::new(),
+        })
+    }
+
+    /// How many generators square to +1, −1 and 0.
+    #[getter]
+    fn signature(&self) -> (usize, usize, usize) {
+        let Signature { p, q, r } = self.table.signature();
+        (p, q, r)
+    }
+
+    /// The generators of each basis element, as bits, and its sign against their rising order.
+    fn _blades(&self) -> Vec<(u32, i8)> {
+        self.table.blades().iter().map(|b| (b.bits, b.sign)).collect()
+    }
+
+    /// Indices of the components of these grades, as bits, among all.
+    fn _indices(&self, grades: u16) -> PyResult<Vec<usize>> {
+        Ok(self.check(grades)?.indices(&self.table))
+    }
+
+    /// The grades of `inverse`, `exp`, `log` or `sqrt` of values that hold these grades.
+    fn _grades_of_function(&self, name: &str, grades: u16) -> PyResult<u16> {
+        let f = Function::from_name(name).ok_or_else(|| bad(format!("unknown function {name}")))?;
+        let grades = self.check(grades)?;
+        Ok(if self.is_g3() { f.grades(grades).0 } else { self.calculus().grades(f, grades).0 })
+    }
+
+    /// Where each basis element goes by the right complement, and with which sign.
+    fn _right_complement(&self) -> Vec<(usize, f64)> {
+        let size = self.table.blades().len();
+        let image = |i: usize| {
+            let mut element = vec![0.0; size];
+            element[i] = 1.0;
+            let complement = self.calculus().right_complement(&element);
+            complement.into_iter().enumerate().find(|(_, x)| *x != 0.0).unwrap_or((i, 0.0))
+        };
+        (0..size).map(image).collect()
+    }
+
+    /// The grades of a product of values that hold these grades, and its number of components.
+    fn _result(&self, name: &str, a: u16, b: u16) -> PyResult<(u16, usize)> {
+        let plan = self.plan(name, a, b)?;
+        Ok((plan.grades.0, plan.sizes.2))
+    }
+
+    /// The terms of a product of values that hold these grades, and the grades of the product.
+    fn _terms(&self, name: &str, a: u16, b: u16) -> PyResult<(Vec<Term>, u16)> {
+        let plan = self.plan(name, a, b)?;
+        Ok((plan.terms.iter().map(|t| (t.a, t.b, t.out, t.sign)).collect(), plan.grades.0))
+    }
+}

@@ -1,0 +1,169 @@
+//! What a value in Python holds. A single value of 3-d space over float64 lies inline; everything else is an
+//! array, of any coefficients and any algebra.
+
+use super::signature::{Algebra, g3};
+use crate::support::arrays::bad;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArray, PyUntypedArrayMethods};
+use polhode_ga::product::Grades;
+use polhode_ga::{Graded, Rotor as UnitRotor};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
+
+pub(crate) type Object<'py> = PyResult<Bound<'py, PyAny>>;
+
+pub(crate) enum Held {
+    /// A single value of 3-d space over float64.
+    One(Graded),
+    /// Any array `(…, K)` of the components of the grades present.
+    Many { data: Py<PyAny>, grades: Grades, algebra: Py<Algebra> },
+}
+
+/// A multivector, or an array of them; immutable.
+#[pyclass(frozen, subclass, module = "polhode")]
+pub(crate) struct Multivector {
+    pub(crate) held: Held,
+    /// Whether it is a Rotor, of norm 1 by construction.
+    pub(crate) unit: bool,
+}
+
+/// A rotor, or an array of them; immutable.
+#[pyclass(frozen, subclass, extends = Multivector, module = "polhode")]
+pub(crate) struct Rotor;
+
+/// A new Python value.
+pub(crate) fn wrap(py: Python<'_>, held: Held, unit: bool) -> Object<'_> {
+    let value = PyClassInitializer::from(Multivector { held, unit });
+    if unit {
+        Ok(Bound::new(py, value.add_subclass(Rotor))?.into_any())
+    } else {
+        Ok(Bound::new(py, value)?.into_any())
+    }
+}
+
+/// A new single value.
+pub(crate) fn one(py: Python<'_>, value: Graded) -> Object<'_> {
+    wrap(py, Held::One(value), false)
+}
+
+/// A new single rotor.
+pub(crate) fn one_rotor(py: Python<'_>, rotor: UnitRotor) -> Object<'_> {
+    let value = Graded::new(&rotor.components(), Grades::EVEN).ok_or_else(|| bad("a rotor is even"))?;
+    wrap(py, Held::One(value), true)
+}
+
+/// A Python float or int (not a bool) as a number.
+pub(crate) fn number(x: &Bound<'_, PyAny>) -> Option<f64> {
+    match x.cast::<PyFloat>() {
+        Ok(x) => Some(x.value()),
+        Err(_) => x.cast_exact::<PyInt>().ok()?.extract().ok(),
+    }
+}
+
+/// The single value that an operand is, if it is one.
+pub(crate) enum Operand<'a> {
+    Value(&'a Graded, bool),
+    Number(f64),
+    Other,
+}
+
+pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
+    if let Ok(value) = x.cast::<Multivector>() {
+        let value = value.get();
+        return match &value.held {
+            Held::One(graded) => Operand::Value(graded, value.unit),
+            Held::Many { .. } => Operand::Other,
+        };
+    }
+    number(x).map_or(Operand::Other, Operand::Number)
+}
+
+/// The numbers of a short list or tuple, and how many they are.
+pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
+    let mut row = [0.0; 8];
+    let mut count = 0;
+    let mut take = |x: &Bound<'_, PyAny>| {
+        let x = x.cast_exact::<PyFloat>().map(|x| x.value()).ok().or_else(|| {
+            let whole: i64 = x.cast_exact::<PyInt>().ok()?.extract().ok()?;
+            (whole.unsigned_abs() <= 1 << 53).then_some(whole as f64)
+        })?;
+        *row.get_mut(count)? = x;
+        count += 1;
+        Some(())
+    };
+    if let Ok(list) = numbers.cast_exact::<PyList>() {
+        for x in list.iter().take(9) {
+            take(&x)?;
+        }
+    } else {
+        for x in numbers.cast_exact::<PyTuple>().ok()?.iter().take(9) {
+            take(&x)?;
+        }
+    }
+    Some((row, count))
+}
+
+impl Multivector {
+    /// A single value that is held as an array of float64: its row, grades and algebra.
+    pub(crate) fn row<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> Option<(PyReadonlyArray1<'py, f64>, Grades, &Py<Algebra>)> {
+        let Held::Many { data, grades, algebra } = &self.held else { return None };
+        let row = data.bind(py).cast::<PyArray1<f64>>().ok()?.try_readonly().ok()?;
+        Some((row, *grades, algebra))
+    }
+
+    pub(crate) fn single(&self) -> Option<&Graded> {
+        match &self.held {
+            Held::One(graded) => Some(graded),
+            Held::Many { .. } => None,
+        }
+    }
+}
+
+/// The rotor of the four components that a single Rotor has.
+pub(crate) fn unit_rotor(value: &Graded) -> UnitRotor {
+    let &[s, x, y, z] = value.components() else { return UnitRotor::IDENTITY };
+    UnitRotor::from_unit_components([s, x, y, z])
+}
+
+/// A number as a scalar.
+pub(crate) fn scalar(x: f64) -> Graded {
+    Graded::default().map(|_| x)
+}
+
+/// Holds an array: inline if it is one value of 3-d space over float64; in C order and read-only if it is a
+/// NumPy array; any other as it is.
+pub(crate) fn held<'py>(
+    py: Python<'py>,
+    data: Bound<'py, PyAny>,
+    grades: Grades,
+    algebra: Option<Py<Algebra>>,
+) -> PyResult<Held> {
+    let g3 = g3(py)?;
+    let algebra = algebra.unwrap_or_else(|| g3.clone_ref(py));
+    if algebra.is(g3)
+        && let Ok(components) = data.extract::<PyReadonlyArray1<'_, f64>>()
+    {
+        let numbers = components.as_array();
+        let mut row = [0.0; 8];
+        let count = numbers.len().min(8);
+        for (slot, x) in row.iter_mut().zip(numbers) {
+            *slot = *x;
+        }
+        let fits = numbers.len() <= 8;
+        return match Graded::new(&row[..count], grades) {
+            Some(value) if fits => Ok(Held::One(value)),
+            _ => Err(bad(format!("{} components do not fit the grades {:#b}", numbers.len(), grades.0))),
+        };
+    }
+    let mut data = data;
+    if let Ok(array) = data.cast::<PyUntypedArray>() {
+        if !array.is_c_contiguous() {
+            data = data.call_method1(intern!(py, "copy"), ("C",))?;
+        }
+        data.call_method1(intern!(py, "setflags"), (false,))?;
+    }
+    Ok(Held::Many { data: data.unbind(), grades, algebra })
+}

@@ -1,0 +1,142 @@
+//! Calls of a formula on single values. A call with the names and the kinds of values of an earlier one is
+//! known by the addresses of its names, which Python keeps once, so that little is added to the arithmetic.
+//! Linear maps are known by their addresses, too, and their matrices are at hand.
+
+use super::program::Program;
+use crate::algebra::value::{Held, Operand, operand, scalar, wrap};
+use polhode_ga::Graded;
+use polhode_ga::formula::{Given, InputKind, Type};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyType};
+use std::sync::Mutex;
+
+/// So many calls of a formula are kept.
+const KEPT: usize = 8;
+
+/// The calls, the latest first.
+#[derive(Default)]
+pub(crate) struct Calls(Mutex<Vec<Call>>);
+
+/// Names as the caller spells them, what they stood for, and the program for that.
+struct Call {
+    arguments: Vec<(Py<PyAny>, Argument)>,
+    program: Py<Program>,
+    /// Memory for the inputs, and for the values of the steps.
+    inputs: Vec<Given>,
+    values: Vec<Graded>,
+}
+
+/// What a name stands for.
+pub(crate) enum Argument {
+    /// A value or number, and its place among the inputs, if the formula uses it.
+    Value(Type, Option<usize>),
+    /// A linear map of vectors or bivectors, whose inputs are there.
+    Map(Py<PyAny>, u16),
+}
+
+impl Calls {
+    /// The value for single values; `None` if no such call is known.
+    pub fn value<'py>(&self, named: &Bound<'py, PyDict>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let py = named.py();
+        let found = {
+            // Locked only if a finalizer, which Python may run anywhere, calls the formula within a call of it.
+            let Ok(mut calls) = self.0.try_lock() else { return Ok(None) };
+            let place = calls.iter_mut().position(|call| call.takes(named).is_some());
+            place.and_then(|i| {
+                calls[..=i].rotate_right(1);
+                let Call { program, inputs, values, .. } = &mut calls[0];
+                Some(program.get().value(inputs, values)?.map_err(|error| (error, program.clone_ref(py))))
+            })
+        };
+        match found {
+            None => Ok(None),
+            Some(Ok((value, unit))) => wrap(py, Held::One(value), unit).map(Some),
+            Some(Err((error, program))) => Err(program.get().row_error(py, &error, &[])),
+        }
+    }
+
+    /// Keeps a call for the next time.
+    pub fn keep(&self, named: &Bound<'_, PyDict>, program: Py<Program>) -> PyResult<()> {
+        let Program { order, program: steps, .. } = program.get();
+        let mut inputs = vec![Given::Determinant(0.0); order.len()];
+        let mut arguments = Vec::with_capacity(named.len());
+        for (i, (name, value)) in named.iter().enumerate() {
+            let Some(mut argument) = Argument::of(&value)? else { return Ok(()) };
+            for (place, input) in steps.inputs.iter().enumerate().filter(|(place, _)| order[*place] == i) {
+                match &mut argument {
+                    Argument::Value(_, own) => *own = Some(place),
+                    Argument::Map(..) => inputs[place] = of_map(&value, input.kind)?,
+                }
+            }
+            arguments.push((name.unbind(), argument));
+        }
+        let gone = {
+            let Ok(mut calls) = self.0.try_lock() else { return Ok(()) };
+            calls.insert(0, Call { arguments, program, inputs, values: Vec::new() });
+            (calls.len() > KEPT).then(|| calls.pop())
+        };
+        drop(gone);
+        Ok(())
+    }
+}
+
+impl Call {
+    /// Takes the values for inputs, if their names and kinds are those of this call.
+    fn takes(&mut self, named: &Bound<'_, PyDict>) -> Option<()> {
+        if named.len() != self.arguments.len() {
+            return None;
+        }
+        for ((name, value), (known, argument)) in named.iter().zip(&self.arguments) {
+            match (argument, operand(&value)) {
+                _ if !name.is(known) => return None,
+                (Argument::Value(ty, place), Operand::Value(value, unit))
+                    if value.grades() == ty.grades && unit == ty.unit =>
+                {
+                    place.iter().for_each(|&place| self.inputs[place] = Given::Value(*value));
+                }
+                (Argument::Value(Type::SCALAR, place), Operand::Number(x)) => {
+                    place.iter().for_each(|&place| self.inputs[place] = Given::Value(scalar(x)));
+                }
+                (Argument::Map(map, _), Operand::Other) if value.is(map) => {}
+                _ => return None,
+            }
+        }
+        Some(())
+    }
+}
+
+impl Argument {
+    /// A single value of 3-d space over float64, a number, or a single linear map; `None` for anything else.
+    pub fn of(value: &Bound<'_, PyAny>) -> PyResult<Option<Argument>> {
+        let py = value.py();
+        match operand(value) {
+            Operand::Value(value, unit) => {
+                Ok(Some(Argument::Value(Type { grades: value.grades(), unit }, None)))
+            }
+            Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
+            Operand::Other => {
+                static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+                let one = value.is_instance(CLASS.import(py, "polhode._algebra.linear_map", "LinearMap")?)?
+                    && value.getattr(intern!(py, "shape"))?.is_empty()?;
+                let grade = || value.getattr(intern!(py, "grade"))?.extract();
+                Ok(if one { Some(Argument::Map(value.clone().unbind(), grade()?)) } else { None })
+            }
+        }
+    }
+}
+
+/// The matrix or the determinant of a single linear map.
+pub(crate) fn of_map(map: &Bound<'_, PyAny>, kind: InputKind) -> PyResult<Given> {
+    let py = map.py();
+    let name = match kind {
+        InputKind::Determinant => {
+            return Ok(Given::Determinant(map.getattr(intern!(py, "determinant"))?.extract()?));
+        }
+        InputKind::Matrix { grade: 1 } => intern!(py, "matrix"),
+        _ => intern!(py, "bivector_matrix"),
+    };
+    let rows: [[f64; 3]; 3] = map.getattr(name)?.call_method0(intern!(py, "tolist"))?.extract()?;
+    Ok(Given::Matrix(std::array::from_fn(|i| rows[i / 3][i % 3])))
+}

@@ -1,0 +1,337 @@
+//! Formulas in Python: texts, what they mean for values of given kinds, and calls on single values.
+
+pub(crate) mod batches;
+pub(crate) mod calls;
+pub(crate) mod program;
+
+use crate::algebra::signature::{Algebra, g3, largest};
+use crate::algebra::value::Object;
+use crate::support::arrays::bad;
+use calls::{Argument, Calls};
+use polhode_ga::formula::{
+    Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
+    types,
+};
+use polhode_ga::product::Grades;
+use program::{Program, characters, error};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyCFunction, PyDict, PyTuple};
+use std::collections::HashMap;
+use std::sync::Mutex;
+
+/// A name as it was given, the grades as bits, and 0 for a value, 1 for a rotor; 2 for a linear map, of the
+/// vectors or bivectors that the bits stand for.
+pub(crate) type Said = (String, u16, u8);
+
+/// So many programs of a formula are kept, each for other kinds of values.
+const KEPT: usize = 64;
+
+/// A formula.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Formula {
+    text: String,
+    algebra: Option<Py<Algebra>>,
+    definitions: Vec<(String, String)>,
+    programs: Mutex<HashMap<Key, Py<Program>>>,
+    calls: Calls,
+}
+
+/// The signature of the algebra, and the names with their kinds.
+type Key = ((usize, usize, usize), Vec<Said>);
+
+#[pymethods]
+impl Formula {
+    /// Reads a text, for the algebra given or any; a text that is no formula is an error now.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        text: String,
+        algebra: Option<Py<Algebra>>,
+        definitions: Vec<(String, String)>,
+    ) -> PyResult<Formula> {
+        let formula =
+            Formula { text, algebra, definitions, programs: Mutex::default(), calls: Calls::default() };
+        formula.read_open(py)?;
+        Ok(formula)
+    }
+
+    /// The text as it was given.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The algebra that was given.
+    #[getter]
+    fn algebra(&self, py: Python<'_>) -> Option<Py<Algebra>> {
+        self.algebra.as_ref().map(|algebra| algebra.clone_ref(py))
+    }
+
+    /// The definitions.
+    #[getter]
+    fn definitions(&self) -> Vec<(String, String)> {
+        self.definitions.clone()
+    }
+
+    /// The formula in canonical spelling, `unicode`, `ascii` or `latex`, for values of these kinds; without any, of
+    /// whatever names.
+    fn spelled(
+        &self,
+        py: Python<'_>,
+        style: &str,
+        algebra: Py<Algebra>,
+        given: Vec<Said>,
+    ) -> PyResult<String> {
+        let tree =
+            if given.is_empty() { self.read_open(py)? } else { self.read(py, &algebra, names(&given)?.0)?.0 };
+        Ok(match style {
+            "latex" => tree.latex(),
+            "ascii" => tree.text(Style::Ascii),
+            _ => tree.text(Style::Unicode),
+        })
+    }
+
+    /// The program for values of these kinds, in this algebra.
+    fn program(&self, py: Python<'_>, algebra: Py<Algebra>, given: Vec<Said>) -> PyResult<Py<Program>> {
+        let signature = algebra.get().table.signature();
+        let key = ((signature.p, signature.q, signature.r), given);
+        if let Some(program) = self.programs.lock().map_err(bad)?.get(&key) {
+            return Ok(program.clone_ref(py));
+        }
+        let program = Py::new(py, self.compiled(py, &algebra, &key.1)?)?;
+        let mut programs = self.programs.lock().map_err(bad)?;
+        if programs.len() >= KEPT {
+            programs.clear();
+        }
+        programs.insert(key, program.clone_ref(py));
+        Ok(program)
+    }
+
+    /// The function that evaluates the formula: a slot of a Python type that holds it is called without detours.
+    fn caller<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyCFunction>> {
+        let formula = slf.clone().unbind();
+        let call = move |arguments: &Bound<'_, PyTuple>, named: Option<&Bound<'_, PyDict>>| {
+            called(formula.bind(arguments.py()), arguments, named).map(Bound::unbind)
+        };
+        PyCFunction::new_closure(slf.py(), Some(c"formula"), None, call)
+    }
+
+    /// The tree as nested dictionaries, for values of these kinds; without any, of whatever names.
+    fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<Said>) -> Object<'py> {
+        let names = if given.is_empty() { Names::open() } else { names(&given)?.0 };
+        let space = space(&algebra);
+        let (tree, names) = self.read(py, &algebra, names)?;
+        let types = types(&tree, space, &names).map_err(|e| error(py, &self.text, &e))?;
+        let mut grades = types.into_iter();
+        let sides: Vec<_> =
+            tree.sides.iter().map(|side| self.node(py, side, &mut grades)).collect::<PyResult<_>>()?;
+        if let [side] = &sides[..] {
+            return Ok(side.clone().into_any());
+        }
+        let equation = PyDict::new(py);
+        equation.set_item("kind", "equation")?;
+        equation.set_item("text", &self.text)?;
+        equation.set_item("span", (0, self.text.chars().count()))?;
+        equation.set_item("grades", py.None())?;
+        equation.set_item("children", sides)?;
+        Ok(equation.into_any())
+    }
+}
+
+impl Formula {
+    /// The program for single values of 3-d space; `None` if some are not, or if it is an equation.
+    fn for_single_values(&self, named: &Bound<'_, PyDict>) -> PyResult<Option<Py<Program>>> {
+        let py = named.py();
+        let mut said = Vec::with_capacity(named.len());
+        for (name, value) in named.iter() {
+            said.push(match Argument::of(&value)? {
+                None => return Ok(None),
+                Some(Argument::Value(ty, _)) => (name.extract()?, ty.grades.0, ty.unit.into()),
+                Some(Argument::Map(_, grade)) => (name.extract()?, grade, 2),
+            });
+        }
+        Ok(self.for_floats(py, said))
+    }
+
+    /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and where
+    /// something is wrong, which is told by the general way.
+    pub(crate) fn for_floats(&self, py: Python<'_>, said: Vec<Said>) -> Option<Py<Program>> {
+        if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
+            return None;
+        }
+        let program = self.program(py, g3(py).ok()?.clone_ref(py), said).ok()?;
+        (!program.get().program.is_equation()).then_some(program)
+    }
+
+    fn algebra_or_g3<'a>(&'a self, py: Python<'a>) -> PyResult<&'a Py<Algebra>> {
+        match &self.algebra {
+            Some(algebra) => Ok(algebra),
+            None => g3(py),
+        }
+    }
+
+    /// The tree for values that are not known yet. Without an algebra there may be more basis vectors than in
+    /// 3-d space.
+    fn read_open(&self, py: Python<'_>) -> PyResult<Tree> {
+        let read = self.read(py, self.algebra_or_g3(py)?, Names::open());
+        let read = match (read, &self.algebra) {
+            (Err(first), None) => self.read(py, largest(py)?, Names::open()).map_err(|_| first),
+            (read, _) => read,
+        };
+        Ok(read?.0)
+    }
+
+    /// The tree, with names that include those defined.
+    fn read(&self, py: Python<'_>, algebra: &Py<Algebra>, mut names: Names) -> PyResult<(Tree, Names)> {
+        let space = space(algebra);
+        for (head, body) in &self.definitions {
+            let (name, _) = heading(head).map_err(|e| error(py, head, &e))?;
+            if matches!(names.get(&name), Some(Meaning::Value(_) | Meaning::Map { .. })) {
+                return Err(PyTypeError::new_err(format!(
+                    "`{name}` is defined by the formula; give no value"
+                )));
+            }
+            define(head, body, space, &mut names).map_err(|e| error(py, body, &e))?;
+        }
+        let tree = parse(&self.text, space, &names).map_err(|e| error(py, &self.text, &e))?;
+        Ok((tree, names))
+    }
+
+    fn compiled(&self, py: Python<'_>, algebra: &Py<Algebra>, given: &[Said]) -> PyResult<Program> {
+        let (names, spelled) = names(given)?;
+        let (tree, names) = self.read(py, algebra, names)?;
+        let program = compile(&tree, space(algebra), &names).map_err(|e| error(py, &self.text, &e))?;
+        let place = |name: &String| spelled.iter().position(|other| other == name);
+        let order: Option<Vec<usize>> = program.inputs.iter().map(|input| place(&input.name)).collect();
+        let order = order.ok_or_else(|| bad("a program needs a value that nobody gave"))?;
+        let runner = Runner::new(&program);
+        Ok(Program { program, order, text: self.text.clone(), runner })
+    }
+
+    /// A node, its types being the next ones.
+    fn node<'py>(
+        &self,
+        py: Python<'py>,
+        node: &Node,
+        types: &mut impl Iterator<Item = Option<Type>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let ty = types.next().flatten();
+        let place = characters(&self.text, node.span);
+        let shown = PyDict::new(py);
+        let (kind, value) = described(py, node)?;
+        shown.set_item("kind", kind)?;
+        if !value.is_none() {
+            shown.set_item("value", value)?;
+        }
+        shown.set_item("text", self.text.get(node.span.start..node.span.end).unwrap_or_default())?;
+        shown.set_item("span", place)?;
+        shown.set_item("grades", ty.map(|ty| grades(py, ty.grades)).transpose()?)?;
+        let children: Vec<_> =
+            node.children().into_iter().map(|child| self.node(py, child, types)).collect::<PyResult<_>>()?;
+        shown.set_item("children", children)?;
+        Ok(shown)
+    }
+}
+
+/// What the names stand for, and each of them in the canonical spelling.
+pub(crate) fn names(given: &[Said]) -> PyResult<(Names, Vec<String>)> {
+    let mut names = Names::new([]);
+    let mut spelled: Vec<String> = Vec::new();
+    for (name, grades, kind) in given {
+        let grades = Grades(*grades);
+        let meaning = match kind {
+            0 => Meaning::Value(Type::of(grades)),
+            1 => Meaning::Value(Type::ROTOR),
+            _ => Meaning::Map { grade: grades.0 as u8 },
+        };
+        let Some(spelling) = canonical(name) else {
+            // Such as __name__, which no text can have.
+            if name.chars().all(|c| c.is_alphanumeric() || c == '_') {
+                spelled.push(String::new());
+                continue;
+            }
+            return Err(PyTypeError::new_err(format!(
+                "{name:?} is no name in formulas; names are letters with subscripts and primes, or words"
+            )));
+        };
+        if let Some(i) = spelled.iter().position(|other| *other == spelling) {
+            let other = &given[i].0;
+            return Err(PyTypeError::new_err(format!("{other:?} and {name:?} are the same name; give one")));
+        }
+        spelled.push(spelling.clone());
+        names.bind(spelling, meaning);
+    }
+    Ok((names, spelled))
+}
+
+/// The value of a formula.
+fn called<'py>(
+    formula: &Bound<'py, Formula>,
+    arguments: &Bound<'py, PyTuple>,
+    named: Option<&Bound<'py, PyDict>>,
+) -> Object<'py> {
+    let py = formula.py();
+    if arguments.is_empty()
+        && let Some(named) = named
+    {
+        let formula = formula.get();
+        if let Some(value) = formula.calls.value(named)? {
+            return Ok(value);
+        }
+        if let Some(program) = formula.for_single_values(named)? {
+            formula.calls.keep(named, program)?;
+            if let Some(value) = formula.calls.value(named)? {
+                return Ok(value);
+            }
+        }
+        if let Some(value) = batches::value(formula, named)? {
+            return Ok(value);
+        }
+    }
+    static GENERAL: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let general = GENERAL.import(py, "polhode._formula.formula", "called")?;
+    general.call1((formula, arguments, named))
+}
+
+/// What a node is, and what else there is to say of it.
+fn described<'py>(py: Python<'py>, node: &Node) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
+    let none = py.None().into_bound(py);
+    Ok(match &node.kind {
+        Kind::Number(number) => ("number", number.value.into_pyobject(py)?.into_any()),
+        Kind::Pi => ("pi", none),
+        Kind::Blade(generators) => {
+            let generators: Vec<usize> = generators.iter().map(|&i| i.into()).collect();
+            ("blade", generators.into_pyobject(py)?)
+        }
+        Kind::Pseudoscalar => ("pseudoscalar", none),
+        Kind::Name(name) => ("name", name.into_pyobject(py)?.into_any()),
+        Kind::Sum(terms) => {
+            let signs: Vec<&str> = terms.iter().map(|&(minus, _)| if minus { "-" } else { "+" }).collect();
+            ("sum", signs.into_pyobject(py)?)
+        }
+        Kind::Product(_) => ("product", none),
+        Kind::Quotient(_) => ("quotient", none),
+        Kind::Tight(tight, _) => (tight.name(), none),
+        Kind::Reverse(_) => ("reverse", none),
+        Kind::Power(_, n) => ("power", n.into_pyobject(py)?.into_any()),
+        Kind::Part(_, part) => ("part", grades(py, *part)?.into_any()),
+        Kind::Function(function, _) => (function.name(), none),
+        Kind::Call(name, _) => ("call", name.into_pyobject(py)?.into_any()),
+        Kind::Derivative(_) => ("derivative", none),
+        Kind::Total(index, _) => ("total", index.into_pyobject(py)?.into_any()),
+    })
+}
+
+/// Grades as Python shows them.
+fn grades(py: Python<'_>, grades: Grades) -> PyResult<Bound<'_, PyTuple>> {
+    let grades: Vec<usize> = (0..16).filter(|&k| grades.contains(k)).collect();
+    PyTuple::new(py, grades)
+}
+
+/// The algebra, for formulas.
+fn space(algebra: &Py<Algebra>) -> Space<'_> {
+    let algebra = algebra.get();
+    if algebra.is_g3() { Space::g3() } else { Space::new(&algebra.table, algebra.calculus()) }
+}

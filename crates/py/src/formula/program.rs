@@ -1,0 +1,230 @@
+//! Programs of formulas in Python: what they are given, and their steps for those who walk them.
+
+use crate::support::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
+use crate::support::text::byte;
+use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use polhode_ga::Graded;
+use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type};
+use polhode_ga::rows::product::Element;
+use polhode_ga::table::G3;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyTuple, PyType};
+
+/// A piece of text in characters, as Python counts.
+pub(crate) type Place = (usize, usize);
+
+/// What a formula does with values of known types.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Program {
+    pub(crate) program: formula::Program,
+    /// For each input, its place among the values given.
+    pub(crate) order: Vec<usize>,
+    pub(crate) text: String,
+    /// In 3-d space it is run here.
+    pub(crate) runner: Option<Runner>,
+}
+
+/// Rows between which Python may interrupt.
+const PIECE: usize = 1 << 17;
+
+/// An operation: its name, the steps it needs, what else it needs, the grades of the value as bits, whether
+/// that is a rotor, and where it stands in the text.
+type Step<'py> = (&'static str, Bound<'py, PyTuple>, Bound<'py, PyAny>, u16, bool, Place);
+
+#[pymethods]
+impl Program {
+    /// For each input its place among the values given, `value`, `matrix` or `determinant`, and the grade.
+    #[getter]
+    fn inputs(&self) -> Vec<(usize, &'static str, u16)> {
+        let kind = |kind| match kind {
+            InputKind::Value(ty) => ("value", ty.grades.0),
+            InputKind::Matrix { grade } => ("matrix", grade.into()),
+            InputKind::Determinant => ("determinant", 3),
+        };
+        let named = self.order.iter().zip(&self.program.inputs).map(|(i, input)| (i, kind(input.kind)));
+        named.map(|(&i, (kind, grade))| (i, kind, grade)).collect()
+    }
+
+    /// The names of the inputs.
+    #[getter]
+    fn names(&self) -> Vec<&str> {
+        self.program.inputs.iter().map(|input| input.name.as_str()).collect()
+    }
+
+    /// The numbers of the steps that are the value, or the sides of an equation.
+    #[getter]
+    fn results(&self) -> Vec<Vec<usize>> {
+        self.program.results.clone()
+    }
+
+    /// The grades of the value as bits, its number of components, and whether it is a rotor; None for an
+    /// equation, and for an algebra whose programs are not run here.
+    #[getter]
+    fn value_type(&self) -> Option<(u16, usize, bool)> {
+        self.runner.as_ref()?;
+        let ty = self.ty()?;
+        Some((ty.grades.0, ty.grades.indices(&G3).len(), ty.unit))
+    }
+
+    /// The steps.
+    #[getter]
+    fn steps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Step<'py>>> {
+        let step = |step: &formula::Step| {
+            let operands: Vec<usize> = step.op.operands().collect();
+            let operands = PyTuple::new(py, operands)?;
+            let (name, detail) = described(py, &step.op)?;
+            let place = characters(&self.text, step.span);
+            Ok((name, operands, detail, step.ty.grades.0, step.ty.unit, place))
+        };
+        self.program.steps.iter().map(step).collect()
+    }
+
+    /// Fills `out`, of the batch shape and the components of the value, from inputs that are arrays of one row
+    /// or of all. All hold float64, or float32.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        inputs: Vec<Bound<'py, PyAny>>,
+        out: &Bound<'py, PyAny>,
+    ) -> PyResult<()> {
+        if out.cast::<PyArrayDyn<f32>>().is_ok() {
+            return self.fill::<f32>(py, &inputs, out);
+        }
+        self.fill::<f64>(py, &inputs, out)
+    }
+}
+
+impl Program {
+    fn fill<T: Element + numpy::Element>(
+        &self,
+        py: Python<'_>,
+        inputs: &[Bound<'_, PyAny>],
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let mut out: RowsToFill<'_, T> = out.extract()?;
+        let batch = out.shape().split_last().map_or(Vec::new(), |(_, batch)| batch.to_vec());
+        let out = numbers_to_fill(&mut out)?;
+        let inputs: Vec<Rows<'_, T>> =
+            inputs.iter().map(|input| input.extract()).collect::<Result<_, _>>()?;
+        let data: Vec<&[T]> = inputs.iter().map(numbers).collect::<PyResult<_>>()?;
+        self.fill_rows(py, &data, &batch, out)
+    }
+
+    /// Fills the rows of a batch from inputs of one row or of all.
+    pub(crate) fn fill_rows<T: Element>(
+        &self,
+        py: Python<'_>,
+        data: &[&[T]],
+        batch: &[usize],
+        out: &mut [T],
+    ) -> PyResult<()> {
+        let (Some(runner), Some(ty)) = (&self.runner, self.ty()) else {
+            return Err(bad("an equation, or a formula of another algebra, is not run here"));
+        };
+        let size = ty.grades.indices(&G3).len();
+        let rows: usize = batch.iter().product();
+        let kinds: Vec<usize> = self.program.inputs.iter().map(|input| input.kind.size()).collect();
+        let fits = |(x, size): (&&[T], &usize)| x.len() == *size || x.len() == rows * size;
+        if data.len() != kinds.len() || !data.iter().zip(&kinds).all(fits) || out.len() != rows * size {
+            return Err(bad("the arrays do not fit the program"));
+        }
+        let threads = threads(rows.saturating_mul(runner.weight()) / 16)?;
+        for first in (0..rows).step_by(PIECE) {
+            let piece = first..rows.min(first + PIECE);
+            let done = py.detach(|| runner.run(threads, data, &mut [&mut *out], piece));
+            done.map_err(|error| self.row_error(py, &error, batch))?;
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
+    /// The type of the value; `None` of an equation.
+    pub(crate) fn ty(&self) -> Option<Type> {
+        let [results] = &self.program.results[..] else { return None };
+        let &[result] = &results[..] else { return None };
+        Some(self.program.steps[result].ty)
+    }
+
+    /// The value for single values, and whether it is a rotor; `None` if it is not run here. The values of the
+    /// steps are left in `values`.
+    pub(crate) fn value(
+        &self,
+        inputs: &[Given],
+        values: &mut Vec<Graded>,
+    ) -> Option<Result<(Graded, bool), RowError>> {
+        let &[result] = &self.program.results.first()?[..] else { return None };
+        let unit = self.program.steps[result].ty.unit;
+        let done = self.runner.as_ref()?.value_to(inputs, values);
+        let failed = |(step, error)| RowError { row: 0, step, error };
+        Some(done.map(|()| (values[result], unit)).map_err(failed))
+    }
+
+    /// The exception for a row without a value.
+    pub(crate) fn row_error(&self, py: Python<'_>, found: &RowError, batch: &[usize]) -> PyErr {
+        let message = format!("{}{}", place(found.row, batch), found.error);
+        error(py, &self.text, &formula::Error { message, span: self.program.steps[found.step].span })
+    }
+}
+
+/// The name of an operation, and what it needs beside other steps.
+fn described<'py>(py: Python<'py>, op: &Op) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
+    let none = || py.None().into_bound(py);
+    Ok(match *op {
+        Op::Input(input) => ("input", input.into_pyobject(py)?.into_any()),
+        Op::Constant(number, blade) => {
+            ("constant", (number.value, number.ratio, blade).into_pyobject(py)?.into_any())
+        }
+        Op::Pi => ("pi", none()),
+        Op::Add(..) => ("add", none()),
+        Op::Subtract(..) => ("subtract", none()),
+        Op::Negate(_) => ("negate", none()),
+        Op::Product(product, ..) => ("product", product.name().into_pyobject(py)?.into_any()),
+        Op::Compose(..) => ("compose", none()),
+        Op::Turn(..) => ("turn", none()),
+        Op::Divide(..) => ("divide", none()),
+        Op::Reverse(_) => ("reverse", none()),
+        Op::Part(_) => ("part", none()),
+        Op::Dual(_) => ("dual", none()),
+        Op::Undual(_) => ("undual", none()),
+        Op::Function(function, _) => (function.name(), none()),
+        Op::RotorPower(_, n) => ("power", n.into_pyobject(py)?.into_any()),
+        Op::Norm(_) => ("norm", none()),
+        Op::Sin(_) => ("sin", none()),
+        Op::Cos(_) => ("cos", none()),
+        Op::Tan(_) => ("tan", none()),
+        Op::Map { input, .. } => ("map", input.into_pyobject(py)?.into_any()),
+    })
+}
+
+/// A piece of text in characters instead of bytes.
+pub(crate) fn characters(text: &str, span: Span) -> Place {
+    let count = |end: usize| text.get(..end).unwrap_or(text).chars().count();
+    (count(span.start), count(span.end))
+}
+
+/// The exception that tells what is wrong with a formula, and where.
+pub(crate) fn error(py: Python<'_>, text: &str, error: &formula::Error) -> PyErr {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    match CLASS.import(py, "polhode._formula.errors", "FormulaError") {
+        Ok(class) => {
+            let arguments = (error.message.clone(), text.to_owned(), characters(text, error.span));
+            PyErr::from_type(class.clone(), arguments)
+        }
+        Err(_) => PyValueError::new_err(error.shown(text)),
+    }
+}
+
+/// The place in a text, in characters, with a caret, on lines of its own.
+#[pyfunction]
+pub(crate) fn marked(text: &str, place: Place) -> String {
+    let span = Span { start: byte(text, place.0), end: byte(text, place.1) };
+    formula::Error { message: String::new(), span }.shown(text)
+}
+
+/// The spelling under which a name is known, such as `Ω_B` or `a1` for `a_1`; None for what is no name.
+#[pyfunction]
+pub(crate) fn canonical(name: &str) -> Option<String> {
+    formula::canonical(name)
+}

@@ -1,0 +1,173 @@
+//! Inertia and bodies.
+
+use crate::support::arrays::{Array, Out, Rows, bad, line, map_rows, numbers, one, table};
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::body::inertia;
+use polhode_rigid::{Amount, Solid, TriangleMesh, body};
+use pyo3::prelude::*;
+use std::convert::Infallible;
+use std::path::PathBuf;
+
+/// The inertia map.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Inertia(pub(crate) inertia::Inertia);
+
+fn points(masses: &Rows<'_>, positions: &Rows<'_>) -> PyResult<(Vec<f64>, Vec<Vector>)> {
+    let positions = numbers(positions)?.as_chunks::<3>().0.iter().map(|x| Vector(*x)).collect();
+    Ok((numbers(masses)?.to_vec(), positions))
+}
+
+/// A 3x3 matrix from nine numbers, row by row.
+fn square(matrix: &Rows<'_>) -> PyResult<[[f64; 3]; 3]> {
+    let m: [f64; 9] = one(matrix)?;
+    Ok([0, 3, 6].map(|i| [m[i], m[i + 1], m[i + 2]]))
+}
+
+/// A rotor from its row of components.
+pub(crate) fn rotor(row: &Rows<'_>) -> PyResult<Rotor> {
+    Rotor::from_components(one(row)?).map_err(bad)
+}
+
+#[pymethods]
+impl Inertia {
+    #[staticmethod]
+    fn from_principal_moments(moments: Rows<'_>) -> PyResult<Inertia> {
+        inertia::Inertia::from_principal_moments(one(&moments)?).map(Inertia).map_err(bad)
+    }
+
+    #[staticmethod]
+    fn from_matrix(matrix: Rows<'_>) -> PyResult<Inertia> {
+        inertia::Inertia::from_matrix(square(&matrix)?).map(Inertia).map_err(bad)
+    }
+
+    #[staticmethod]
+    fn restored(matrix: Rows<'_>, moments: Rows<'_>, frame: Rows<'_>) -> PyResult<Inertia> {
+        let restored = inertia::Inertia::restored(square(&matrix)?, one(&moments)?, rotor(&frame)?);
+        restored.map(Inertia).map_err(bad)
+    }
+
+    #[staticmethod]
+    fn from_points(masses: Rows<'_>, positions: Rows<'_>) -> PyResult<Inertia> {
+        let (masses, positions) = points(&masses, &positions)?;
+        inertia::Inertia::from_points(&masses, &positions).map(Inertia).map_err(bad)
+    }
+
+    fn apply<'py>(&self, py: Python<'py>, b: Rows<'py>) -> Out<'py> {
+        map_rows(py, &b, |c| Ok::<_, Infallible>(self.0.apply(Bivector(c)).0))
+    }
+
+    fn inverse<'py>(&self, py: Python<'py>, l: Rows<'py>) -> Out<'py> {
+        map_rows(py, &l, |c| self.0.inverse(Bivector(c)).map(|b| b.0))
+    }
+
+    fn matrix<'py>(&self, py: Python<'py>) -> Out<'py> {
+        table(py, self.0.matrix().into_iter())
+    }
+
+    fn principal_moments<'py>(&self, py: Python<'py>) -> Array<'py> {
+        line(py, self.0.principal_moments().to_vec())
+    }
+
+    fn principal_frame<'py>(&self, py: Python<'py>) -> Array<'py> {
+        line(py, self.0.principal_frame().components().to_vec())
+    }
+}
+
+/// A rigid body.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Body(pub(crate) body::Body);
+
+/// Exactly one of the two is given; the Python face sees to it.
+fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
+    match (mass, density) {
+        (Some(mass), None) => Ok(Amount::Mass(mass)),
+        (None, Some(density)) => Ok(Amount::Density(density)),
+        _ => Err(bad("give exactly one of mass and density")),
+    }
+}
+
+/// A solid from its kind and its lengths, in the order of the fields.
+fn solid(kind: &str, sizes: &[f64]) -> Option<Solid> {
+    Some(match (kind, sizes) {
+        ("box", &[x, y, z]) => Solid::Box { lengths: [x, y, z] },
+        ("ellipsoid", &[x, y, z]) => Solid::Ellipsoid { semi_axes: [x, y, z] },
+        ("sphere", &[radius]) => Solid::Sphere { radius },
+        ("hollow_sphere", &[outer_radius, inner_radius]) => {
+            Solid::HollowSphere { outer_radius, inner_radius }
+        }
+        ("cylinder", &[radius, height]) => Solid::Cylinder { radius, height },
+        ("cone", &[radius, height]) => Solid::Cone { radius, height },
+        ("rod", &[length]) => Solid::Rod { length },
+        ("disc", &[radius]) => Solid::Disc { radius },
+        ("torus", &[major_radius, minor_radius]) => Solid::Torus { major_radius, minor_radius },
+        ("capsule", &[radius, height]) => Solid::Capsule { radius, height },
+        _ => return None,
+    })
+}
+
+#[pymethods]
+impl Body {
+    #[new]
+    fn new(mass: f64, inertia: &Inertia, center_of_mass: Rows<'_>) -> PyResult<Body> {
+        body::Body::new(mass, inertia.0, Vector(one(&center_of_mass)?)).map(Body).map_err(bad)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (kind, sizes, mass, density))]
+    fn solid(kind: &str, sizes: Vec<f64>, mass: Option<f64>, density: Option<f64>) -> PyResult<Body> {
+        let shape = solid(kind, &sizes).ok_or_else(|| bad(format!("no {kind} has {} sizes", sizes.len())))?;
+        shape.body(amount(mass, density)?).map(Body).map_err(bad)
+    }
+
+    #[staticmethod]
+    fn from_points(masses: Rows<'_>, positions: Rows<'_>) -> PyResult<Body> {
+        let (masses, positions) = points(&masses, &positions)?;
+        body::Body::from_points(&masses, &positions).map(Body).map_err(bad)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (path, scale, mass, density))]
+    fn from_mesh(
+        py: Python<'_>,
+        path: PathBuf,
+        scale: f64,
+        mass: Option<f64>,
+        density: Option<f64>,
+    ) -> PyResult<Body> {
+        let amount = amount(mass, density)?;
+        if !(scale > 0.0 && scale.is_finite()) {
+            return Err(bad(format!("scale is {scale}; it must be positive and finite")));
+        }
+        py.detach(|| TriangleMesh::read(&path)?.scaled(scale)?.body(amount)).map(Body).map_err(bad)
+    }
+
+    fn mass(&self) -> f64 {
+        self.0.mass
+    }
+
+    fn center_of_mass<'py>(&self, py: Python<'py>) -> Array<'py> {
+        line(py, self.0.center_of_mass.0.to_vec())
+    }
+
+    fn inertia(&self) -> Inertia {
+        Inertia(self.0.inertia)
+    }
+
+    fn inertia_about(&self, point: Rows<'_>) -> PyResult<Inertia> {
+        self.0.inertia_about(Vector(one(&point)?)).map(Inertia).map_err(bad)
+    }
+
+    /// The first of some moments of the weight about the origin, rows (n, 3), that contradicts the centre of mass.
+    fn other_weight(&self, moments: Rows<'_>) -> PyResult<Option<usize>> {
+        let rows = numbers(&moments)?.as_chunks::<3>().0;
+        Ok(rows.iter().position(|c| !self.0.has_weight_moment(Vector(*c))))
+    }
+
+    fn moved(&self, rotor_row: Rows<'_>, position: Rows<'_>) -> PyResult<Body> {
+        self.0.moved(rotor(&rotor_row)?, Vector(one(&position)?)).map(Body).map_err(bad)
+    }
+
+    fn combine(&self, other: &Body) -> PyResult<Body> {
+        self.0.combine(&other.0).map(Body).map_err(bad)
+    }
+}

@@ -1,0 +1,177 @@
+//! Simulation of many bodies at once.
+
+use super::bodies::Inertia;
+use super::columns::spread;
+use super::laws::Force;
+use super::made::{Made, interrupted};
+use super::simulation::{Limits, method_of, run};
+use super::torque::Law;
+use crate::support::arrays::{Array, Rows, all_threads, bad, line, numbers, place};
+use crate::support::pool;
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use polhode_ga::simd::threads::Threads;
+use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_rigid::SimulateError;
+use polhode_rigid::ensemble::{self, Ensemble, Outputs, Start, Summary};
+use polhode_rigid::run::Options;
+use polhode_rigid::state::center::Center;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Rotors, angular velocities, momenta, energies and, where forces move them, places and velocities of all bodies at all
+/// times, body by body; and what is told of the bodies.
+type Told<'py> = PyResult<(Vec<Array<'py>>, Bound<'py, PyDict>)>;
+
+/// Simulates bodies of a batch shape. Inertias with their shape, start times (…), rotors (…, 4), angular velocities (…, 3), laws, places and
+/// velocities (…, 6) and masses (…), NaN where they are not known, broadcast to it. No batch is empty, nor are the times.
+#[pyfunction]
+#[pyo3(signature = (
+    shape, inertias, begins, rotors, omegas, laws, centers, masses, forces, times, method, step, rtol, limits, threads,
+    progress
+))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn simulate_many<'py>(
+    py: Python<'py>,
+    shape: Vec<usize>,
+    inertias: (Vec<PyRef<'py, Inertia>>, Vec<usize>),
+    begins: Rows<'py>,
+    rotors: Rows<'py>,
+    omegas: Rows<'py>,
+    laws: Vec<Bound<'py, Law>>,
+    centers: Rows<'py>,
+    masses: Rows<'py>,
+    forces: Vec<Bound<'py, Force>>,
+    times: Rows<'py>,
+    method: &str,
+    step: Option<f64>,
+    rtol: Option<f64>,
+    limits: Limits,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Told<'py> {
+    let (method, exact) = method_of(method)?;
+    if shape.contains(&0) || times.len() == 0 {
+        return Err(bad("there is nothing to simulate"));
+    }
+    let made: Vec<Py<Made>> = laws
+        .iter()
+        .map(|law| law.as_super().clone().unbind())
+        .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
+        .collect();
+    let (inertias, own_shape) = inertias;
+    let inertias = inertias.iter().map(|inertia| inertia.0).collect();
+    let each_law = |law: &Bound<'py, Law>| {
+        let Law { torques, shape: own } = law.get();
+        ensemble::Rows::new(spread(torques.clone(), own, &shape))
+    };
+    let ensemble = Ensemble {
+        inertias: ensemble::Rows::new(spread(inertias, &own_shape, &shape)),
+        starts: starts(&shape, &begins, &rotors, &omegas, &centers)?,
+        laws: laws.iter().map(each_law).collect(),
+        masses: ensemble::Rows::new(spread(numbers(&masses)?.to_vec(), masses.shape(), &shape)),
+        forces: forces.iter().map(|force| force.get().force.clone()).collect(),
+    };
+    if let Some((body, error)) = ensemble.first_unusable() {
+        return Err(bad(format!("{}{error}", place(body, &shape))));
+    }
+    let threads = threads.map_or_else(all_threads, |count| Ok(Threads::new(count)))?;
+    let (max_step, max_steps, breaks) = limits;
+    let events = Vec::new();
+    let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
+    let (bodies, times) = (ensemble.starts.len(), numbers(&times)?);
+    let sizes: &[usize] = if ensemble.forces.is_empty() { &[4, 3, 3, 1] } else { &[4, 3, 3, 1, 3, 3] };
+    let arrays = sizes.iter().map(|&size| pool::array(py, &[bodies, times.len(), size]));
+    let arrays: Vec<Array<'py>> = arrays.collect::<PyResult<_>>()?;
+    let summary = {
+        let mut rows: Vec<_> = arrays.iter().map(|array| array.readwrite()).collect();
+        let slices: Vec<&mut [f64]> =
+            rows.iter_mut().map(|row| row.as_slice_mut()).collect::<Result<_, _>>()?;
+        let mut slices = slices.into_iter();
+        let mut next = || slices.next().unwrap_or_default();
+        let (rotors, omegas, momenta, energies) = (next(), next(), next(), next());
+        let centers = (!ensemble.forces.is_empty()).then(|| [next(), next()]);
+        let outputs = Outputs { rotors, omegas, momenta, energies, centers };
+        run(py, &made, progress.as_ref(), |progress| {
+            ensemble.run(times, &options, threads, outputs, progress)
+        })?
+    };
+    interrupted(made.iter().map(|one| one.bind(py)))?;
+    let unfit = summary.failures.iter().find(|failure| matches!(failure.error, SimulateError::Unfit { .. }));
+    if let Some(failure) = unfit {
+        return Err(bad(format!("{}{}", place(failure.body, &shape), failure.error)));
+    }
+    Ok((arrays, told(py, summary)?))
+}
+
+/// How the bodies start.
+fn starts(
+    shape: &[usize],
+    begins: &Rows<'_>,
+    rotors: &Rows<'_>,
+    omegas: &Rows<'_>,
+    centers: &Rows<'_>,
+) -> PyResult<Vec<Start>> {
+    let count = shape.iter().product();
+    let begins = spread(numbers(begins)?.to_vec(), begins.shape(), shape);
+    let rotors = {
+        let own = batch(rotors);
+        let rows = numbers(rotors)?.as_chunks::<4>().0.iter().enumerate();
+        let told = |row, error| bad(format!("{}{error}", place(row, own)));
+        let rotors = rows.map(|(row, c)| Rotor::from_components(*c).map_err(|error| told(row, error)));
+        spread(rotors.collect::<PyResult<Vec<_>>>()?, own, shape)
+    };
+    let omegas = spread(numbers(omegas)?.as_chunks::<3>().0.to_vec(), batch(omegas), shape);
+    let centers = spread(numbers(centers)?.as_chunks::<6>().0.to_vec(), batch(centers), shape);
+    let start = |body: usize| {
+        let [x, y, z, u, v, w] = *one_of(&centers, body);
+        Start {
+            time: *one_of(&begins, body),
+            rotor: *one_of(&rotors, body),
+            omega: Bivector(*one_of(&omegas, body)),
+            center: Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) },
+        }
+    };
+    Ok((0..count).map(start).collect())
+}
+
+fn one_of<T>(rows: &[T], body: usize) -> &T {
+    &rows[if rows.len() == 1 { 0 } else { body }]
+}
+
+fn batch<'a>(rows: &'a Rows<'_>) -> &'a [usize] {
+    rows.shape().split_last().map_or(&[][..], |(_, batch)| batch)
+}
+
+/// The summary: arrays of one number for each body, and the failures as lists of numbers, times and messages.
+fn told<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> {
+    let mut names: Vec<&str> = Vec::new();
+    let mut code = |name| {
+        names.iter().position(|known| *known == name).unwrap_or_else(|| {
+            names.push(name);
+            names.len() - 1
+        })
+    };
+    let codes: Vec<usize> = summary.methods.iter().map(|name| code(name)).collect();
+    let counts = |k: usize| PyArray1::from_iter(py, summary.steps.iter().map(|counts| counts[k] as i64));
+    let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
+    for (name, rows) in &summary.drifts {
+        conserved.set_item(name, line(py, rows.iter().map(|row| row[0]).collect()))?;
+        drift.set_item(name, line(py, rows.iter().map(|row| row[1]).collect()))?;
+    }
+    let failures = &summary.failures;
+    let result = PyDict::new(py);
+    result.set_item("methods", (names, PyArray1::from_vec(py, codes)))?;
+    result.set_item("steps", counts(0))?;
+    result.set_item("evaluations", counts(1))?;
+    result.set_item("step", line(py, summary.longest))?;
+    result.set_item("error_estimate", line(py, summary.estimates))?;
+    result.set_item("conserved", conserved)?;
+    result.set_item("drift", drift)?;
+    result.set_item("norm_drift", line(py, summary.norm_drifts))?;
+    result.set_item("failed", failures.iter().map(|failure| failure.body).collect::<Vec<_>>())?;
+    result.set_item("failure_times", failures.iter().map(|failure| failure.time).collect::<Vec<_>>())?;
+    let messages: Vec<String> = failures.iter().map(|failure| failure.error.to_string()).collect();
+    result.set_item("messages", messages)?;
+    result.set_item("warnings", summary.warnings)?;
+    Ok(result)
+}

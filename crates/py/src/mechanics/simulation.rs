@@ -1,0 +1,204 @@
+//! Simulation.
+
+use super::bodies::{Inertia, rotor};
+use super::laws::{Event, Force};
+use super::made::{Made, failed};
+use super::motion::check_times;
+use super::torque::Law;
+use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
+use polhode_ga::{Bivector, Vector};
+use polhode_rigid::SimulateError;
+use polhode_rigid::laws::event::Direction;
+use polhode_rigid::methods::Method;
+use polhode_rigid::run::{self as rigid, Options, Problem, Progress, States};
+use polhode_rigid::state::center::Center;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::time::{Duration, Instant};
+
+/// How often a run looks for Ctrl-C and reports where it stands.
+const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
+
+/// Names of the methods, by rising order.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<&'static str> {
+    polhode_rigid::methods::methods().map(Method::name).collect()
+}
+
+/// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.
+struct Watcher<'a> {
+    progress: Option<&'a Py<PyAny>>,
+    last: Instant,
+    error: Option<PyErr>,
+}
+
+impl Watcher<'_> {
+    fn go_on(&mut self, at: Progress) -> bool {
+        if self.last.elapsed() < BETWEEN_SIGNALS {
+            return true;
+        }
+        self.last = Instant::now();
+        let outcome = Python::attach(|py| {
+            py.check_signals()?;
+            self.progress.map_or(Ok(()), |call| call.call1(py, (at.pass, at.fraction)).map(drop))
+        });
+        self.error = outcome.err();
+        self.error.is_none()
+    }
+}
+
+/// States of a motion: times (n,), rotors (n, 4), angular velocities (n, 3) in the body, momenta (n, 3) in space, energies
+/// (n,), positions (n, 3) and velocities (n, 3).
+type Points<'py> = PyResult<[Array<'py>; 7]>;
+
+fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
+    Ok([
+        line(py, states.times),
+        table(py, states.rotors.iter().map(|r| r.components()))?,
+        table(py, states.omegas.iter().map(|w| w.0))?,
+        table(py, states.momenta_space.iter().map(|l| l.0))?,
+        line(py, states.energies),
+        table(py, states.centers.iter().map(|c| c.position.0))?,
+        table(py, states.centers.iter().map(|c| c.velocity.0))?,
+    ])
+}
+
+/// A simulated motion.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Motion {
+    motion: rigid::Motion,
+    /// The laws and events, which keep what their functions raise.
+    made: Vec<Py<Made>>,
+}
+
+#[pymethods]
+impl Motion {
+    fn states<'py>(&self, py: Python<'py>) -> Points<'py> {
+        points(py, self.motion.states())
+    }
+
+    /// The states at other times.
+    fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> Points<'py> {
+        let times = numbers(&times)?;
+        check_times(times)?;
+        let states = run(py, &self.made, None, |progress| self.motion.at(times, progress))?;
+        points(py, states)
+    }
+
+    /// The events in the order in which they were met: which, whether rising, and the states there.
+    fn events<'py>(&self, py: Python<'py>) -> PyResult<(Vec<usize>, Vec<bool>, [Array<'py>; 7])> {
+        let which = self.motion.events.iter().map(|happened| happened.event).collect();
+        let rising =
+            self.motion.events.iter().map(|happened| happened.direction == Direction::Rising).collect();
+        Ok((which, rising, points(py, self.motion.event_states())?))
+    }
+
+    /// Each conserved quantity's name and its relative change (n,) since the start.
+    fn drifts<'py>(&self, py: Python<'py>) -> Vec<(&'static str, Array<'py>)> {
+        let drifts = self.motion.drifts().into_iter();
+        drifts.map(|(quantity, change)| (quantity.name(), line(py, change))).collect()
+    }
+
+    /// How the motion was made and what it conserved.
+    fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let proof = &self.motion.certificate;
+        let certificate = PyDict::new(py);
+        certificate.set_item("method", proof.method)?;
+        certificate.set_item("step", proof.step)?;
+        certificate.set_item("steps", proof.steps)?;
+        certificate.set_item("evaluations", proof.evaluations)?;
+        certificate.set_item("error_estimate", proof.error_estimate)?;
+        let (conserved, drift) = (PyDict::new(py), PyDict::new(py));
+        for (quantity, value, change) in &proof.drifts {
+            conserved.set_item(quantity.name(), value)?;
+            drift.set_item(quantity.name(), change)?;
+        }
+        certificate.set_item("conserved", conserved)?;
+        certificate.set_item("drift", drift)?;
+        certificate.set_item("norm_drift", proof.norm_drift)?;
+        certificate.set_item("warnings", PyTuple::new(py, &proof.warnings)?)?;
+        Ok(certificate)
+    }
+}
+
+/// Runs without the GIL, with progress and Ctrl-C.
+pub(crate) fn run<T: Send>(
+    py: Python<'_>,
+    made: &[Py<Made>],
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<T, SimulateError> + Send,
+) -> PyResult<T> {
+    let mut watcher = Watcher { progress, last: Instant::now(), error: None };
+    let (result, error) = py.detach(|| {
+        let result = work(&mut |at| watcher.go_on(at));
+        (result, watcher.error)
+    });
+    match (result, error) {
+        (Ok(found), _) => Ok(found),
+        (Err(SimulateError::Interrupted), Some(error)) => Err(error),
+        (Err(error @ SimulateError::Torque { .. }), _) => {
+            Err(failed(made.iter().map(|one| one.bind(py)), error))
+        }
+        (Err(error), _) => Err(bad(error)),
+    }
+}
+
+/// The method of a name, if any is asked for, and whether it is to be exact.
+pub(crate) fn method_of(name: &str) -> PyResult<(Option<Method>, bool)> {
+    match name {
+        "auto" | "exact" => Ok((None, name == "exact")),
+        _ => Method::from_name(name)
+            .map(|method| (Some(method), false))
+            .ok_or_else(|| bad(format!("unknown method {name}"))),
+    }
+}
+
+/// The longest step in s, how many steps a pass may take, and times at which steps end.
+pub(crate) type Limits = (Option<f64>, Option<f64>, Vec<f64>);
+
+/// Simulates from a start time on. `center` is the place and velocity of the centre of mass, the mass NaN where it is
+/// not known.
+#[pyfunction]
+#[pyo3(signature = (
+    inertia, start, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, limits, events, progress
+))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    inertia: &Inertia,
+    start: f64,
+    rotor_row: Rows<'py>,
+    omega: Rows<'py>,
+    laws: Vec<Bound<'py, Law>>,
+    center: Rows<'py>,
+    mass: f64,
+    forces: Vec<Bound<'py, Force>>,
+    times: Rows<'py>,
+    method: &str,
+    step: Option<f64>,
+    rtol: Option<f64>,
+    limits: Limits,
+    events: Vec<Bound<'py, Event>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Motion> {
+    let (method, exact) = method_of(method)?;
+    let made: Vec<Py<Made>> = laws
+        .iter()
+        .map(|law| law.as_super().clone().unbind())
+        .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
+        .chain(events.iter().map(|event| event.as_super().clone().unbind()))
+        .collect();
+    let torques: Vec<_> = laws.iter().map(|law| law.get().single()).collect::<PyResult<_>>()?;
+    let forces: Vec<_> = forces.iter().map(|force| force.get().force.clone()).collect();
+    let events = events.iter().map(|event| event.get().event.clone()).collect();
+    let [x, y, z, u, v, w] = one(&center)?;
+    let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
+    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques)
+        .with_center(center, mass, &forces)
+        .starting_at(start);
+    let times = numbers(&times)?;
+    let (max_step, max_steps, breaks) = limits;
+    let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
+    let motion = run(py, &made, progress.as_ref(), |progress| problem.simulate(times, options, progress))?;
+    Ok(Motion { motion, made })
+}

@@ -1,0 +1,5 @@
+//! Arrays and texts between Python and the core.
+
+pub(crate) mod arrays;
+pub(crate) mod pool;
+pub(crate) mod text;

@@ -1,0 +1,105 @@
+//! Memory for large results, used again when a result is gone: the system hands out new memory page by page
+//! and fills it with zeros, which costs several times the arithmetic of a product.
+//!
+//! This module holds all the unsafe code of the crate: a buffer lends out its memory.
+#![allow(unsafe_code)]
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyBufferError;
+use pyo3::ffi;
+use pyo3::prelude::*;
+use std::ffi::{c_int, c_void};
+use std::sync::Mutex;
+
+/// A new array of float64.
+pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// A new array, or a Python exception.
+pub(crate) type Out<'py> = PyResult<Array<'py>>;
+
+type Memory = Py<PyArray1<u8>>;
+
+/// Kept for later, the latest last, at most [`KEPT`] bytes of them.
+static FREE: Mutex<Vec<(usize, Memory)>> = Mutex::new(Vec::new());
+
+/// At most so many bytes are kept: two results of a million multivectors.
+const KEPT: usize = 128 << 20;
+
+/// Sizes are rounded up to this, so that results of about the same size find each other's memory.
+const STEP: usize = 2 << 20;
+
+/// Begins at a cache line.
+const LINE: usize = 64;
+
+/// Memory of at least some number of bytes, given back to the pool when nobody refers to it any more.
+#[pyclass(frozen)]
+pub(crate) struct Buffer {
+    memory: Option<Memory>,
+    bytes: usize,
+    size: usize,
+}
+
+/// Arrays of fewer bytes the allocator keeps itself.
+const LARGE: usize = 1 << 20;
+
+/// A new array of numbers, whatever they are; a large one of the pool's memory.
+pub(crate) fn array<'py>(py: Python<'py>, shape: &[usize]) -> Out<'py> {
+    let count = shape.iter().product::<usize>();
+    if count * 8 < LARGE {
+        return Ok(PyArrayDyn::zeros(py, shape, false));
+    }
+    let memory = Bound::new(py, buffer(py, count * 8)?)?;
+    let line: Array<'py> = py.import("numpy")?.getattr("frombuffer")?.call1((memory,))?.extract()?;
+    line.reshape(shape)
+}
+
+/// Memory of `bytes` bytes, which may hold anything.
+#[pyfunction]
+pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
+    let size = bytes.saturating_add(LINE).next_multiple_of(STEP);
+    let kept = FREE.lock().ok().and_then(|mut free| {
+        let place = free.iter().rposition(|(s, _)| *s == size)?;
+        Some(free.remove(place).1)
+    });
+    let memory = match kept {
+        Some(memory) => memory,
+        // NumPy asks the system for huge pages.
+        None => py.import("numpy")?.getattr("empty")?.call1((size, "u1"))?.extract()?,
+    };
+    Ok(Buffer { memory: Some(memory), bytes, size })
+}
+
+#[pymethods]
+impl Buffer {
+    /// Lends the memory out, from the first cache line on.
+    unsafe fn __getbuffer__(slf: Bound<'_, Self>, view: *mut ffi::Py_buffer, flags: c_int) -> PyResult<()> {
+        let buffer = slf.get();
+        let memory = buffer.memory.as_ref().ok_or_else(|| PyBufferError::new_err("no memory"))?;
+        let array = memory.bind(slf.py());
+        debug_assert!(array.len() >= buffer.bytes + LINE);
+        let offset = (array.data().addr()).wrapping_neg() % LINE;
+        // SAFETY: `bytes` bytes lie after the offset, and live as long as `slf`, to which the view refers.
+        let status = unsafe {
+            let start: *mut c_void = array.data().add(offset).cast();
+            let length = buffer.bytes as ffi::Py_ssize_t;
+            ffi::PyBuffer_FillInfo(view, slf.as_ptr(), start, length, 0, flags)
+        };
+        if status == 0 { Ok(()) } else { Err(PyErr::fetch(slf.py())) }
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        let (Some(memory), Ok(mut free)) = (self.memory.take(), FREE.lock()) else { return };
+        free.push((self.size, memory));
+        let mut total: usize = free.iter().map(|(size, _)| size).sum();
+        let mut gone = Vec::new();
+        while total > KEPT {
+            let oldest = free.remove(0);
+            total -= oldest.0;
+            gone.push(oldest);
+        }
+        // Python may run code when the memory goes: not while the pool is locked.
+        drop(free);
+    }
+}

@@ -1,0 +1,199 @@
+//! Triangle meshes: the surface of a body, from a file to its mass, centre of mass and inertia.
+//!
+//! The faces go counterclockwise seen from outside. An integral over the body is then a sum over the
+//! tetrahedra that the triangles make with any one point, those facing it from behind counting negative;
+//! cavities, wound the other way, take themselves out. What does not enclose a volume in this sense has
+//! no mass, so [`TriangleMesh::body`] checks that first and says what is wrong and where.
+//!
+//! Files: STL, OBJ, PLY ([`MeshFormat`]).
+
+mod check;
+mod error;
+mod integrals;
+mod obj;
+mod ply;
+mod stl;
+mod text;
+
+pub use error::{MeshError, MeshProblem, Place};
+
+use super::Body;
+use super::inertia::Inertia;
+use super::solids::Amount;
+use integrals::integrals;
+use polhode_ga::Vector;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// The file formats that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// STL, text or binary.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+    /// PLY, ASCII or binary of either byte order.
+    Ply,
+}
+
+impl MeshFormat {
+    /// The format of a file name's extension, in upper or lower case.
+    pub fn from_extension(extension: &str) -> Option<MeshFormat> {
+        match extension.to_ascii_lowercase().as_str() {
+            "stl" => Some(MeshFormat::Stl),
+            "obj" => Some(MeshFormat::Obj),
+            "ply" => Some(MeshFormat::Ply),
+            _ => None,
+        }
+    }
+}
+
+/// Vertices and the triangles between them, counterclockwise seen from outside. The vertices are finite
+/// and every triangle refers to vertices that exist; whether the surface is closed is asked by
+/// [`TriangleMesh::body`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleMesh {
+    name: String,
+    vertices: Vec<Vector>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl TriangleMesh {
+    /// A mesh of these vertices and triangles, the indices counted from 0.
+    pub fn new(vertices: Vec<Vector>, faces: Vec<[u32; 3]>) -> Result<TriangleMesh, MeshError> {
+        TriangleMesh::named("mesh", vertices, faces)
+    }
+
+    fn named(name: &str, vertices: Vec<Vector>, faces: Vec<[u32; 3]>) -> Result<TriangleMesh, MeshError> {
+        let mesh = TriangleMesh { name: name.to_owned(), vertices, faces };
+        match check::numbers(&mesh.vertices, &mesh.faces) {
+            Ok(()) => Ok(mesh),
+            Err(problem) => Err(mesh.error(problem)),
+        }
+    }
+
+    /// The mesh in a file whose extension is `stl`, `obj` or `ply`.
+    pub fn read(path: &Path) -> Result<TriangleMesh, MeshError> {
+        let name = path.display().to_string();
+        let fail = |problem| Err(MeshError { name: name.clone(), problem });
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let Some(format) = MeshFormat::from_extension(&extension) else {
+            return fail(MeshProblem::UnknownExtension(extension.into_owned()));
+        };
+        match std::fs::metadata(path) {
+            Ok(metadata) if metadata.is_file() => {}
+            Ok(_) => return fail(MeshProblem::Unreadable("it is not a regular file".into())),
+            Err(e) => return fail(MeshProblem::Unreadable(e.to_string())),
+        }
+        match std::fs::read(path) {
+            Ok(bytes) => TriangleMesh::parse(&bytes, format, &name),
+            Err(e) => fail(MeshProblem::Unreadable(e.to_string())),
+        }
+    }
+
+    /// The mesh in the bytes of a file; errors call it by `name`.
+    pub fn parse(bytes: &[u8], format: MeshFormat, name: &str) -> Result<TriangleMesh, MeshError> {
+        // A UTF-8 byte order mark, which some editors put before a text.
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let parsed = match format {
+            _ if bytes.is_empty() => Err(MeshProblem::Empty),
+            MeshFormat::Stl => stl::parse(bytes),
+            MeshFormat::Obj => obj::parse(bytes),
+            MeshFormat::Ply => ply::parse(bytes),
+        };
+        match parsed {
+            Ok((_, faces)) if faces.is_empty() => {
+                Err(MeshError { name: name.to_owned(), problem: MeshProblem::NoTriangles })
+            }
+            Ok((vertices, faces)) => TriangleMesh::named(name, vertices, faces),
+            Err(problem) => Err(MeshError { name: name.to_owned(), problem }),
+        }
+    }
+
+    /// The positions, in metres unless the file had another unit: see [`TriangleMesh::scaled`].
+    pub fn vertices(&self) -> &[Vector] {
+        &self.vertices
+    }
+
+    /// The triangles, as indices of vertices.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The mesh with all positions times a positive factor, such as 0.001 for a file in millimetres.
+    pub fn scaled(&self, factor: f64) -> Result<TriangleMesh, MeshError> {
+        if !(factor > 0.0 && factor.is_finite()) {
+            return Err(self.error(MeshProblem::Factor(factor)));
+        }
+        let vertices = self.vertices.iter().map(|&x| x * factor).collect();
+        TriangleMesh::named(&self.name, vertices, self.faces.clone())
+    }
+
+    /// The mesh with all positions moved.
+    pub fn moved(mut self, by: Vector) -> TriangleMesh {
+        self.vertices.iter_mut().for_each(|x| *x += by);
+        self
+    }
+
+    /// The enclosed volume, negative where the faces are wound inwards. Only of a closed mesh, which this
+    /// does not check, is it a volume.
+    pub fn volume(&self) -> f64 {
+        integrals(self, check::middle(self)).volume
+    }
+
+    /// The uniform body inside the mesh, or why there is none.
+    pub fn body(&self, amount: Amount) -> Result<Body, MeshError> {
+        self.checked_body(amount).map_err(|problem| self.error(problem))
+    }
+
+    fn checked_body(&self, amount: Amount) -> Result<Body, MeshProblem> {
+        check::size(self)?;
+        check::triangles(self)?;
+        check::repetitions(self)?;
+        check::edges(self)?;
+        let middle = check::middle(self);
+        let rough = integrals(self, middle);
+        check::volume(&rough)?;
+        // About the centre of mass itself the second moment is not a difference of large numbers.
+        let center = middle + rough.first / rough.volume;
+        let exact = integrals(self, center);
+        let mass = amount.mass(Some(exact.volume), "mesh")?;
+        let density = mass / exact.volume;
+        let second = exact.second.map(|row| row.map(|x| density * x));
+        let center = center + exact.first / exact.volume;
+        Ok(Body::extended(mass, Inertia::from_second_moment(second)?, center)?)
+    }
+
+    fn error(&self, problem: MeshProblem) -> MeshError {
+        MeshError { name: self.name.clone(), problem }
+    }
+}
+
+/// What a file holds: positions, and triangles between them.
+type Parsed = (Vec<Vector>, Vec<[u32; 3]>);
+
+/// Gives vertices at the same coordinates the same number: seams close. `−0 = 0`.
+#[derive(Default)]
+struct Welder {
+    numbers: HashMap<[u64; 3], u32>,
+    vertices: Vec<Vector>,
+}
+
+impl Welder {
+    /// The number of the vertex here. Of more than u32 can number, the mesh will be refused.
+    fn number(&mut self, position: Vector) -> u32 {
+        let next = u32::try_from(self.vertices.len()).unwrap_or(u32::MAX);
+        // Adding 0 turns −0 into 0.
+        let number = *self.numbers.entry(position.0.map(|x| (x + 0.0).to_bits())).or_insert(next);
+        if number == next {
+            self.vertices.push(position);
+        }
+        number
+    }
+}
+
+/// The fan of triangles from a polygon's first corner.
+fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    let first = corners.first().copied().unwrap_or(0);
+    corners.windows(2).skip(1).map(move |pair| [first, pair[0], pair[1]])
+}

@@ -1,0 +1,232 @@
+//! Uniform solids with a closed-form inertia, in the axes in which it is diagonal.
+
+use super::Body;
+use super::inertia::Inertia;
+use crate::error::BodyError;
+use polhode_ga::Vector;
+use std::f64::consts::PI;
+
+/// How much of a solid or a mesh there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amount {
+    /// Total mass in kg.
+    Mass(f64),
+    /// Mass per volume in kg/m³.
+    Density(f64),
+}
+
+/// A uniform solid; lengths in metres. All are centred on the origin except the cone, whose base
+/// stands on the e1e2 plane; axes of revolution lie along e3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Solid {
+    Box {
+        lengths: [f64; 3],
+    },
+    Ellipsoid {
+        semi_axes: [f64; 3],
+    },
+    Sphere {
+        radius: f64,
+    },
+    /// A shell between two radii; equal radii make a thin shell, which needs a mass.
+    HollowSphere {
+        outer_radius: f64,
+        inner_radius: f64,
+    },
+    Cylinder {
+        radius: f64,
+        height: f64,
+    },
+    Cone {
+        radius: f64,
+        height: f64,
+    },
+    /// A thin rod along e3: no volume, no moment about e3.
+    Rod {
+        length: f64,
+    },
+    /// A thin disc in the e1e2 plane: no volume.
+    Disc {
+        radius: f64,
+    },
+    Torus {
+        major_radius: f64,
+        minor_radius: f64,
+    },
+    /// A cylinder of the given height with a hemisphere on each end.
+    Capsule {
+        radius: f64,
+        height: f64,
+    },
+}
+
+/// A size of a solid, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// A radius, a height.
+    One(f64),
+    /// Lengths along e1, e2 and e3.
+    Three([f64; 3]),
+}
+
+impl Amount {
+    /// The mass that this amount of a volume has; `name` is the solid's, for the message.
+    pub(crate) fn mass(self, volume: Option<f64>, name: &'static str) -> Result<f64, BodyError> {
+        let mass = match self {
+            Amount::Mass(m) => m,
+            Amount::Density(d) if !(d > 0.0 && d.is_finite()) => return Err(BodyError::Density(d)),
+            Amount::Density(d) => d * volume.ok_or(BodyError::NoVolume { solid: name })?,
+        };
+        if mass > 0.0 && mass.is_finite() { Ok(mass) } else { Err(BodyError::Mass(mass)) }
+    }
+}
+
+impl Solid {
+    /// Its name and its sizes, as scenes have them.
+    pub fn sizes(self) -> (&'static str, Vec<(&'static str, Size)>) {
+        use Size::{One, Three};
+        match self {
+            Solid::Box { lengths } => ("box", vec![("lengths", Three(lengths))]),
+            Solid::Ellipsoid { semi_axes } => ("ellipsoid", vec![("semi_axes", Three(semi_axes))]),
+            Solid::Sphere { radius } => ("sphere", vec![("radius", One(radius))]),
+            Solid::HollowSphere { outer_radius, inner_radius } => {
+                let sizes = vec![("outer_radius", One(outer_radius)), ("inner_radius", One(inner_radius))];
+                ("hollow_sphere", sizes)
+            }
+            Solid::Cylinder { radius, height } => ("cylinder", round(radius, height)),
+            Solid::Cone { radius, height } => ("cone", round(radius, height)),
+            Solid::Rod { length } => ("rod", vec![("length", One(length))]),
+            Solid::Disc { radius } => ("disc", vec![("radius", One(radius))]),
+            Solid::Torus { major_radius, minor_radius } => {
+                ("torus", vec![("major_radius", One(major_radius)), ("minor_radius", One(minor_radius))])
+            }
+            Solid::Capsule { radius, height } => ("capsule", round(radius, height)),
+        }
+    }
+
+    /// The solid as a body, its centre of mass on the axis e3.
+    pub fn body(self, amount: Amount) -> Result<Body, BodyError> {
+        self.check()?;
+        let mass = amount.mass(self.volume(), self.name())?;
+        let moments = self.gyration_squared().map(|k| mass * k);
+        Body::extended(mass, Inertia::from_principal_moments(moments)?, self.center())
+    }
+
+    /// The volume in m³; none for a rod, a disc, a thin shell, and for lengths that no solid has.
+    pub fn volume(self) -> Option<f64> {
+        self.check().ok()?;
+        match self {
+            Solid::Box { lengths: [a, b, c] } => Some(a * b * c),
+            Solid::Ellipsoid { semi_axes: [a, b, c] } => Some(4.0 / 3.0 * PI * a * b * c),
+            Solid::Sphere { radius: r } => Some(4.0 / 3.0 * PI * r * r * r),
+            Solid::HollowSphere { outer_radius: r, inner_radius: s } => {
+                // r³ − s³, with the small difference taken first.
+                (r > s).then(|| 4.0 / 3.0 * PI * (r - s) * (r * r + r * s + s * s))
+            }
+            Solid::Cylinder { radius: r, height: h } => Some(PI * r * r * h),
+            Solid::Cone { radius: r, height: h } => Some(PI / 3.0 * r * r * h),
+            Solid::Rod { .. } | Solid::Disc { .. } => None,
+            // Pappus: the area of the tube's section times the way of its centre.
+            Solid::Torus { major_radius: a, minor_radius: r } => Some(2.0 * PI * PI * a * r * r),
+            Solid::Capsule { radius: r, height: h } => Some(PI * r * r * (h + 4.0 / 3.0 * r)),
+        }
+    }
+
+    /// The squared radii of gyration `i_k / m` about the centre of mass.
+    fn gyration_squared(self) -> [f64; 3] {
+        let about_e3 = |across: f64, along: f64| [across, across, along];
+        match self {
+            Solid::Box { lengths: [a, b, c] } => {
+                [(b * b + c * c) / 12.0, (c * c + a * a) / 12.0, (a * a + b * b) / 12.0]
+            }
+            Solid::Ellipsoid { semi_axes: [a, b, c] } => {
+                [(b * b + c * c) / 5.0, (c * c + a * a) / 5.0, (a * a + b * b) / 5.0]
+            }
+            Solid::Sphere { radius: r } => [0.4 * r * r; 3],
+            Solid::HollowSphere { outer_radius: r, inner_radius: s } => {
+                // ⅖ (r⁵ − s⁵)/(r³ − s³) with r − s divided out; q = s/r.
+                let q = s / r;
+                let (fifth, third) = (1.0 + q * (1.0 + q * (1.0 + q * (1.0 + q))), 1.0 + q * (1.0 + q));
+                [0.4 * r * r * (fifth / third); 3]
+            }
+            Solid::Cylinder { radius: r, height: h } => about_e3((3.0 * r * r + h * h) / 12.0, 0.5 * r * r),
+            Solid::Cone { radius: r, height: h } => about_e3(0.15 * r * r + 0.0375 * h * h, 0.3 * r * r),
+            Solid::Rod { length } => about_e3(length * length / 12.0, 0.0),
+            Solid::Disc { radius: r } => about_e3(0.25 * r * r, 0.5 * r * r),
+            Solid::Torus { major_radius: a, minor_radius: r } => {
+                about_e3(0.5 * a * a + 0.625 * r * r, a * a + 0.75 * r * r)
+            }
+            Solid::Capsule { radius: r, height: h } => {
+                // Shares of the two hemispheres and of the cylinder between them. A hemisphere's centre
+                // of mass is 3r/8 beyond its base, which lies h/2 from the middle.
+                let ends = 4.0 * r / (4.0 * r + 3.0 * h);
+                let barrel = 3.0 * h / (4.0 * r + 3.0 * h);
+                about_e3(
+                    barrel * (3.0 * r * r + h * h) / 12.0
+                        + ends * (0.4 * r * r + 0.25 * h * h + 0.375 * r * h),
+                    barrel * 0.5 * r * r + ends * 0.4 * r * r,
+                )
+            }
+        }
+    }
+
+    /// The centre of mass: the origin, but for the cone a quarter of the way to its apex.
+    fn center(self) -> Vector {
+        match self {
+            Solid::Cone { height, .. } => Vector([0.0, 0.0, 0.25 * height]),
+            _ => Vector::default(),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Solid::Box { .. } => "box",
+            Solid::Ellipsoid { .. } => "ellipsoid",
+            Solid::Sphere { .. } => "sphere",
+            Solid::HollowSphere { .. } => "hollow sphere with equal radii",
+            Solid::Cylinder { .. } => "cylinder",
+            Solid::Cone { .. } => "cone",
+            Solid::Rod { .. } => "rod",
+            Solid::Disc { .. } => "disc",
+            Solid::Torus { .. } => "torus",
+            Solid::Capsule { .. } => "capsule",
+        }
+    }
+
+    /// Every length positive and finite; a torus that does not run through itself; a cavity that fits.
+    fn check(self) -> Result<(), BodyError> {
+        let positive = |lengths: &[(&'static str, f64)]| match lengths
+            .iter()
+            .find(|(_, x)| !(*x > 0.0 && x.is_finite()))
+        {
+            Some(&(name, value)) => Err(BodyError::Length { name, value }),
+            None => Ok(()),
+        };
+        match self {
+            Solid::Box { lengths: [a, b, c] } => {
+                positive(&[("lengths[0]", a), ("lengths[1]", b), ("lengths[2]", c)])
+            }
+            Solid::Ellipsoid { semi_axes: [a, b, c] } => {
+                positive(&[("semi_axes[0]", a), ("semi_axes[1]", b), ("semi_axes[2]", c)])
+            }
+            Solid::Sphere { radius } | Solid::Disc { radius } => positive(&[("radius", radius)]),
+            Solid::HollowSphere { outer_radius: outer, inner_radius: inner } => {
+                positive(&[("outer_radius", outer)])?;
+                let fits = (0.0..=outer).contains(&inner);
+                if fits { Ok(()) } else { Err(BodyError::InnerRadius { inner, outer }) }
+            }
+            Solid::Cylinder { radius, height }
+            | Solid::Cone { radius, height }
+            | Solid::Capsule { radius, height } => positive(&[("radius", radius), ("height", height)]),
+            Solid::Rod { length } => positive(&[("length", length)]),
+            Solid::Torus { major_radius: major, minor_radius: minor } => {
+                positive(&[("major_radius", major), ("minor_radius", minor)])?;
+                if minor <= major { Ok(()) } else { Err(BodyError::SpindleTorus { major, minor }) }
+            }
+        }
+    }
+}
+fn round(radius: f64, height: f64) -> Vec<(&'static str, Size)> {
+    vec![("radius", Size::One(radius)), ("height", Size::One(height))]
+}

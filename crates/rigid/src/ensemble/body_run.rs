@@ -1,0 +1,198 @@
+//! A body on its way through its passes, by the rules of a single one.
+
+use super::crew::{Crew, METHOD, Member, Told};
+use crate::error::SimulateError;
+use crate::laws::torque::Torque;
+use crate::methods::runge_kutta::{DOP853, Points, RungeKutta};
+use crate::methods::step_control::{Limit, Stride, next_stop};
+use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
+use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::run::limits::{Course, span};
+use crate::run::noise::Noise;
+use crate::run::refine::{Aim, Converged, Convergence, Order, Scales};
+use crate::run::sweep::{Pace, Pass};
+use crate::state::carried::Carried;
+use crate::state::center::Center;
+use std::mem;
+
+/// A body in a lane, on its way through its passes.
+pub(super) struct Seat<'a> {
+    pub member: Member<'a>,
+    /// Times at which steps end, rising: there its laws are not smooth, or change fast.
+    breaks: Vec<f64>,
+    /// The longest step, in s.
+    longest: f64,
+    limit: Limit,
+    /// A guess of the first step of a pass, in s.
+    first: f64,
+    passes: Convergence,
+    /// The one under way, with its points in the order of the walk.
+    pub pass: Pass,
+    /// What shakes its points.
+    pub noise: Option<Noise>,
+    /// Where all of them begin.
+    begin: Carried,
+    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    least_rate: f64,
+    /// The largest one that the pass before met.
+    known_rate: f64,
+    pub stride: Stride,
+    /// The largest estimate of the error of a step that may stand.
+    pub tolerance: f64,
+    /// Where to stop next.
+    pub stop: f64,
+    /// Parts of the way that were counted.
+    so_far: u64,
+}
+
+impl<'a> Seat<'a> {
+    pub fn new(mut member: Member<'a>, torques: &[Torque], crew: &Crew<'a>) -> Seat<'a> {
+        let start = Carried::new(member.start, Center::default());
+        let Course { breaks, is_smooth, longest, limit, least_rate } = mem::take(&mut member.course);
+        let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
+        let aim = Aim::new(METHOD.order(), crew.options.rtol);
+        let scales =
+            Scales { body: member.gyrostat, rounding: ROUNDING_OF_RUNGE_KUTTA, in_space: true, is_smooth };
+        Seat {
+            member,
+            breaks,
+            longest,
+            limit,
+            first,
+            passes: Convergence::new(aim.tolerance(), aim, scales),
+            pass: Pass::default(),
+            noise: None,
+            begin: start,
+            least_rate,
+            known_rate: 0.0,
+            stride: Stride::new(first, longest),
+            tolerance: aim.goal,
+            stop: start.phase.time,
+            so_far: 0,
+        }
+    }
+
+    /// Begins the next pass: where it starts.
+    pub fn begin_pass(&mut self) -> Carried {
+        let Order { pace, known_rate, noise, .. } = self.passes.next();
+        self.known_rate = known_rate;
+        if let Pace::Tolerance(tolerance) = pace {
+            self.tolerance = tolerance;
+        }
+        (self.noise, self.stride) = (noise, Stride::new(self.first, self.longest));
+        self.begin
+    }
+
+    /// The size of the angular velocity, and no less than what counts, in rad/s.
+    pub fn rate(&self, at: &Carried) -> f64 {
+        self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate).max(self.known_rate)
+    }
+
+    /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and
+    /// in the next pass too. The last pass, once it is good enough.
+    pub fn proceed(
+        &mut self,
+        at: &mut Carried,
+        fastest: &mut f64,
+        times: &[f64],
+    ) -> Result<Option<Converged>, SimulateError> {
+        let early = times.partition_point(|&t| t < self.begin.phase.time);
+        loop {
+            let taken = self.pass.states.len();
+            self.pass.meet(*fastest, &at.center);
+            if taken == times.len() {
+                let mut pass = mem::take(&mut self.pass);
+                pass.states[..early].reverse();
+                if let Some(found) = self.passes.take(pass, &|from, _| *from)? {
+                    return Ok(Some(found));
+                }
+                *at = self.begin_pass();
+                *fastest = self.rate(at);
+                continue;
+            }
+            let time = times[if taken < early { early - 1 - taken } else { taken }];
+            if at.phase.time != time {
+                self.stop = next_stop(&self.breaks, at.phase.time, time);
+                return Ok(None);
+            }
+            self.pass.states.push(*at);
+            if taken + 1 == early {
+                (*at, self.stride) = (self.begin, Stride::new(self.first, self.longest));
+                *fastest = self.rate(at);
+            }
+        }
+    }
+
+    /// Counts a step that may stand.
+    pub fn arrive<const W: usize, const F: bool>(
+        &mut self,
+        h: f64,
+        next: &Points<W, F>,
+        l: usize,
+        crew: &Crew<'a>,
+    ) -> Result<(), SimulateError> {
+        self.pass.steps += 1;
+        self.pass.longest = self.pass.longest.max(h.abs());
+        if !next.is_finite(l) {
+            return Err(SimulateError::Diverged { time: next.time.0[l] });
+        }
+        let turn = self.member.gyrostat.omega(next.get(l).phase.momentum).norm() * h;
+        let time = next.time.0[l];
+        self.limit.check(self.pass.steps, h, turn, || self.fraction(time, crew))
+    }
+
+    /// Why a step has no error: it is too long, or a law has no torque on the way, which the step of a single body
+    /// tells.
+    #[cold]
+    pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
+        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
+        alone.step(at, h, self.rate(at)).map(|_| ())
+    }
+
+    /// Counts the way gone in a pass.
+    pub fn count(&mut self, time: f64, crew: &Crew<'a>) {
+        let fraction = self.fraction(time, crew);
+        crew.count(&mut self.so_far, fraction, 1);
+    }
+
+    /// The fraction of a pass that is done at a time.
+    fn fraction(&self, time: f64, crew: &Crew<'a>) -> f64 {
+        let start = self.begin.phase.time;
+        let [first, last] = span(crew.times, start);
+        let total = (last - first).max(f64::MIN_POSITIVE);
+        (if self.stop < start { start - time } else { time - first }) / total
+    }
+
+    /// Writes and tells what was found.
+    pub fn done(mut self, found: Converged, torques: &[Torque], crew: &Crew<'a>) {
+        let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
+        let mut watch = Watch::new(gyrostat, torques, start);
+        let mut norm_drift = 0.0_f64;
+        for (index, Carried { phase, .. }) in found.pass.states.iter().enumerate() {
+            watch.look(phase);
+            norm_drift = norm_drift.max(off_unit(phase.rotor));
+            own.write(index, (frame, &gyrostat, torques), phase, &crew.center(body, phase.time));
+        }
+        let certificate = Certificate {
+            method: METHOD.name(),
+            step: found.pass.longest,
+            steps: found.pass.steps,
+            evaluations: found.pass.evaluations,
+            error_estimate: Some(found.error),
+            drifts: watch.finish(),
+            norm_drift,
+            warnings: Vec::new(),
+        };
+        crew.count(&mut self.so_far, 1.0, 1);
+        crew.tell([Told { body, certificate, failure: None }]);
+    }
+
+    pub fn failed(mut self, error: SimulateError, crew: &Crew<'a>) {
+        if let SimulateError::Stiff { .. } = error {
+            // As a single body it is followed by another method.
+            return crew.alone(self.member.body, self.member.own, &mut |_| true);
+        }
+        crew.count(&mut self.so_far, 1.0, 1);
+        crew.fail(self.member.body, &mut self.member.own, METHOD.name(), error);
+    }
+}

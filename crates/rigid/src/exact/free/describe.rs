@@ -1,0 +1,123 @@
+//! What the invariants of a free motion tell.
+//!
+//! **Phase.** In one period T of the angular velocity m comes back once round d, and the body has turned about L.
+//! With the energy `2E = (G² + sP)/c` and ν of [`super`], `ν − 2E/G = −s A/T` with
+//!
+//! ```text
+//! A = (TP/cG) (1 − ½ S(k²/n)) = 2π + T (G|b−a| S(n)/2ab − Q/aG),   νT = 2ET/G − s A:
+//! ```
+//!
+//! the angle is what energy and time tell, less the solid angle A that L sweeps round the encircled axis in the
+//! body (Montgomery, Am. J. Phys. 59 (1991) 394).
+//!
+//! **Wobble.** Between L and that axis is the angle whose tangent is `√(m1² + m2²)/m3`, least where sn = 0,
+//! `aA_a/cA_c`, largest where cn = 0, `bA_b/(cA_c k')`.
+
+use super::FreeMotion;
+use crate::body::inertia::equal;
+use crate::exact::regime::{FreeDescription, Regime};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::mean_and_sum;
+use crate::numerics::wide::Wide;
+use crate::state::phase::Gyrostat;
+use polhode_ga::Bivector;
+use std::f64::consts::PI;
+
+/// From so large a parameter 1 − k²/n on the other form of A is taken; A is nearly 2π there.
+const FAR: f64 = 1e4;
+
+impl FreeMotion {
+    /// Period of the angular velocity in the body, 4K/λ, in s; None where nothing repeats or changes.
+    pub fn period(&self) -> Option<f64> {
+        let orbit = self.orbit.as_ref()?;
+        let turn = orbit.lambda * orbit.mean?;
+        Some(2.0 * PI / turn.value() / self.scale).filter(|x| x.is_finite())
+    }
+
+    /// What the invariants tell.
+    pub fn describe(&self) -> FreeDescription {
+        let (i, w) = (self.moments, self.omega.0);
+        let body = Gyrostat::rigid(i);
+        let momentum = body.momentum(self.omega);
+        let largest = |x: &usize, y: &usize| w[*x].abs().total_cmp(&w[*y].abs());
+        let axis = (0..3).max_by(largest).unwrap_or(0);
+        let rest = w == [0.0; 3];
+        let still = FreeDescription {
+            regime: if rest { Regime::Rest } else { Regime::Steady },
+            energy: body.kinetic(momentum),
+            angular_momentum: momentum.norm(),
+            modulus: 0.0,
+            axis,
+            period: None,
+            precession_rate: None,
+            solid_angle: None,
+            wobble: (!rest).then_some([0.0, 0.0]),
+            wobble_period: self.small_wobble(axis),
+        };
+        let Some(orbit) = &self.orbit else { return still };
+        let [a, b, c] = orbit.axes;
+        let regime = match orbit.mean {
+            None => Regime::Separatrix,
+            Some(_) if equal(i[a], i[b]) => Regime::Symmetric,
+            Some(_) if orbit.s > 0.0 => Regime::ShortAxis,
+            Some(_) => Regime::LongAxis,
+        };
+        let m: [f64; 3] = std::array::from_fn(|k| i[orbit.axes[k]] * orbit.amplitudes[k].abs());
+        let moving = FreeDescription {
+            regime,
+            modulus: orbit.k2.sqrt(),
+            axis: c,
+            wobble: Some([m[0].atan2(m[2]), m[1].atan2(m[2] * orbit.kc.value())]),
+            wobble_period: None,
+            ..still
+        };
+        let Some(mean) = orbit.mean else { return moving };
+        // ν leaves out one turn in each period.
+        let rate = orbit.precession + orbit.lambda * mean * orbit.s.into();
+        FreeDescription {
+            period: self.period(),
+            precession_rate: Some(rate.value() * self.scale).filter(|x| x.is_finite()),
+            solid_angle: self.solid_angle(),
+            ..moving
+        }
+    }
+
+    /// A.
+    fn solid_angle(&self) -> Option<f64> {
+        let orbit = self.orbit.as_ref()?;
+        let mean = orbit.mean?;
+        let size = super::power_of_two(self.moments);
+        let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
+        let [a, b, c] = orbit.axes.map(|k| in_units(self.moments[k], size));
+        let [wa, wb, wc] = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
+        let [ma, mb, mc] = [a * wa, b * wb, c * wc];
+        let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
+        let p = ac * ma * wa + bc * mb * wb;
+        let q = ab * mb * wb + ac * mc * wc;
+        let g2 = ma * ma + mb * mb + mc * mc;
+        let (g, turn, half) = (g2.sqrt(), Wide::from(orbit.lambda * mean), DoubleDouble::from(0.5));
+        // 1 − k²/n.
+        let p2 = ac * g2 / (c * q);
+        let part = if p2 < FAR.into() {
+            let (_, sum) = mean_and_sum(orbit.kc, p2.narrow());
+            (p / (c * g * turn)).narrow() * (DoubleDouble::ONE - sum * half)
+        } else {
+            let (_, sum) = mean_and_sum(orbit.kc, (b * ac / (a * bc)).narrow());
+            let first = (g * ab / (a * b * turn)).narrow() * sum * half;
+            DoubleDouble::ONE + first - (q / (a * g * turn)).narrow()
+        };
+        Some(2.0 * PI * part.value()).filter(|x| x.is_finite())
+    }
+
+    /// Period of a small wobble about principal axis c of a body that turns about it: in Euler's equations
+    /// without squares of the other rates both are harmonic, with the square of the rate
+    /// `(c−a)(c−b) ω²/(ab)`. None if that is not positive, or the body turns about another axis.
+    fn small_wobble(&self, c: usize) -> Option<f64> {
+        let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+        let Bivector(w) = self.omega;
+        let i = self.moments;
+        let square = (i[c] - i[a]) / i[a] * ((i[c] - i[b]) / i[b]);
+        let about = w[a] == 0.0 && w[b] == 0.0 && square > 0.0;
+        Some(2.0 * PI / (square.sqrt() * w[c].abs())).filter(|period| about && period.is_finite())
+    }
+}

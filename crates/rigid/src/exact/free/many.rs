@@ -1,0 +1,230 @@
+//! Free motions of many bodies, side by side in the lanes.
+//!
+//! One formula serves all bodies of a form, whatever their regime: steady rotation and symmetric tops are
+//! circular, the separatrix and what is near it hyperbolic. So the bodies are held in tiles, and of a tile those
+//! of either form lie together in blocks, one body to a lane. Each number is computed from those of its own lane
+//! alone, so that a state has the same bits as [`FreeMotion::at`], whatever its neighbours are.
+
+use super::FreeMotion;
+use super::flow::{AnyFlow, Flow};
+use super::series::{Circular, Hyperbolic, Series};
+use polhode_ga::rows::curve::{TOGETHER, expect, sample, together};
+use polhode_ga::simd::threads::{Threads, for_each};
+use std::ops::Range;
+
+/// Motions in a tile: enough to fill the blocks of both forms, few enough for their states to stay near.
+pub const TILE: usize = 1024;
+
+/// From so many times on a motion is faster with the times in the lanes than beside other motions.
+const TIMES_IN_LANES: usize = 48;
+
+/// From so many states on a thread more pays.
+const SHARED: usize = 2048;
+
+/// The times at which many motions are wanted.
+#[derive(Clone, Copy, Debug)]
+pub enum Times<'a> {
+    /// All of them for each motion.
+    Common(&'a [f64]),
+    /// So many for each motion in turn; after the last motion the first one follows again.
+    Own(&'a [f64], usize),
+}
+
+/// At most [`TILE`] motions, in an order.
+#[derive(Clone, Debug, Default)]
+pub struct Tile {
+    circular: Vec<Block<Circular<TOGETHER>>>,
+    hyperbolic: Vec<Block<Hyperbolic<TOGETHER>>>,
+    horizons: Vec<f64>,
+}
+
+/// Motions of one form in their lanes.
+#[derive(Clone, Debug)]
+struct Block<S> {
+    flows: Flow<S, TOGETHER>,
+    /// Their places in the tile, rising.
+    places: [u16; TOGETHER],
+    /// There may be fewer than lanes.
+    count: usize,
+}
+
+/// Some states of the motions of a tile: `rows` of them, motion by motion, of `each` times.
+struct Part<'a> {
+    times: Times<'a>,
+    each: usize,
+    rows: Range<usize>,
+    rotors: &'a mut [[f64; 4]],
+    omegas: &'a mut [[f64; 3]],
+}
+
+impl Tile {
+    /// Of the next motions, at most [`TILE`] of them.
+    ///
+    /// # Errors
+    /// The first there is, with its place among them.
+    pub fn new<E>(motions: impl Iterator<Item = Result<FreeMotion, E>>) -> Result<Tile, (usize, E)> {
+        let mut tile = Tile::default();
+        for (place, motion) in motions.take(TILE).enumerate() {
+            let motion = motion.map_err(|error| (place, error))?;
+            tile.horizons.push(motion.horizon());
+            match &motion.flow {
+                AnyFlow::Circular(flow) => add(&mut tile.circular, place, flow),
+                AnyFlow::Hyperbolic(flow) => add(&mut tile.hyperbolic, place, flow),
+            }
+        }
+        tile.circular.shrink_to_fit();
+        tile.hyperbolic.shrink_to_fit();
+        Ok(tile)
+    }
+
+    /// [`FreeMotion::horizon`] of each motion.
+    pub fn horizons(&self) -> &[f64] {
+        &self.horizons
+    }
+
+    fn fill(&self, mut part: Part<'_>) {
+        fill(&self.circular, &mut part);
+        fill(&self.hyperbolic, &mut part);
+    }
+}
+
+/// Fills in what states the part has of all blocks. To have them from memory takes longer than to compute.
+fn fill<S: Series<TOGETHER>>(blocks: &[Block<S>], part: &mut Part<'_>) {
+    for (i, block) in blocks.iter().enumerate() {
+        if let Some(next) = blocks.get(i + 1) {
+            expect(next);
+        }
+        block.fill(part);
+    }
+}
+
+/// Puts a motion into the next lane.
+fn add<S: Series<TOGETHER>>(blocks: &mut Vec<Block<S>>, place: usize, flow: &Flow<S::One>) {
+    if blocks.last().is_none_or(|block| block.count == TOGETHER) {
+        blocks.push(Block { flows: Flow::empty(), places: [0; TOGETHER], count: 0 });
+    }
+    if let Some(block) = blocks.last_mut() {
+        block.flows.put(block.count, flow);
+        block.places[block.count] = place as u16;
+        block.count += 1;
+    }
+}
+
+/// States `rows` of all those of the motions at the times, motion by motion: rows of four rotor components and
+/// of three components of the angular velocity. The same bits as [`FreeMotion::at`], for any threads.
+///
+/// # Panics
+/// If the numbers of rows are not that of the states, there are no such states, or a tile but the last has fewer
+/// motions than [`TILE`].
+pub fn at_each(
+    threads: Threads,
+    tiles: &[Tile],
+    times: Times<'_>,
+    rows: Range<usize>,
+    rotors: &mut [f64],
+    omegas: &mut [f64],
+) {
+    let (mut rotors, mut omegas) = (rotors.as_chunks_mut().0, omegas.as_chunks_mut().0);
+    assert!(rotors.len() == rows.len() && omegas.len() == rows.len(), "results of the wrong length");
+    let pieces = threads.ranges(rows.len(), SHARED).map(|piece| {
+        let length = piece.len();
+        let a = rotors.split_off_mut(..length).expect("pieces fill the result");
+        let b = omegas.split_off_mut(..length).expect("pieces fill the result");
+        (rows.start + piece.start, a, b)
+    });
+    for_each(pieces, |(first, rotors, omegas)| in_order(tiles, times, first, rotors, omegas));
+}
+
+/// The states from row `first` on, tile by tile.
+fn in_order(
+    tiles: &[Tile],
+    times: Times<'_>,
+    mut first: usize,
+    mut rotors: &mut [[f64; 4]],
+    mut omegas: &mut [[f64; 3]],
+) {
+    let each = match times {
+        Times::Common(times) => times.len(),
+        Times::Own(_, each) => each,
+    };
+    let motions = tiles.iter().map(|tile| tile.horizons.len()).sum::<usize>();
+    while !rotors.is_empty() {
+        let place = first / each % motions;
+        let tile = &tiles[place / TILE];
+        let start = place % TILE * each + first % each;
+        let count = (tile.horizons.len() * each - start).min(rotors.len());
+        let (a, more_rotors) = rotors.split_at_mut(count);
+        let (b, more_omegas) = omegas.split_at_mut(count);
+        let times = match times {
+            Times::Common(_) => times,
+            Times::Own(times, each) => Times::Own(&times[first..first + count], each),
+        };
+        tile.fill(Part { times, each, rows: start..start + count, rotors: a, omegas: b });
+        (rotors, omegas) = (more_rotors, more_omegas);
+        first += count;
+    }
+}
+
+impl<S: Series<TOGETHER>> Block<S> {
+    fn places(&self) -> &[u16] {
+        &self.places[..self.count]
+    }
+
+    /// Fills in what states the part has of these motions.
+    fn fill(&self, part: &mut Part<'_>) {
+        let (Some(&first), Some(&last)) = (self.places().first(), self.places().last()) else { return };
+        let rows = usize::from(first) * part.each..(usize::from(last) + 1) * part.each;
+        if rows.start >= part.rows.end || rows.end <= part.rows.start {
+            return;
+        }
+        if part.each >= TIMES_IN_LANES {
+            for (l, &place) in self.places().iter().enumerate() {
+                part.one(usize::from(place), &self.flows.take(l));
+            }
+        } else {
+            for k in 0..part.each {
+                self.at_time(k, part);
+            }
+        }
+    }
+
+    /// All motions at the kth of their times.
+    fn at_time(&self, k: usize, part: &mut Part<'_>) {
+        let first = part.rows.start;
+        let row = |place: &u16| usize::from(*place) * part.each + k;
+        let mut times = [0.0; TOGETHER];
+        for (time, place) in times.iter_mut().zip(self.places()) {
+            *time = match part.times {
+                Times::Common(times) => times[k],
+                Times::Own(times, _) => times.get(row(place).wrapping_sub(first)).copied().unwrap_or(0.0),
+            };
+        }
+        let (mut rotors, mut omegas) = ([[0.0; 4]; TOGETHER], [[0.0; 3]; TOGETHER]);
+        together(&self.flows, &times, &mut rotors, &mut omegas);
+        for (l, place) in self.places().iter().enumerate() {
+            let row = row(place);
+            if part.rows.contains(&row) {
+                part.rotors[row - first] = rotors[l];
+                part.omegas[row - first] = omegas[l];
+            }
+        }
+    }
+}
+
+impl Part<'_> {
+    /// One motion at its times.
+    fn one<T: Series<1>>(&mut self, place: usize, flow: &Flow<T>) {
+        let (first, each) = (self.rows.start, self.each);
+        let rows = (place * each).max(first)..((place + 1) * each).min(self.rows.end);
+        if rows.is_empty() {
+            return;
+        }
+        let to = rows.start - first..rows.end - first;
+        let times = match self.times {
+            Times::Common(times) => &times[rows.start - place * each..rows.end - place * each],
+            Times::Own(times, _) => &times[to.clone()],
+        };
+        let (rotors, omegas) = (&mut self.rotors[to.clone()], &mut self.omegas[to]);
+        sample(flow, Threads::ONE, times, rotors.as_flattened_mut(), omegas.as_flattened_mut());
+    }
+}

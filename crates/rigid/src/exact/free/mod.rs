@@ -1,0 +1,260 @@
+//! The torque-free top, exact at any time.
+//!
+//! In principal axes `E = ½ Σ i_k ω_k²` and `G² = Σ i_k² ω_k²` are constant, so the angular velocity
+//! runs along the intersection of two ellipsoids, the polhode. Name `c` the axis it encircles: that of
+//! the largest moment when `G² > 2E i_mid` (short-axis mode), of the smallest otherwise (long-axis
+//! mode); `b` the middle one, `a` the other. The combinations
+//!
+//! ```text
+//! P = a(c−a) ω_a² + b(c−b) ω_b² = 2Ec − G²
+//! Q = b(b−a) ω_b² + c(c−a) ω_c² = G² − 2Ea
+//! D = c(c−b) ω_c² − a(b−a) ω_a² = G² − 2Eb
+//! λ² = (c−b)Q / (abc),  k² = (b−a)P / ((c−b)Q),  k'² = (c−a)D / ((c−b)Q)
+//! ```
+//!
+//! are formed in twice the precision, so that k' is known at the separatrix too. Then with `u = u0 + λt`
+//!
+//! ```text
+//! ω = (A_a cn u, τ A_b sn u, σ A_c dn u),   A_a² = P/(a(c−a)),  A_b² = P/(b(c−b)),  A_c² = Q/(c(c−a)),
+//! ```
+//!
+//! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the axes' order (a, b, c). (On the
+//! separatrix cn is positive for ever; there A_a and τ take the sign of ω_a.)
+//!
+//! **The rotor.** In the frame of `e1 = e_a`, `d = σ e_c` and `e2 = d x e1`, the momentum is
+//! `m = (a A_a cn, s b A_b sn, c A_c dn)`. Let the rotor `W(t)` carry m to `G d`, which stands for the fixed L:
+//! `R(t) = R(0) ~W(0) W(t)`. As a quaternion `W = (w0, w1, w2, w3)` it has the Cayley–Klein parameters
+//! `α = w0 + i w3` and `β = w1 + i w2`, and `m = ~W G d W` reads
+//!
+//! ```text
+//! |α|² − |β|² = m3/G,   2 α β* = (m2 + i m1)/G,   |α|² + |β|² = 1.
+//! ```
+//!
+//! So `|α|² = (G + m3)/2G` is an elliptic function of u with the periods 2K and 4iK', its poles at ±iK' and its
+//! zeros where `dn = −G/cA_c`: at ±i(2K' − η) for `dn iη = G/cA_c`, that is `η = F(φ, k')` with
+//! `tan²φ = a(c−b)/(c(b−a))`; and `|β|²` has its zeros at ±iη. A function is known by these up to a factor:
+//! with the theta functions of nome q², `q = exp(−πK'/K)`, `v = πu/2K` and `y = πη/2K`
+//!
+//! ```text
+//! α = C(t) θ4(v − i s y | q²),   β = s C(t) θ1(v − i s y | q²),
+//! ```
+//!
+//! the signs being those of m. `C C*` is 1/θ4(v | q) but for a constant; normalising does the rest. The phase of C
+//! is linear in time, ½νt, since α has no other zeros and poles: ν is the mean rate of precession of a
+//! rotor without the turns of m about d. **The rotor is four theta series, and one uniform turn about L**:
+//!
+//! ```text
+//! W = exp(½ν t d) (Re θ4 + d Im θ4 + e1 s Re θ1 + e2 s Im θ1)/|…|   in quaternion units.
+//! ```
+//!
+//! Jacobi found this in 1849; what it saves is an integral of the third kind for each state. One is left in ν:
+//! with Euler's `φ' = G(2E − m3²/c)/(G² − m3²)` and the 2π by which m turns about d in each period,
+//!
+//! ```text
+//! ν = G/c + s (κ Π(n) − π/2) λ/K,   κ = G|c−a|/(acλ),   n = −c(b−a)/(a(c−b)) <= 0
+//!   = G/a − s G|b−a| S(n)/2ab − s π λ/2K   = G/c + s P S(k²/n)/2cG,
+//! ```
+//!
+//! where S is the sum that `Π − K` is proportional to ([`crate::numerics::elliptic`]), and the second form comes of
+//! `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term times κ is π/2. The one with the smaller parameter is taken.
+//!
+//! **Near the separatrix** K grows and q tends to 1. Jacobi's imaginary transformation leads to the nome
+//! `q' = exp(−πK/K')` and, with `x = πu/4K'` and `γ = πη/4K'` for u within a half period,
+//!
+//! ```text
+//! θ4(v − i s y | q²) ~ exp(2i s v γ/π) θ2(s γ + i x | √q'),   θ1 ~ −i exp(…) θ1(s γ + i x | √q'):
+//! ```
+//!
+//! circular functions of γ times hyperbolic ones of x; the exponential joins the precession. On the separatrix
+//! itself one term is left, and ν is G/b.
+//!
+//! **Digits.** v and νt/2 are reduced in twice the precision, so that the error does not grow with time. All
+//! series are factors (sin v, sinh x, …) times sums of terms that fall fast, so that each component of ω keeps its
+//! own digits, as a needle needs; no angle turns fast as the wobble P vanishes, for none is computed. Limits need no
+//! care: equal moments give q = 0, and steady rotation is β = 0.
+//!
+//! Jacobi 1849; Whittaker, *Analytical Dynamics* §69; Celledoni, Fassò, Säfström, Zanna, SIAM J. Sci. Comput.
+//! 30 (2008); DLMF 20.7 (theta functions), 19.7 and 19.8 (integrals).
+
+mod derivatives;
+mod describe;
+mod flow;
+mod many;
+pub(crate) mod orbit;
+mod path;
+pub(crate) mod series;
+mod variation;
+
+use crate::body::inertia::Inertia;
+use crate::error::SimulateError;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::mean;
+use crate::numerics::lanes::Phase;
+use crate::numerics::wide::Wide;
+use crate::state::checks::check_moments;
+pub use derivatives::{Differentiated, FlowDerivatives};
+use flow::{AnyFlow, Flow};
+pub use many::{TILE, Tile, Times, at_each};
+use orbit::Orbit;
+use polhode_ga::rows::curve::{sample, value};
+use polhode_ga::simd::threads::Threads;
+use polhode_ga::{Bivector, Rotor};
+use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
+use std::f64::consts::PI;
+
+/// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
+pub(crate) const MOST_TURNS: f64 = 1e17;
+
+/// A free motion: rotor and angular velocity at any time up to its [`FreeMotion::horizon`].
+#[derive(Clone, Copy, Debug)]
+pub struct FreeMotion {
+    moments: [f64; 3],
+    /// From principal axes to those of the body.
+    frame: Rotor,
+    /// In principal axes at time 0.
+    omega: Bivector,
+    /// A power of two near the largest component of omega; the orbit is that of omega/scale in time
+    /// t·scale, with moments near 1, so that no square leaves the range of floating point.
+    scale: f64,
+    /// None for steady rotation.
+    orbit: Option<Orbit>,
+    flow: AnyFlow,
+}
+
+impl FreeMotion {
+    /// The motion that starts at `rotor` (body axes to space) with angular velocity `omega` in body axes. An
+    /// error if a principal moment is zero.
+    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector) -> Result<FreeMotion, SimulateError> {
+        let (frame, moments) = (inertia.principal_frame(), inertia.principal_moments());
+        check_moments(moments)?;
+        Ok(FreeMotion::in_frame(frame, moments, rotor * frame, frame.reverse().apply_bivector(omega)))
+    }
+
+    /// The motion of a body whose axes are its principal axes, with positive moments.
+    pub fn in_principal_axes(moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
+        FreeMotion::in_frame(Rotor::IDENTITY, moments, rotor, omega)
+    }
+
+    /// From principal axes to space, and with the frame from principal axes to those of the body.
+    pub(crate) fn in_frame(frame: Rotor, moments: [f64; 3], rotor: Rotor, omega: Bivector) -> FreeMotion {
+        let (size, scale) = (power_of_two(moments), power_of_two(omega.0));
+        let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
+        let orbit = Orbit::new(moments.map(|i| in_units(i, size)), omega.0.map(|w| in_units(w, scale)));
+        let flow = match &orbit {
+            Some(orbit) => tumbling(orbit, scale, rotor, frame),
+            None => steady(omega, scale, rotor, frame),
+        };
+        FreeMotion { moments, frame, omega, scale, orbit, flow }
+    }
+
+    /// How far in time, in s, the phase is known: to 1e17 turns.
+    pub fn horizon(&self) -> f64 {
+        let fastest = match &self.orbit {
+            Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * self.scale,
+            None => self.omega.norm(),
+        };
+        MOST_TURNS * 4.0 * PI / fastest
+    }
+
+    /// Rotor and body angular velocity at time `t` in s, the same bits as [`FreeMotion::at_many`].
+    pub fn at(&self, t: f64) -> (Rotor, Bivector) {
+        let (rotor, omega) = match &self.flow {
+            AnyFlow::Circular(flow) => value(flow, t),
+            AnyFlow::Hyperbolic(flow) => value(flow, t),
+        };
+        (Rotor::from_unit_components(rotor), Bivector(omega))
+    }
+
+    /// The same at many times: rows of four rotor components and of three components of the angular velocity.
+    ///
+    /// # Panics
+    /// If the numbers of rows are not that of the times.
+    pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
+        match &self.flow {
+            AnyFlow::Circular(flow) => sample(flow, threads, times, rotors, omegas),
+            AnyFlow::Hyperbolic(flow) => sample(flow, threads, times, rotors, omegas),
+        }
+    }
+}
+
+/// The power of two next below the largest magnitude; 1 for zeros.
+pub(crate) fn power_of_two(components: [f64; 3]) -> f64 {
+    let largest = components.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
+}
+
+/// `exp(−½ Ω t)`, a uniform turn about d along Ω.
+fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
+    let square = |x: f64| DoubleDouble::from(x) * x.into();
+    let unit = omega / scale;
+    let [x, y, z] = unit.0;
+    let size = (square(x) + square(y) + square(z)).sqrt();
+    let plane = if size.hi > 0.0 { unit / size.value() } else { Bivector::default() };
+    let d = Rotor::from_unit_components([0.0, -plane.0[0], -plane.0[1], -plane.0[2]]);
+    let still = Phase { rate: DoubleDouble::ZERO, start: [0.0; 2] };
+    let flow = Flow {
+        scale: [scale],
+        orbit: still.into(),
+        precession: Phase { rate: size * DoubleDouble::OVER_TWO_PI * 0.5.into(), ..still }.into(),
+        series: Circular::steady(),
+        rotor: [[[0.0]; 4]; 4],
+        omega: frame.apply_bivector(omega).0.map(|w| [[0.0], [0.0], [w]]),
+    };
+    AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
+}
+
+/// Any other motion.
+fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
+    let (whole, rest) = orbit.start;
+    // AGM(1, k) = π/2K'.
+    let other = mean(orbit.k2.sqrt());
+    let Some(mean) = orbit.mean else {
+        let rate = orbit.lambda / NEVER.into();
+        let phase = Phase { rate, start: [rest / NEVER, 0.0] };
+        let series = Hyperbolic::separatrix(0.5 * orbit.eta() * other, orbit.s);
+        return AnyFlow::Hyperbolic(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame));
+    };
+    // 1/4K.
+    let per_u = mean * DoubleDouble::OVER_TWO_PI;
+    let phase = Phase { rate: orbit.lambda * per_u, start: [0.25 * whole, rest * per_u.hi] };
+    let nome = if other > 0.0 { (-PI * mean.hi / other).exp() } else { 0.0 };
+    if nome <= LARGEST_NOME {
+        let rho = (-orbit.rest_of_eta() * mean.hi).exp();
+        let series = Circular::new(nome, rho, orbit.s);
+        AnyFlow::Circular(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame))
+    } else {
+        // πK/4K' and πη/4K'.
+        let series = Hyperbolic::new(0.25 * PI * other / mean.hi, 0.5 * orbit.eta() * other, orbit.s);
+        AnyFlow::Hyperbolic(flow(orbit, scale, phase, (series, series.normalizers()), rotor, frame))
+    }
+}
+
+/// Phases, series with their normalizers, and frames together.
+fn flow<S: Series<1>>(
+    top: &Orbit,
+    scale: f64,
+    phase: Phase,
+    (series, factors): (S, [f64; 3]),
+    rotor: Rotor,
+    frame: Rotor,
+) -> Flow<S> {
+    let rate = top.precession * DoubleDouble::OVER_TWO_PI * 0.5.into();
+    let precession = Phase { rate, start: [0.0; 2] };
+    let axis = |k: usize| {
+        let mut axis = [0.0; 3];
+        axis[top.axes[k]] = 1.0;
+        axis
+    };
+    // Quaternion units are the negatives of the planes.
+    let unit = |k: usize| {
+        let [x, y, z] = axis(k).map(|x| -top.signs[k] * x);
+        Rotor::from_unit_components([0.0, x, y, z])
+    };
+    let columns: [[f64; 3]; 3] = std::array::from_fn(|k| {
+        frame.apply_bivector(Bivector(axis(k)) * (top.amplitudes[k] * factors[k] * scale)).0
+    });
+    let omega = std::array::from_fn(|i| columns.map(|c| [c[i]]));
+    let (scale, orbit, precession) = ([scale], phase.into(), precession.into());
+    let flow = Flow { scale, orbit, precession, series, rotor: [[[0.0]; 4]; 4], omega };
+    flow.with_frames(rotor, [Rotor::IDENTITY, unit(0), unit(1), unit(2)], frame.reverse())
+}

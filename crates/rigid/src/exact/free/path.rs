@@ -1,0 +1,51 @@
+//! The curves that the angular velocity draws: the polhode in the body, the herpolhode in space.
+
+use super::FreeMotion;
+use crate::error::SimulateError;
+use crate::state::checks::check_horizons;
+use polhode_ga::Bivector;
+
+/// On the separatrix all but sech 20 = 4e-9 of the way from pole to pole lies between u = −20 and 20.
+const NEARLY_ALL: f64 = 20.0;
+
+impl FreeMotion {
+    /// Where in time to begin, and for how long to go, to see all of the polhode: one period; on the separatrix
+    /// the way from one end of the middle axis to the other; no time if the rotation is steady.
+    fn once_round(&self) -> (f64, f64) {
+        let Some(orbit) = &self.orbit else { return (0.0, 0.0) };
+        match orbit.mean {
+            Some(_) => (0.0, self.period().unwrap_or(0.0)),
+            None => {
+                let rate = orbit.lambda.hi * self.scale;
+                ((-NEARLY_ALL - orbit.start.1) / rate, 2.0 * NEARLY_ALL / rate)
+            }
+        }
+    }
+
+    /// So many angular velocities in body axes along the polhode, equally far from each other in time, from the
+    /// start on; the last is the first again, except on the separatrix, where the curve goes from pole to pole.
+    pub fn polhode(&self, count: usize) -> Vec<Bivector> {
+        let (start, length) = self.once_round();
+        let step = length / count.saturating_sub(1).max(1) as f64;
+        let mut curve: Vec<_> = (0..count).map(|k| self.at(start + step * k as f64).1).collect();
+        if self.period().is_some()
+            && let [first, .., last] = &mut curve[..]
+        {
+            *last = *first;
+        }
+        curve
+    }
+
+    /// So many angular velocities in space axes, over so many times the time that the polhode takes.
+    pub fn herpolhode(&self, count: usize, periods: f64) -> Result<Vec<Bivector>, SimulateError> {
+        let (start, length) = self.once_round();
+        let step = periods * length / count.saturating_sub(1).max(1) as f64;
+        let times: Vec<f64> = (0..count).map(|k| start + step * k as f64).collect();
+        check_horizons(&times, [self.horizon(); 2])?;
+        let in_space = |&t: &f64| {
+            let (rotor, omega) = self.at(t);
+            rotor.apply_bivector(omega)
+        };
+        Ok(times.iter().map(in_space).collect())
+    }
+}

@@ -1,0 +1,336 @@
+//! The theta series of a free motion, as polynomials.
+//!
+//! [`super`] says what they are for. Two forms are at hand, in trigonometric functions for a small nome
+//! `q = exp(−πK'/K)`, in hyperbolic ones for a small `q' = exp(−πK/K')`. The border is q = 0.2, where q' is 0.002:
+//! terms of the orders kept fall below 1e-17 there. Coefficients are computed once; a harmonic is a
+//! Chebyshev polynomial in `cos 2v` (or `cosh`) times one of sin v, cos v and sin 2v,
+//!
+//! ```text
+//! cos 2nv = T_n,  sin 2nv = sin 2v U_{n−1},  sin (2n+1)v = sin v W_n,  cos (2n+1)v = cos v V_n,
+//! ```
+//!
+//! all with `p_{n+1} = 2x p_n − p_{n−1}`. So sin v and its like are factors, and nothing is lost where a
+//! function vanishes.
+
+use crate::numerics::lanes::{exp_minus, horner_in_lane, in_lane, sin_cos_turns};
+use std::f64::consts::PI;
+
+/// The nome up to which the trigonometric series serve.
+pub(crate) const LARGEST_NOME: f64 = 0.2;
+
+/// What the series give at `W` times: the rotor `Z` up to its norm, in the frame (e1, e2, d) of quaternion
+/// units; cn, sn and dn up to a common denominator; and by what part of a turn the precession is ahead.
+pub(super) struct State<const W: usize> {
+    pub z: [[f64; W]; 4],
+    pub functions: [[f64; W]; 3],
+    pub denominator: [f64; W],
+    pub ahead: [f64; W],
+}
+
+/// Series in one form or the other, of one motion or of `C` in lanes.
+pub(super) trait Series<const C: usize>: Copy + Sync {
+    /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
+    fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
+
+    /// The same of one motion.
+    type One: Series<1>;
+
+    /// Without any coefficients.
+    fn empty() -> Self;
+
+    /// All coefficients, always in the same order.
+    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]>;
+
+    /// All coefficients, to be set.
+    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
+}
+
+/// `Σ h_n p_n(x)` in powers of x; `p_0 = 1`, and `p_{−1}`, in powers of x too, tells which polynomials.
+pub(crate) fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
+    let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [0.0; N]);
+    previous[..2].copy_from_slice(&before);
+    p[0] = 1.0;
+    for h in h {
+        for k in 0..N {
+            sum[k] += h * p[k];
+        }
+        let twice = |k: usize| if k == 0 { 0.0 } else { 2.0 * p[k - 1] };
+        (previous, p) = (p, std::array::from_fn(|k| twice(k) - previous[k]));
+    }
+    sum
+}
+
+/// T_n, U_n, V_n and W_n by the polynomial at −1.
+pub(crate) const FIRST: [f64; 2] = [0.0, 1.0];
+const SECOND: [f64; 2] = [0.0, 0.0];
+pub(crate) const THIRD: [f64; 2] = [1.0, 0.0];
+pub(crate) const FOURTH: [f64; 2] = [-1.0, 0.0];
+
+/// −1 for odd n.
+fn sign(n: usize) -> f64 {
+    if n % 2 == 1 { -1.0 } else { 1.0 }
+}
+
+fn power(x: f64, n: usize) -> f64 {
+    x.powi(n as i32)
+}
+
+/// Series in the nome q.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Circular<const C: usize = 1> {
+    z: [[[f64; C]; 4]; 4],
+    functions: [[[f64; C]; 5]; 3],
+    denominator: [[f64; C]; 5],
+}
+
+impl Circular {
+    /// From the nome, `ρ = exp(−π(K' − η)/2K)` and s. With `q^{1/2} e^{±y} = ρ, q/ρ` the coefficients of
+    /// `θ4(v − i s y | q²)` and `s θ1(v − i s y | q²)` are sums and differences of two positive numbers.
+    pub fn new(q: f64, rho: f64, s: f64) -> Circular {
+        let other = if rho > 0.0 { q / rho } else { 0.0 };
+        let even = |n: usize, o: f64| {
+            let weight = sign(n) * power(q, 2 * n * n - n);
+            if n == 0 { 1.0 } else { weight * (power(rho, 2 * n) + o * power(other, 2 * n)) }
+        };
+        let odd = |n: usize, o: f64| {
+            let weight = sign(n) * power(q, 2 * n * n + n);
+            weight * (power(rho, 2 * n + 1) + o * power(other, 2 * n + 1))
+        };
+        let mut z = [
+            chebyshev::<4>(std::array::from_fn(|n| even(n, 1.0)), FIRST),
+            chebyshev::<4>(std::array::from_fn(|n| s * odd(n, 1.0)), FOURTH),
+            chebyshev::<4>(std::array::from_fn(|n| -odd(n, -1.0)), THIRD),
+            [0.0; 4],
+        ];
+        z[3][..3].copy_from_slice(&chebyshev::<3>(std::array::from_fn(|n| s * even(n + 1, -1.0)), SECOND));
+        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(q, n * n) };
+        let pronics = |n: usize| power(q, n * n + n);
+        let functions = [
+            chebyshev(std::array::from_fn(pronics), THIRD),
+            chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
+            chebyshev(std::array::from_fn(squares), FIRST),
+        ];
+        let denominator = chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST);
+        // Subnormal numbers, slow on many machines, are nothing beside the first coefficients.
+        let normal = |c: f64| [if c.abs() < 1e-100 { 0.0 } else { c }];
+        Circular {
+            z: z.map(|z| z.map(normal)),
+            functions: functions.map(|f| f.map(normal)),
+            denominator: denominator.map(normal),
+        }
+    }
+
+    /// Steady rotation: nothing but precession.
+    pub fn steady() -> Circular {
+        Circular::new(0.0, 0.0, 1.0)
+    }
+
+    /// What makes cn 0, sn K and dn 0 equal to 1.
+    pub fn normalizers(&self) -> [f64; 3] {
+        let ratio = |k: usize, x: f64| {
+            horner_in_lane(&self.denominator, 0, x) / horner_in_lane(&self.functions[k], 0, x)
+        };
+        [ratio(0, 1.0), ratio(1, -1.0), ratio(2, 1.0)]
+    }
+}
+
+impl<const C: usize> Series<C> for Circular<C> {
+    #[inline(always)]
+    fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
+        let (mut sin, mut cos, mut x) = ([0.0; W], [0.0; W], [0.0; W]);
+        for l in 0..W {
+            (sin[l], cos[l]) = sin_cos_turns::<FMA>(turns[l], rest[l]);
+            // cos 2v, from the smaller of the two.
+            x[l] = 1.0 - 2.0 * (sin[l] * sin[l]);
+        }
+        let mut z = [[0.0; W]; 4];
+        for l in 0..W {
+            z[0][l] = horner_in_lane(&self.z[0], l, x[l]);
+            z[1][l] = sin[l] * horner_in_lane(&self.z[1], l, x[l]);
+            z[2][l] = cos[l] * horner_in_lane(&self.z[2], l, x[l]);
+            let [c0, c1, c2, _] = self.z[3];
+            z[3][l] = (2.0 * sin[l] * cos[l]) * horner_in_lane(&[c0, c1, c2], l, x[l]);
+        }
+        let (mut functions, mut denominator) = ([[0.0; W]; 3], [0.0; W]);
+        for l in 0..W {
+            functions[0][l] = cos[l] * horner_in_lane(&self.functions[0], l, x[l]);
+            functions[1][l] = sin[l] * horner_in_lane(&self.functions[1], l, x[l]);
+            functions[2][l] = horner_in_lane(&self.functions[2], l, x[l]);
+            denominator[l] = horner_in_lane(&self.denominator, l, x[l]);
+        }
+        State { z, functions, denominator, ahead: [0.0; W] }
+    }
+
+    type One = Circular;
+
+    fn empty() -> Circular<C> {
+        let none = [0.0; C];
+        Circular { z: [[none; 4]; 4], functions: [[none; 5]; 3], denominator: [none; 5] }
+    }
+
+    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
+        let (z, functions) = (self.z.as_flattened(), self.functions.as_flattened());
+        z.iter().chain(functions).chain(&self.denominator)
+    }
+
+    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
+        z.iter_mut().chain(functions).chain(&mut self.denominator)
+    }
+}
+
+/// Series in the nome q', by Jacobi's imaginary transformation, in `x = πu/4K'` for u within a half period; at
+/// u = ±K it is ±X.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hyperbolic<const C: usize = 1> {
+    /// X.
+    border: [f64; C],
+    nome: [f64; C],
+    z: [[[f64; C]; 4]; 4],
+    functions: [[[f64; C]; 4]; 3],
+    denominator: [[f64; C]; 4],
+    ahead: [f64; C],
+}
+
+/// u over the turns that are no more than its start, on the separatrix: so much is never reached.
+pub(crate) const NEVER: f64 = (1u128 << 70) as f64;
+
+impl Hyperbolic {
+    /// From X, `γ = πη/4K'` and s.
+    pub fn new(border: f64, gamma: f64, s: f64) -> Hyperbolic {
+        let nome = (-4.0 * border).exp();
+        let root = (-2.0 * border).exp();
+        let sin = |n: usize| ((2 * n + 1) as f64 * gamma).sin();
+        let cos = |n: usize| ((2 * n + 1) as f64 * gamma).cos();
+        let weight = |n: usize| power(root, n * n + n);
+        let pronics = |n: usize| power(nome, n * n + n);
+        let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * power(nome, n * n) };
+        // θ4(2ix|q') without the factor that vanishes at ±X: 1 − 2q'³ cosh 4x and 1 − 2q'⁵ cosh 4x.
+        let (third, fifth) = (2.0 * power(nome, 3), 2.0 * power(nome, 5));
+        let z: [[f64; 4]; 4] = [
+            chebyshev(std::array::from_fn(|n| weight(n) * cos(n)), THIRD),
+            chebyshev(std::array::from_fn(|n| s * sign(n) * weight(n) * cos(n)), FOURTH),
+            chebyshev(std::array::from_fn(|n| -sign(n) * weight(n) * sin(n)), THIRD),
+            chebyshev(std::array::from_fn(|n| -s * weight(n) * sin(n)), FOURTH),
+        ];
+        let functions: [[f64; 4]; 3] = [
+            [1.0, -(third + fifth), third * fifth, 0.0],
+            chebyshev(std::array::from_fn(|n| sign(n) * pronics(n)), FOURTH),
+            chebyshev(std::array::from_fn(squares), FIRST),
+        ];
+        let denominator: [f64; 4] = chebyshev(std::array::from_fn(pronics), THIRD);
+        Hyperbolic {
+            border: [border],
+            nome: [nome],
+            z: z.map(|z| z.map(|c| [c])),
+            functions: functions.map(|f| f.map(|c| [c])),
+            denominator: denominator.map(|c| [c]),
+            ahead: [s * gamma / PI],
+        }
+    }
+
+    /// The limit K → ∞, with `u = NEVER · turns`.
+    pub fn separatrix(gamma: f64, s: f64) -> Hyperbolic {
+        Hyperbolic { ahead: [0.0], ..Hyperbolic::new(NEVER / 8.0, gamma, s) }
+    }
+
+    /// cn and dn at x = 0; sn at X, where the sum of what is normalised is `k² sn² + dn² = 1` with dn = k'.
+    pub fn normalizers(&self) -> [f64; 3] {
+        let denominator = |y: f64| horner_in_lane(&self.denominator, 0, y);
+        let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], 0, y);
+        let at_0 = |k: usize| denominator(1.0) / function(k, 1.0);
+        let double = 2.0 * self.border[0].min(176.0);
+        let (g, y) = ((-double).exp(), (2.0 * double).cosh());
+        let sinh = (1.0 - g * g) / (1.0 + g * g) * function(1, y);
+        let less = (1.0 - self.nome[0]) * (1.0 - self.nome[0]);
+        [at_0(0) / less, denominator(y) / sinh, at_0(2)]
+    }
+}
+
+impl<const C: usize> Series<C> for Hyperbolic<C> {
+    #[inline(always)]
+    fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
+        /// `cosh² ` of it is a number still. On a periodic motion 2X is less, by the range of k'.
+        const MOST: f64 = 352.0;
+        let (mut ahead, mut odd, mut side) = ([0.0; W], [0.0; W], [0.0; W]);
+        // 4|x| and 8(X − |x|), as far as they matter.
+        let (mut near, mut far) = ([0.0; W], [0.0; W]);
+        for l in 0..W {
+            // Half periods, f = v/π in [−½, ½] and a rest.
+            let turn = turns[l];
+            let whole = if turn > 0.25 {
+                1.0
+            } else if turn < -0.25 {
+                -1.0
+            } else {
+                0.0
+            };
+            let f = 2.0 * turn - whole;
+            odd[l] = 1.0 - 2.0 * f64::abs(whole);
+            side[l] = 1f64.copysign(f);
+            ahead[l] = in_lane(&self.ahead, l) * (f + 2.0 * rest[l]);
+            let more = 2.0 * side[l] * rest[l];
+            let border = in_lane(&self.border, l);
+            near[l] = (4.0 * border * (f.abs() + more).max(0.0)).min(MOST);
+            far[l] = (8.0 * border * ((0.5 - f.abs()) - more).max(0.0)).min(700.0);
+        }
+        // e^{−2|x|} and less 1; 1 − e^{−4(X − |x|)}.
+        let (mut g, mut m, mut last) = ([0.0; W], [0.0; W], [0.0; W]);
+        for l in 0..W {
+            (g[l], m[l]) = exp_minus(near[l]);
+            last[l] = -exp_minus(far[l]).1;
+        }
+        let mut c = [0.0; W];
+        for l in 0..W {
+            c[l] = 0.5 * (g[l] + 1.0 / g[l]);
+        }
+        // All in units of ½ e^{|x|}.
+        let mut z = [[0.0; W]; 4];
+        for l in 0..W {
+            let (cosh, sinh) = (1.0 + g[l], -m[l] * side[l]);
+            z[0][l] = cosh * horner_in_lane(&self.z[0], l, c[l]);
+            z[1][l] = odd[l] * (sinh * horner_in_lane(&self.z[1], l, c[l]));
+            z[2][l] = odd[l] * (cosh * horner_in_lane(&self.z[2], l, c[l]));
+            z[3][l] = sinh * horner_in_lane(&self.z[3], l, c[l]);
+        }
+        // And these in units of ½ e^{2|x|}.
+        let (mut functions, mut denominator) = ([[0.0; W]; 3], [0.0; W]);
+        for l in 0..W {
+            let y = 2.0 * (c[l] * c[l]) - 1.0;
+            let square = g[l] * g[l];
+            let cosine = (2.0 * g[l]) * (last[l] * (1.0 - in_lane(&self.nome, l) * square));
+            functions[0][l] = odd[l] * (cosine * horner_in_lane(&self.functions[0], l, y));
+            functions[1][l] =
+                (odd[l] * side[l]) * ((-m[l] * (1.0 + g[l])) * horner_in_lane(&self.functions[1], l, y));
+            functions[2][l] = (2.0 * g[l]) * horner_in_lane(&self.functions[2], l, y);
+            denominator[l] = (1.0 + square) * horner_in_lane(&self.denominator, l, y);
+        }
+        State { z, functions, denominator, ahead }
+    }
+
+    type One = Hyperbolic;
+
+    fn empty() -> Hyperbolic<C> {
+        let none = [0.0; C];
+        Hyperbolic {
+            border: none,
+            nome: none,
+            z: [[none; 4]; 4],
+            functions: [[none; 4]; 3],
+            denominator: [none; 4],
+            ahead: none,
+        }
+    }
+
+    fn coefficients(&self) -> impl Iterator<Item = &[f64; C]> {
+        let (z, functions) = (self.z.as_flattened(), self.functions.as_flattened());
+        let single = [&self.border, &self.nome, &self.ahead];
+        z.iter().chain(functions).chain(&self.denominator).chain(single)
+    }
+
+    fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]> {
+        let (z, functions) = (self.z.as_flattened_mut(), self.functions.as_flattened_mut());
+        let single = [&mut self.border, &mut self.nome, &mut self.ahead];
+        z.iter_mut().chain(functions).chain(&mut self.denominator).chain(single)
+    }
+}

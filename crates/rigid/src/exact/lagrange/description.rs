@@ -1,0 +1,186 @@
+//! What kind of motion a heavy top is in, and its periods.
+
+use super::{Form, LagrangeTop};
+use crate::numerics::wide::Wide;
+use crate::state::phase::Gyrostat;
+use std::f64::consts::PI;
+use std::fmt;
+
+/// Tilts that differ by no more than this, in rad, and rates by no more relative to their terms, are equal: the start
+/// is rounded.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A top is nearly upright while its centre of mass is lower than that of the upright by at most this part of its height:
+/// at tilts up to 11.5 degrees.
+const NEARLY: f64 = 0.02;
+
+/// How a heavy top moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LagrangeRegime {
+    /// No rotation, and no torque.
+    Rest,
+    /// Upright, with a spin of the critical rate or more: stable.
+    Sleeping,
+    /// Nearly upright at all times, with such a spin: a sleeping top after a small push.
+    NearlySleeping,
+    /// Upright, with less spin or none: unstable.
+    Upright,
+    /// Upside down, with or without spin.
+    Hanging,
+    /// The tilt is constant.
+    Steady,
+    /// The precession at the upper bound is against that at the lower.
+    Loops,
+    /// The precession has one sign.
+    Waves,
+    /// The precession rests at the upper bound.
+    Cusps,
+    /// Without spin and precession, below the upright.
+    Swinging,
+    /// The same, across the upright.
+    Circulating,
+    /// It approaches the upright for ever.
+    Separatrix,
+}
+
+impl fmt::Display for LagrangeRegime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            LagrangeRegime::Rest => "at rest",
+            LagrangeRegime::Sleeping => "sleeping, upright",
+            LagrangeRegime::NearlySleeping => "sleeping, nearly upright",
+            LagrangeRegime::Upright => "upright, unstable",
+            LagrangeRegime::Hanging => "hanging",
+            LagrangeRegime::Steady => "regular precession",
+            LagrangeRegime::Loops => "nutating with loops",
+            LagrangeRegime::Waves => "nutating with waves",
+            LagrangeRegime::Cusps => "nutating with cusps",
+            LagrangeRegime::Swinging => "pendulum, swinging",
+            LagrangeRegime::Circulating => "pendulum, circulating",
+            LagrangeRegime::Separatrix => "separatrix",
+        })
+    }
+}
+
+/// What the invariants of a heavy top tell. The axis is that of symmetry, in the direction of the centre of mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LagrangeDescription {
+    /// The kind of motion.
+    pub regime: LagrangeRegime,
+    /// Smallest and largest angle of the axis from up (e3), in rad.
+    pub tilt_min: f64,
+    /// The larger one.
+    pub tilt_max: f64,
+    /// Period of the tilt, 2K/λ, in s; None where it is constant or never comes back.
+    pub nutation_period: Option<f64>,
+    /// Mean rate of precession about e3, in rad/s; None for the upright, hanging and separatrix.
+    pub precession_rate: Option<f64>,
+    /// Mean rate of rotation about the axis against the line of nodes, ψ', in rad/s; None with the precession's.
+    pub spin_rate: Option<f64>,
+    /// Modulus k of the elliptic functions.
+    pub modulus: f64,
+    /// Kinetic and potential energy, in J.
+    pub energy: f64,
+    /// L3, the angular momentum about the axis, in kg m²/s.
+    pub axial_momentum: f64,
+    /// Lz, the angular momentum about e3, in kg m²/s.
+    pub vertical_momentum: f64,
+    /// Rate about the axis from which on an upright top is stable, `2 √(|c| i1)/i3`, in rad/s.
+    pub critical_spin: f64,
+    /// Whether a top with this spin would be stable upright.
+    pub sleeps: bool,
+}
+
+impl LagrangeDescription {
+    /// Period of the mean precession, in s.
+    pub fn precession_period(&self) -> Option<f64> {
+        self.precession_rate.map(|rate| 2.0 * PI / rate.abs()).filter(|period| period.is_finite())
+    }
+}
+
+impl LagrangeTop {
+    /// What the invariants tell.
+    pub fn describe(&self) -> LagrangeDescription {
+        let (axes, start) = (&self.axes, &self.start);
+        let momentum = self.momentum();
+        let above = start.above.value();
+        let potential = axes.c * (above - 1.0);
+        let tilt = tilt(start.below, start.above);
+        let g = start.g.map(|g| g.value());
+        let vertical = momentum.0[0] * g[0] + momentum.0[1] * g[1] + momentum.0[2] * (above - 1.0);
+        let critical_spin = 2.0 * (axes.c * axes.i1).sqrt() / axes.i3;
+        let sleeps = start.omega3.abs() >= critical_spin;
+        let still = LagrangeDescription {
+            regime: match () {
+                () if start.omega3 == 0.0 && axes.c == 0.0 => LagrangeRegime::Rest,
+                () if start.below.is_zero() && sleeps => LagrangeRegime::Sleeping,
+                () if start.below.is_zero() => LagrangeRegime::Upright,
+                () if start.above.is_zero() => LagrangeRegime::Hanging,
+                () => LagrangeRegime::Steady,
+            },
+            tilt_min: tilt,
+            tilt_max: tilt,
+            nutation_period: None,
+            precession_rate: None,
+            spin_rate: None,
+            modulus: 0.0,
+            energy: Gyrostat::rigid([axes.i1, axes.i1, axes.i3]).kinetic(momentum) + potential,
+            axial_momentum: momentum.0[2],
+            vertical_momentum: vertical,
+            critical_spin,
+            sleeps,
+        };
+        let orbit = match &self.form {
+            Form::Steady(_) => return still,
+            Form::Circular(orbit, _) | Form::Hyperbolic(orbit, _) => orbit,
+        };
+        let (delta, sigma, spin) = (orbit.delta, orbit.sigma, start.spin);
+        let [(tilt_max, lower, _), (tilt_min, upper, term)] = [0, 1].map(|k| {
+            let (below, above) = (orbit.below[k], orbit.above[k]);
+            // b − ℓu at the bounds, and the size of its terms; through a pole the precession has the sign of ±ℓ.
+            let (numerator, term) = match () {
+                () if below.is_zero() => (spin, spin),
+                () if above.is_zero() => (-spin, spin),
+                () if below < Wide::ONE => (delta + spin * below, spin * below),
+                () => (sigma - spin * above, spin * above),
+            };
+            (super::description::tilt(below, above), numerator, term)
+        });
+        let small = term.abs() * ROUNDING.into();
+        let pendulum = delta.is_zero() && sigma.is_zero();
+        let regime = match () {
+            () if orbit.mean.is_none() => LagrangeRegime::Separatrix,
+            () if tilt_max - tilt_min <= ROUNDING => LagrangeRegime::Steady,
+            () if pendulum && orbit.surplus.is_positive() => LagrangeRegime::Circulating,
+            () if pendulum => LagrangeRegime::Swinging,
+            () if sleeps && axes.c > 0.0 && orbit.below[0].value() <= NEARLY => {
+                LagrangeRegime::NearlySleeping
+            }
+            () if upper.abs() <= small => LagrangeRegime::Cusps,
+            () if upper.is_negative() != lower.is_negative() => LagrangeRegime::Loops,
+            () => LagrangeRegime::Waves,
+        };
+        let moving = LagrangeDescription { regime, tilt_min, tilt_max, modulus: orbit.k2.sqrt(), ..still };
+        let Some(mean) = orbit.mean else { return moving };
+        // The turns of the theta functions; one with real zeros turns nothing, it changes sign.
+        let turn = orbit.lambda * mean;
+        let phase = |k: usize| {
+            let zero = orbit.zeros[k];
+            let turns = if zero.eta == 0.0 { 0.0 } else { zero.side };
+            orbit.rates[k] + turn * turns.into()
+        };
+        let (sum, difference) = (phase(0) + phase(1), phase(0) - phase(1));
+        let period = PI / turn.value() / start.scale;
+        LagrangeDescription {
+            nutation_period: Some(period).filter(|x| x.is_finite() && regime != LagrangeRegime::Steady),
+            precession_rate: Some(sum.value() * start.scale),
+            spin_rate: Some((difference + start.excess.narrow()).value() * start.scale),
+            ..moving
+        }
+    }
+}
+
+/// The angle of an axis from e3, from 1 − u and 1 + u.
+fn tilt(below: Wide, above: Wide) -> f64 {
+    2.0 * below.sqrt().value().atan2(above.sqrt().value())
+}

@@ -1,0 +1,9 @@
+//! Motions in closed form.
+
+pub(crate) mod closed_form;
+pub mod damped;
+pub mod free;
+pub mod lagrange;
+pub mod larmor;
+pub mod regime;
+pub mod symmetric;

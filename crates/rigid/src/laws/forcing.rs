@@ -1,0 +1,93 @@
+//! What turns bodies and moves them, as methods of steps ask for it: side by side in lanes, or alone.
+
+use super::force::Translation;
+use super::torque::{Torque, exerted};
+use crate::error::SimulateError;
+use crate::error::TorqueError;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::simd::lanes::{Lanes, One};
+use polhode_ga::{Bivector, Rotor, Vector};
+
+/// Where bodies are, side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<const W: usize, const F: bool> {
+    /// From principal axes to space; |R| is 1 up to what a step leaves.
+    pub rotor: [Lanes<W, F>; 4],
+    /// In principal axes, rad/s.
+    pub omega: [Lanes<W, F>; 3],
+    /// In s.
+    pub time: Lanes<W, F>,
+}
+
+/// What turns bodies side by side, and moves them.
+pub(crate) trait Exert<const W: usize, const F: bool> {
+    /// Whether there are torques at all, a wheel or damping.
+    const ACTS: bool;
+
+    /// Whether there may be wheels.
+    const WHEELS: bool = true;
+
+    /// The torque in principal axes at a point of the motion, without the part `−g I(Ω)` and that of a wheel.
+    fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
+
+    /// The acceleration in space of a centre of mass whose place and velocity are given.
+    fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
+}
+
+/// What acts on a single body: the first failure to say how, after which nothing is asked.
+pub(crate) struct Alone<'a> {
+    body: &'a Gyrostat,
+    torques: &'a [Torque],
+    translation: Option<&'a Translation>,
+    failure: Option<SimulateError>,
+}
+
+impl<'a> Alone<'a> {
+    /// In principal axes.
+    pub fn new(body: &'a Gyrostat, torques: &'a [Torque], translation: Option<&'a Translation>) -> Alone<'a> {
+        Alone { body, torques, translation, failure: None }
+    }
+
+    /// The first failure, if there was one.
+    pub fn finish(self) -> Result<(), SimulateError> {
+        self.failure.map_or(Ok(()), Err)
+    }
+
+    fn noted(&mut self, value: Result<[f64; 3], SimulateError>) -> [One; 3] {
+        let value = value.unwrap_or_else(|failure| {
+            self.failure.get_or_insert(failure);
+            [f64::NAN; 3]
+        });
+        One::each(value)
+    }
+
+    fn phase(&self, at: &Place<1, false>) -> Phase {
+        let rotor = Rotor::from_unit_components(One::alone(at.rotor));
+        let momentum = self.body.momentum(Bivector(One::alone(at.omega)));
+        Phase { rotor, momentum, time: at.time.0[0] }
+    }
+}
+
+impl Exert<1, false> for Alone<'_> {
+    const ACTS: bool = true;
+
+    fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
+        if self.torques.is_empty() || self.failure.is_some() {
+            return [One::ZERO; 3];
+        }
+        let torque = exerted(self.torques, self.body, &self.phase(at));
+        self.noted(torque.map(|torque| torque.0))
+    }
+
+    fn acceleration(&mut self, at: &Place<1, false>, center: &[One; 6]) -> [One; 3] {
+        let Some(translation) = self.translation.filter(|_| self.failure.is_none()) else {
+            return [One::ZERO; 3];
+        };
+        let (phase, [x, y, z, u, v, w]) = (self.phase(at), One::alone(*center));
+        let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
+        let acceleration = translation.acceleration(self.body, &phase, &center);
+        let failed = |error: TorqueError| SimulateError::Torque { time: phase.time, message: error.0 };
+        self.noted(acceleration.map(|a| a.0).map_err(failed))
+    }
+}

@@ -1,0 +1,331 @@
+//! Torques, forces and events that are formulas: `-c ∧ (~R e3 R)`.
+//!
+//! A formula is read, compiled and checked once: the grades of its value, by what it is made of, must be those of what
+//! it stands for. Then it is run like any formula on single values, on what the motion gives for its names.
+
+pub(crate) mod side_by_side;
+
+pub(crate) use side_by_side::Formulas;
+
+use super::torque::Axes;
+use crate::error::TorqueError;
+use crate::state::phase::Gyrostat;
+use crate::state::point::Point;
+use polhode_ga::formula::{
+    Error, Given, Input, Meaning, Names, Program, Runner, Space, Span, Type, compile, parse,
+};
+use polhode_ga::product::Grades;
+use polhode_ga::{Bivector, Graded, Rotor, Vector};
+use std::array::from_fn;
+use std::cell::RefCell;
+use std::fmt;
+use std::sync::Arc;
+
+const VECTOR: Grades = Grades(0b0010);
+
+/// What the value of a formula stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A torque in these axes.
+    Torque(Axes),
+    /// A force in space.
+    Force,
+    /// A number that passes zero at an event.
+    Event,
+}
+
+/// What the motion gives to a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    Rotor,
+    Time,
+    OmegaBody,
+    OmegaSpace,
+    MomentumBody,
+    MomentumSpace,
+    Inertia,
+    Position,
+    Velocity,
+    Mass,
+}
+
+/// Where an input comes from.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    Motion(Motion),
+    Known(Given),
+}
+
+/// A formula on what a motion gives.
+#[derive(Clone)]
+pub struct Formula {
+    compiled: Arc<Compiled>,
+    /// For each input of the program.
+    sources: Arc<[Source]>,
+    /// From the axes of the motion to those of the body.
+    frame: Rotor,
+}
+
+struct Compiled {
+    text: String,
+    purpose: Purpose,
+    program: Program,
+    runner: Runner,
+    /// The step that is its value.
+    result: usize,
+}
+
+/// The names that the motion gives. `Ω` is the angular velocity in the axes of a torque.
+pub(crate) fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
+    let mut names = vec![
+        ("R", Motion::Rotor),
+        ("t", Motion::Time),
+        ("Ω_B", Motion::OmegaBody),
+        ("Ω_S", Motion::OmegaSpace),
+        ("Omega_B", Motion::OmegaBody),
+        ("Omega_S", Motion::OmegaSpace),
+        ("L", Motion::MomentumSpace),
+        ("L_B", Motion::MomentumBody),
+        ("I", Motion::Inertia),
+    ];
+    match purpose {
+        Purpose::Torque(Axes::Body) => names.extend([("Ω", Motion::OmegaBody), ("Omega", Motion::OmegaBody)]),
+        Purpose::Torque(Axes::Space) => {
+            names.extend([("Ω", Motion::OmegaSpace), ("Omega", Motion::OmegaSpace)]);
+        }
+        Purpose::Force | Purpose::Event => {
+            names.extend([("x", Motion::Position), ("v", Motion::Velocity), ("m", Motion::Mass)]);
+        }
+    }
+    names
+}
+
+impl Purpose {
+    fn grades(self) -> Grades {
+        match self {
+            Purpose::Torque(_) => Grades::BIVECTOR,
+            Purpose::Force => VECTOR,
+            Purpose::Event => Grades::SCALAR,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Purpose::Torque(_) => "a torque",
+            Purpose::Force => "a force",
+            Purpose::Event => "an event's quantity",
+        }
+    }
+
+    /// Why a value of these grades is none, and what to do.
+    fn refusal(self, grades: Grades) -> String {
+        let (wanted, grade) = match self {
+            Purpose::Torque(_) => ("bivector", 2),
+            Purpose::Force => ("vector", 1),
+            Purpose::Event => ("scalar", 0),
+        };
+        let listed: Vec<String> = (0..4).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
+        let s = if listed.len() == 1 { "" } else { "s" };
+        let remedy = match (self, grades) {
+            (Purpose::Torque(_), VECTOR) => {
+                "this is a vector; the torque with the axial vector v is the bivector `I v`".to_owned()
+            }
+            (Purpose::Force, Grades::BIVECTOR) => {
+                "this is a bivector; the axial vector of a bivector B is `-I B`".to_owned()
+            }
+            (Purpose::Force, Grades(0b1010)) => {
+                "`x` is the position, a cross product `cross(a, b)`; the vector part is `⟨…⟩_1`".to_owned()
+            }
+            _ if grades.contains(grade) => format!("its {wanted} part is `⟨…⟩_{grade}`"),
+            (Purpose::Torque(_), _) => "such as `a∧b`, or `I v` for an axial vector v".to_owned(),
+            (Purpose::Force, _) => "such as `-k v`".to_owned(),
+            (Purpose::Event, _) => "such as a component, `x·e3`, or a size, `norm(v) - 2`".to_owned(),
+        };
+        let listed = listed.join(", ");
+        format!("{} is a {wanted}, grade {grade}; this has the grade{s} {listed}: {remedy}", self.name())
+    }
+}
+
+impl Motion {
+    fn meaning(self) -> Meaning {
+        match self {
+            Motion::Rotor => Meaning::Value(Type::ROTOR),
+            Motion::Time | Motion::Mass => Meaning::Value(Type::SCALAR),
+            Motion::Position | Motion::Velocity => Meaning::Value(Type::of(VECTOR)),
+            Motion::Inertia => Meaning::Map { grade: 2 },
+            _ => Meaning::Value(Type::of(Grades::BIVECTOR)),
+        }
+    }
+
+    /// Whether it changes with the rate of turning, at a given attitude and time.
+    pub fn is_rate(self) -> bool {
+        !matches!(self, Motion::Rotor | Motion::Time | Motion::Inertia)
+    }
+
+    /// What it is at a point of the motion, `frame` leading from principal axes to the body's.
+    fn at(self, point: &Point, frame: Rotor) -> Given {
+        let Point { body, phase: state, center, mass } = *point;
+        let vector = |v: Vector| Given::Value(Graded::new(&v.0, VECTOR).unwrap_or_default());
+        let bivector = |b: Bivector| Given::Value(Graded::new(&b.0, Grades::BIVECTOR).unwrap_or_default());
+        match self {
+            Motion::Rotor => {
+                let rotor =
+                    if frame == Rotor::IDENTITY { state.rotor } else { state.rotor * frame.reverse() };
+                Given::Value(Graded::new(&rotor.components(), Grades::EVEN).unwrap_or_default())
+            }
+            Motion::Time => Given::Value(Graded::default().map(|_| state.time)),
+            Motion::OmegaBody => bivector(frame.apply_bivector(body.omega(state.momentum))),
+            Motion::OmegaSpace => bivector(state.rotor.apply_bivector(body.omega(state.momentum))),
+            Motion::MomentumBody => bivector(frame.apply_bivector(state.momentum)),
+            Motion::MomentumSpace => bivector(state.rotor.apply_bivector(state.momentum)),
+            Motion::Inertia => inertia(body, frame),
+            Motion::Position => vector(center.position),
+            Motion::Velocity => vector(center.velocity),
+            Motion::Mass => Given::Value(Graded::default().map(|_| mass)),
+        }
+    }
+}
+
+/// The matrix of `I(…)`, `frame` leading from principal axes to the body's.
+fn inertia(body: &Gyrostat, frame: Rotor) -> Given {
+    let (f, i) = (frame.to_matrix(), body.moments);
+    let entry = |j: usize, k: usize| (0..3).map(|a| f[j][a] * i[a] * f[k][a]).sum();
+    Given::Matrix(from_fn(|n| entry(n / 3, n % 3)))
+}
+
+thread_local! {
+    /// Memory for the inputs and the steps of a formula, so that an evaluation allocates none.
+    static MEMORY: RefCell<(Vec<Given>, Vec<Graded>)> = const { RefCell::new((Vec::new(), Vec::new())) };
+}
+
+impl Formula {
+    /// Reads a formula whose value is a torque, a force or a number.
+    ///
+    /// The motion gives `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a
+    /// bivector in body axes and in space, or `Omega_B` and `Omega_S`; for a torque `Ω` is that in its axes),
+    /// `L` and `L_B` (the momentum, that of a wheel included, in space and in body axes), the inertia
+    /// map `I(…)` of the body, and for forces and events `x` and `v` (place and velocity of the centre of mass, vectors
+    /// in space) and `m` (the mass in kg). All other names stand for what `names` says; `value` tells the value of an
+    /// input, of the kind it asks for.
+    pub fn new(
+        text: &str,
+        purpose: Purpose,
+        mut names: Names,
+        mut value: impl FnMut(&Input) -> Option<Given>,
+    ) -> Result<Formula, Error> {
+        let whole = Span { start: 0, end: text.len() };
+        let wrong = |span: Span, message: String| Error { message, span };
+        for (name, motion) in given(purpose) {
+            if names.bind(name.to_owned(), motion.meaning()).is_some() {
+                let message = format!("`{name}` is given by the motion; call your value otherwise");
+                return Err(wrong(whole, message));
+            }
+        }
+        let tree = parse(text, Space::g3(), &names)?;
+        let program = compile(&tree, Space::g3(), &names)?;
+        if program.is_equation() {
+            let message = format!("an equation has no value; write one side, which is {}", purpose.name());
+            return Err(wrong(whole, message));
+        }
+        let result = program.results[0][0];
+        let step = &program.steps[result];
+        if step.ty.grades != purpose.grades() {
+            return Err(wrong(step.span, purpose.refusal(step.ty.grades)));
+        }
+        let motions = given(purpose);
+        let mut sources = Vec::with_capacity(program.inputs.len());
+        for input in &program.inputs {
+            let motion = motions.iter().find(|(name, _)| *name == input.name);
+            let known = || value(input).map(Source::Known);
+            let source = motion.map(|(_, motion)| Source::Motion(*motion)).or_else(known);
+            sources.push(source.ok_or_else(|| wrong(whole, format!("`{}` has no value", input.name)))?);
+        }
+        let runner =
+            Runner::new(&program).ok_or_else(|| wrong(whole, "no formula of 3-d space".to_owned()))?;
+        let compiled = Compiled { text: text.to_owned(), purpose, program, runner, result };
+        Ok(Formula { compiled: Arc::new(compiled), sources: sources.into(), frame: Rotor::IDENTITY })
+    }
+
+    /// The same formula with other values, of the same kinds, for the inputs for which `value` tells one: for each of
+    /// many bodies, so that it is compiled once.
+    pub fn with_values(&self, mut value: impl FnMut(&Input) -> Option<Given>) -> Formula {
+        let inputs = self.compiled.program.inputs.iter().zip(&*self.sources);
+        let sources = inputs.map(|(input, source)| match source {
+            Source::Known(_) => value(input).map_or(*source, Source::Known),
+            Source::Motion(_) => *source,
+        });
+        Formula { compiled: self.compiled.clone(), sources: sources.collect(), frame: self.frame }
+    }
+
+    /// The formula as it was given.
+    pub fn text(&self) -> &str {
+        &self.compiled.text
+    }
+
+    /// The names in it that the motion does not give, with their values.
+    pub(crate) fn known(&self) -> impl Iterator<Item = (&str, Given)> {
+        self.compiled.program.inputs.iter().zip(&*self.sources).filter_map(|(input, source)| match source {
+            Source::Known(given) => Some((input.name.as_str(), *given)),
+            Source::Motion(_) => None,
+        })
+    }
+
+    pub(crate) fn purpose(&self) -> Purpose {
+        self.compiled.purpose
+    }
+
+    /// From the axes of the motion to those of the body.
+    pub(crate) fn frame(&self) -> Rotor {
+        self.frame
+    }
+
+    pub(crate) fn in_axes(self, frame: Rotor) -> Formula {
+        Formula { frame: self.frame * frame, ..self }
+    }
+
+    pub(crate) fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
+        self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
+    }
+
+    /// Its value, finite, of the grades of its purpose.
+    pub(crate) fn value(&self, at: &Point) -> Result<Graded, TorqueError> {
+        let Compiled { runner, result, .. } = &*self.compiled;
+        if at.mass.is_nan() && self.needs(|motion| motion == Motion::Mass) {
+            return Err(TorqueError(
+                "`m` is not known; simulate a Body, which has a mass, rather than an Inertia".into(),
+            ));
+        }
+        MEMORY.with_borrow_mut(|(inputs, values)| {
+            inputs.clear();
+            inputs.extend(self.sources.iter().map(|source| match source {
+                Source::Motion(motion) => motion.at(at, self.frame),
+                Source::Known(given) => *given,
+            }));
+            if let Err((step, error)) = runner.value_to(inputs, values) {
+                return Err(self.failed(step, &error.to_string()));
+            }
+            let finite = |value: &Graded| value.components().iter().all(|x| x.is_finite());
+            let value = values[*result];
+            if !finite(&value) {
+                let first = values.iter().position(|value| !finite(value)).unwrap_or(*result);
+                return Err(self.failed(first, "NaN or infinite"));
+            }
+            Ok(value)
+        })
+    }
+
+    /// The error of a step without a value: names its part of the formula.
+    fn failed(&self, step: usize, why: &str) -> TorqueError {
+        let Span { start, end } = self.compiled.program.steps[step].span;
+        let text = &self.compiled.text;
+        let part = text.get(start..end).unwrap_or(text);
+        let within = if part == text { String::new() } else { format!(" in the formula `{text}`") };
+        TorqueError(format!("`{part}`{within} has no value: {why}"))
+    }
+}
+
+impl fmt::Debug for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Formula({:?}, {:?})", self.compiled.text, self.compiled.purpose)
+    }
+}

@@ -1,0 +1,140 @@
+//! Formulas of torques for bodies side by side: one program, whose known values may differ from body to body.
+
+use super::{Compiled, Formula, Motion, Purpose, Source, inertia};
+use crate::laws::forcing::Place;
+use crate::laws::torque::Axes;
+use crate::laws::torque::lanes::{Three, reversed, seen, turned};
+use crate::state::phase::Gyrostat;
+use polhode_ga::Rotor;
+use polhode_ga::formula::{Beside, Given};
+use polhode_ga::simd::lanes::{Lanes, composed};
+use std::sync::Arc;
+
+/// A torque for each body.
+pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
+    program: Beside<'f, W>,
+    /// What changes on the way, by the numbers of the inputs.
+    motions: Vec<(usize, Motion)>,
+    /// From principal axes to those of the body, where they differ for some body.
+    frame: Option<[Lanes<W, F>; 4]>,
+    in_space: bool,
+    moments: Three<W, F>,
+    wheel: Three<W, F>,
+}
+
+impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
+    /// `None` where they are not one program, or where a step has no value whatever the motion gives.
+    pub fn new(each: [&'f Formula; W], bodies: &[Gyrostat; W]) -> Option<Formulas<'f, W, F>> {
+        let Compiled { program, runner, purpose, .. } = &*each[0].compiled;
+        let sources = &each[0].sources;
+        let same = |other: &Formula| {
+            Arc::ptr_eq(&other.compiled, &each[0].compiled)
+                || other.compiled.program == *program && other.purpose() == *purpose
+        };
+        if !each.iter().all(|formula| same(formula)) {
+            return None;
+        }
+        let still = |input: usize| -> Option<[Given; W]> {
+            let mut values = [Given::Determinant(0.0); W];
+            for l in 0..W {
+                values[l] = match each[l].sources[input] {
+                    Source::Known(given) => given,
+                    Source::Motion(Motion::Inertia) => inertia(&bodies[l], each[l].frame),
+                    Source::Motion(_) => return None,
+                };
+            }
+            Some(values)
+        };
+        let still: Vec<Option<[Given; W]>> = (0..sources.len()).map(still).collect();
+        let same = |values: &[Given; W]| values.iter().all(|value| numbers(value) == numbers(&values[0]));
+        let known: Vec<Option<Given>> =
+            still.iter().map(|values| values.as_ref().filter(|v| same(v)).map(|v| v[0])).collect();
+        let mut program = runner.beside(&known)?;
+        for (input, values) in still.iter().enumerate().filter_map(|(i, v)| Some((i, v.as_ref()?))) {
+            for (l, value) in values.iter().enumerate() {
+                let lanes = program.input(input).iter_mut();
+                lanes.zip(numbers(value)).for_each(|(lane, x)| lane.0[l] = *x);
+            }
+        }
+        let motion = |(input, source): (usize, &Source)| match source {
+            Source::Motion(Motion::Inertia) | Source::Known(_) => None,
+            Source::Motion(motion) => Some((input, *motion)),
+        };
+        let (mut frame, mut moments, mut wheel) = ([Lanes::ZERO; 4], [Lanes::ZERO; 3], [Lanes::ZERO; 3]);
+        for l in 0..W {
+            let components = each[l].frame.components();
+            for k in 0..4 {
+                frame[k].0[l] = components[k];
+            }
+            for k in 0..3 {
+                (moments[k].0[l], wheel[k].0[l]) = (bodies[l].moments[k], bodies[l].wheel.0[k]);
+            }
+        }
+        Some(Formulas {
+            program,
+            motions: sources.iter().enumerate().filter_map(motion).collect(),
+            frame: each.iter().any(|formula| formula.frame != Rotor::IDENTITY).then_some(frame),
+            in_space: *purpose == Purpose::Torque(Axes::Space),
+            moments,
+            wheel,
+        })
+    }
+
+    /// The torques in principal axes, NaN or infinite for a body that has none.
+    #[inline(always)]
+    pub fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
+        for k in 0..self.motions.len() {
+            let (input, motion) = self.motions[k];
+            let (numbers, count) = self.given(motion, at);
+            let lanes = &mut self.program.input(input)[..count];
+            for i in 0..count {
+                lanes[i].0 = numbers[i].0;
+            }
+        }
+        self.program.run();
+        let [x, y, z] = self.program.result(0) else { return [Lanes::all(f64::NAN); 3] };
+        let value = [Lanes(x.0), Lanes(y.0), Lanes(z.0)];
+        match (&self.frame, self.in_space) {
+            (_, true) => seen(&at.rotor, &value),
+            (Some(frame), false) => seen(frame, &value),
+            (None, false) => value,
+        }
+    }
+
+    /// What the motion gives, and how many numbers it is.
+    #[inline(always)]
+    fn given(&self, motion: Motion, at: &Place<W, F>) -> ([Lanes<W, F>; 4], usize) {
+        let in_body = match motion {
+            Motion::Rotor => {
+                let rotor = match &self.frame {
+                    Some(frame) => composed(&at.rotor, &reversed(frame)),
+                    None => at.rotor,
+                };
+                return (rotor, 4);
+            }
+            Motion::Time => return ([at.time; 4], 1),
+            Motion::MomentumBody | Motion::MomentumSpace => {
+                let mut momentum = self.wheel;
+                for k in 0..3 {
+                    momentum[k] = self.moments[k].times_plus(at.omega[k], self.wheel[k]);
+                }
+                momentum
+            }
+            _ => at.omega,
+        };
+        let [x, y, z] = match (motion, &self.frame) {
+            (Motion::OmegaSpace | Motion::MomentumSpace, _) => turned(&at.rotor, &in_body),
+            (_, Some(frame)) => turned(frame, &in_body),
+            (_, None) => in_body,
+        };
+        ([x, y, z, Lanes::ZERO], 3)
+    }
+}
+
+fn numbers(given: &Given) -> &[f64] {
+    match given {
+        Given::Value(value) => value.components(),
+        Given::Matrix(m) => m,
+        Given::Determinant(d) => std::slice::from_ref(d),
+    }
+}

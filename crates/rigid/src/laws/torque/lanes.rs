@@ -1,0 +1,84 @@
+//! The torques of laws for bodies side by side, in principal axes; a single body is lanes of one.
+//!
+//! Between the stages of a step a rotor is not quite of norm 1, so that another formula for the same turn would be another
+//! law there: whatever steps a body uses these.
+
+use polhode_ga::simd::lanes::{Lanes, composed, cross, dot};
+
+/// Three numbers for each body: a vector, a bivector, or a diagonal.
+pub(crate) type Three<const W: usize, const F: bool> = [Lanes<W, F>; 3];
+
+/// `~R v R`: what is v in space, seen from the body, axial or not. With the axial vector q of the rotor's plane
+/// `v + 2s q x v + 2 q x (q x v)`.
+#[inline(always)]
+pub(crate) fn seen<const W: usize, const F: bool>(
+    [s, x, y, z]: &[Lanes<W, F>; 4],
+    v: &Three<W, F>,
+) -> Three<W, F> {
+    let q = [*x, *y, *z];
+    let t = cross(&[*x + *x, *y + *y, *z + *z], v);
+    let mut seen = *v;
+    for k in 0..3 {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        seen[k] = q[i].times_plus(t[j], q[j].times_from(t[i], s.times_plus(t[k], v[k])));
+    }
+    seen
+}
+
+/// `R v ~R`: [`seen`] the other way.
+#[inline(always)]
+pub(crate) fn turned<const W: usize, const F: bool>(r: &[Lanes<W, F>; 4], v: &Three<W, F>) -> Three<W, F> {
+    seen(&reversed(r), v)
+}
+
+/// `~R`
+#[inline(always)]
+pub(crate) fn reversed<const W: usize, const F: bool>([s, x, y, z]: &[Lanes<W, F>; 4]) -> [Lanes<W, F>; 4] {
+    [*s, -*x, -*y, -*z]
+}
+
+/// `f u x I(u)`: in principal axes `f (i3 − i2) u2 u3`, and cyclically.
+#[inline(always)]
+pub(crate) fn gradient<const W: usize, const F: bool>(
+    moments: &Three<W, F>,
+    u: &Three<W, F>,
+    factor: Lanes<W, F>,
+) -> Three<W, F> {
+    let mut torque = *u;
+    for k in 0..3 {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        torque[k] = (moments[j] - moments[i]) * factor * (u[i] * u[j]);
+    }
+    torque
+}
+
+/// `−k |Ω| Ω`
+#[inline(always)]
+pub(crate) fn quadratic<const W: usize, const F: bool>(
+    factor: Lanes<W, F>,
+    omega: &Three<W, F>,
+) -> Three<W, F> {
+    let scale = -(factor * dot(omega, omega).sqrt());
+    [omega[0] * scale, omega[1] * scale, omega[2] * scale]
+}
+
+/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way:
+/// [`turn_from`](super::turn_from). With `q = ~rest R = cos ½θ − sin ½θ Θ/θ`, and of `±q` the one whose scalar part is
+/// not negative, `Θ = −⟨q⟩₂ θ/sin ½θ`: 2 for the factor where there is no turn.
+#[inline(always)]
+pub(crate) fn turn_from<const W: usize, const F: bool>(
+    rest: &[Lanes<W, F>; 4],
+    rotor: &[Lanes<W, F>; 4],
+) -> Three<W, F> {
+    let [s, x, y, z] = composed(&reversed(rest), rotor);
+    let plane = [x, y, z];
+    let size = dot(&plane, &plane).sqrt();
+    let half = size.angle(s);
+    let mut factor = half;
+    for l in 0..W {
+        // What is below the smallest numbers has no size, and its angle no digits.
+        let twice = if size.0[l] == 0.0 { 2.0 } else { 2.0 * (half.0[l] / size.0[l]) };
+        factor.0[l] = if s.0[l] < 0.0 { twice } else { -twice };
+    }
+    [x * factor, y * factor, z * factor]
+}

@@ -1,0 +1,315 @@
+//! Torque laws. A torque is a bivector; its components are those of the axial vector.
+//!
+//! A law is a value: what it needs to know, its torque at a point of the motion, and what it conserves
+//! ([`super::conserved`]). Laws add up.
+
+mod call;
+mod formula;
+mod function;
+mod gains;
+pub(crate) mod lanes;
+mod orbit;
+mod table;
+
+use crate::error::TorqueError;
+pub use call::Argument;
+pub use formula::{FormulaTorque, given_names};
+pub use function::FunctionTorque;
+pub use gains::Gains;
+pub use orbit::Orbit;
+pub use table::{Kind, Table};
+
+use crate::error::SimulateError;
+use crate::state::phase::{Gyrostat, Phase};
+use lanes::{gradient, quadratic, seen};
+use polhode_ga::simd::lanes::One;
+use polhode_ga::{Bivector, Rotor, Vector};
+use std::sync::Arc;
+
+pub(crate) const E3: Vector = Vector([0.0, 0.0, 1.0]);
+
+/// What turns the body. Vectors and bivectors of the body are in body axes, `Ω` is its angular velocity in
+/// them, `R` the rotor from body axes to space.
+#[derive(Clone, Debug)]
+pub enum Torque {
+    /// Uniform gravity along −e3 on a body held at the origin of its axes: `V = c·γ`, `γ = ~R e3 R`, where
+    /// `c = m g (centre of mass)`, in N m. The torque is `γ∧c`.
+    Heavy(Vector),
+    /// The gradient of a central field along an orbit: with u from planet to body, `V = 3/2 n² (a/r)³ u·I(u)`
+    /// and the axial torque `3n² (a/r)³ u x I(u)`.
+    GravityGradient(Orbit),
+    /// Constant in body axes, in N m.
+    ConstantBody(Bivector),
+    /// Constant in space, in N m.
+    ConstantSpace(Bivector),
+    /// `−g I(Ω)`, with g in 1/s.
+    Damping(f64),
+    /// `−k |Ω| Ω`, with k in N m s².
+    QuadraticDamping(f64),
+    /// `−d Ω`, with d in N m s.
+    ViscousDamping(Gains),
+    /// A dipole of the body, in A m², in a field fixed in space, in T: `V = −m·b`, `b = ~R B R`, torque
+    /// `m∧b`, which is the axial vector `m x b`.
+    Magnetic {
+        /// m, in body axes.
+        dipole: Vector,
+        /// B, in space.
+        field: Vector,
+    },
+    /// `V = ½ k θ²`, torque `−k Θ`, with `R = rest exp(−½Θ)` and `θ = |Θ| <= π`: see [`turn_from`].
+    TorsionSpring {
+        /// k, in N m.
+        stiffness: f64,
+        /// The attitude without torque.
+        rest: Rotor,
+    },
+    /// A wheel inside the body with this constant momentum relative to it, kg m²/s: part of the body
+    /// ([`Gyrostat`]) rather than a torque.
+    Wheel(Bivector),
+    /// `−kp Θ − kd Ω`, with `R = target exp(−½Θ)`, `|Θ| <= π`.
+    Control {
+        /// kp, in N m.
+        stiffness: Gains,
+        /// kd, in N m s.
+        damping: Gains,
+        /// The attitude to reach.
+        target: Rotor,
+    },
+    /// The axial torque `L x b`, b in space, in rad/s, L the momentum in space: L turns about b at the rate
+    /// −|b|.
+    Larmor(Vector),
+    /// Interpolated between the rows of a table.
+    Tabulated(Arc<Table>),
+    /// A formula.
+    Formula(FormulaTorque),
+    /// What a function of the caller's returns.
+    Function(FunctionTorque),
+}
+
+/// The axes of a torque that is given by its components, or by a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the body.
+    Body,
+    /// Those of space.
+    Space,
+}
+
+/// What a law's torque depends on besides time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Dependence {
+    /// On the attitude at most: a kick at fixed attitude solves it exactly.
+    Attitude,
+    /// On the rate of turning too.
+    Rate,
+}
+
+impl Torque {
+    /// The same law with its body components seen from other body axes: `x' = ~F x F`.
+    pub fn in_axes(self, frame: Rotor) -> Torque {
+        let back = frame.reverse();
+        match self {
+            Torque::Heavy(c) => Torque::Heavy(back.apply(c)),
+            Torque::ConstantBody(n) => Torque::ConstantBody(back.apply_bivector(n)),
+            Torque::Wheel(h) => Torque::Wheel(back.apply_bivector(h)),
+            Torque::ViscousDamping(d) => Torque::ViscousDamping(d.in_axes(frame)),
+            Torque::Magnetic { dipole, field } => Torque::Magnetic { dipole: back.apply(dipole), field },
+            Torque::TorsionSpring { stiffness, rest } => {
+                Torque::TorsionSpring { stiffness, rest: rest * frame }
+            }
+            Torque::Control { stiffness, damping, target } => Torque::Control {
+                stiffness: stiffness.in_axes(frame),
+                damping: damping.in_axes(frame),
+                target: target * frame,
+            },
+            Torque::Tabulated(table) => match table.axes {
+                Axes::Body => Torque::Tabulated(Arc::new(table.turned(back))),
+                Axes::Space => Torque::Tabulated(table),
+            },
+            Torque::Formula(law) => Torque::Formula(law.in_axes(frame)),
+            Torque::Function(law) => Torque::Function(law.in_axes(frame)),
+            same @ (Torque::GravityGradient(_)
+            | Torque::ConstantSpace(_)
+            | Torque::Damping(_)
+            | Torque::QuadraticDamping(_)
+            | Torque::Larmor(_)) => same,
+        }
+    }
+
+    /// What [`Torque::value`] depends on.
+    pub fn dependence(&self) -> Dependence {
+        match self {
+            Torque::Heavy(_)
+            | Torque::GravityGradient(_)
+            | Torque::ConstantBody(_)
+            | Torque::ConstantSpace(_)
+            | Torque::Damping(_)
+            | Torque::Magnetic { .. }
+            | Torque::TorsionSpring { .. }
+            | Torque::Wheel(_)
+            | Torque::Tabulated(_) => Dependence::Attitude,
+            Torque::Control { damping, .. } if damping.is_zero() => Dependence::Attitude,
+            Torque::QuadraticDamping(_)
+            | Torque::ViscousDamping(_)
+            | Torque::Control { .. }
+            | Torque::Larmor(_)
+            | Torque::Function(_) => Dependence::Rate,
+            Torque::Formula(law) => law.dependence(),
+        }
+    }
+
+    /// Whether the torque of one attitude and rate is the same at all times.
+    pub fn is_autonomous(&self) -> bool {
+        match self {
+            Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Function(_) => false,
+            Torque::Formula(law) => !law.needs_time(),
+            _ => true,
+        }
+    }
+
+    /// The torque in principal axes, without the part `−g I(Ω)` ([`Torque::damping_rate`]) and that of a
+    /// wheel.
+    pub fn value(&self, body: &Gyrostat, state: &Phase) -> Result<Bivector, TorqueError> {
+        let rotor = state.rotor;
+        let r = One::each(rotor.components());
+        let from_space = |b: Bivector| Bivector(One::alone(seen(&r, &One::each(b.0))));
+        Ok(match self {
+            Torque::Heavy(c) => state.vertical().wedge(*c),
+            Torque::GravityGradient(orbit) => {
+                let (Vector(u), nearness) = orbit.place(state.time);
+                let strength = 3.0 * orbit.rate() * orbit.rate() * nearness;
+                let u = seen(&r, &One::each(u));
+                Bivector(One::alone(gradient(&One::each(body.moments), &u, One::all(strength))))
+            }
+            Torque::ConstantBody(torque) => *torque,
+            Torque::ConstantSpace(torque) => from_space(*torque),
+            Torque::Damping(_) | Torque::Wheel(_) => Bivector::default(),
+            Torque::QuadraticDamping(k) => {
+                let omega = One::each(body.omega(state.momentum).0);
+                Bivector(One::alone(quadratic(One::all(*k), &omega)))
+            }
+            Torque::ViscousDamping(d) => -d.times(body.omega(state.momentum)),
+            Torque::Magnetic { dipole, field } => dipole.wedge(from_space(field.undual()).dual()),
+            Torque::TorsionSpring { stiffness, rest } => turn_from(*rest, rotor) * -stiffness,
+            Torque::Control { stiffness, damping, target } => {
+                let pull = stiffness.times(turn_from(*target, rotor));
+                -(pull + damping.times(body.omega(state.momentum)))
+            }
+            Torque::Larmor(b) => state.momentum.dual().wedge(from_space(b.undual()).dual()),
+            Torque::Tabulated(table) => {
+                let torque = table.at(state.time)?;
+                match table.axes {
+                    Axes::Body => torque,
+                    Axes::Space => from_space(torque),
+                }
+            }
+            Torque::Formula(law) => law.value(body, state)?,
+            Torque::Function(law) => law.value(body, state)?,
+        })
+    }
+
+    /// The g of the part `−g I(Ω)`, in 1/s.
+    pub fn damping_rate(&self) -> f64 {
+        if let Torque::Damping(g) = self { *g } else { 0.0 }
+    }
+
+    /// Largest torque it can exert, in N m, where that is known and bounded: a scale for steps. 0 elsewhere.
+    pub fn size(&self, body: &Gyrostat) -> f64 {
+        match self {
+            Torque::Heavy(c) => c.norm(),
+            Torque::GravityGradient(orbit) => {
+                let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
+                3.0 * orbit.rate() * orbit.rate() * orbit.largest_nearness() * largest
+            }
+            Torque::ConstantBody(torque) | Torque::ConstantSpace(torque) => torque.norm(),
+            Torque::Magnetic { dipole, field } => dipole.norm() * field.norm(),
+            Torque::TorsionSpring { stiffness, .. } => stiffness.abs() * std::f64::consts::PI,
+            Torque::Control { stiffness, .. } => stiffness.bound() * std::f64::consts::PI,
+            Torque::Tabulated(table) => table.largest(),
+            Torque::Damping(_)
+            | Torque::QuadraticDamping(_)
+            | Torque::ViscousDamping(_)
+            | Torque::Wheel(_)
+            | Torque::Larmor(_)
+            | Torque::Formula(_)
+            | Torque::Function(_) => 0.0,
+        }
+    }
+
+    /// Its size, or that of its torque at a point of the motion where no largest is known: a scale for
+    /// steps, in N m.
+    pub fn size_at(&self, body: &Gyrostat, state: &Phase) -> f64 {
+        self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
+    }
+
+    /// Its potential energy in J, if it has one that does not change with time and with the rate.
+    pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
+        let back = state.rotor.reverse();
+        match self {
+            Torque::Heavy(c) => Some(state.vertical().dot(*c)),
+            Torque::Magnetic { dipole, field } => Some(-dipole.dot(back.apply(*field))),
+            Torque::TorsionSpring { stiffness, rest } => {
+                Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())
+            }
+            Torque::Wheel(_) => Some(0.0),
+            _ => None,
+        }
+    }
+
+    /// How far its potential energy can rise or fall, in J.
+    pub fn potential_range(&self) -> f64 {
+        match self {
+            Torque::Heavy(c) => 2.0 * c.norm(),
+            Torque::Magnetic { dipole, field } => 2.0 * dipole.norm() * field.norm(),
+            Torque::TorsionSpring { stiffness, .. } => {
+                0.5 * stiffness.abs() * std::f64::consts::PI * std::f64::consts::PI
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Times at which the law is not smooth, rising: steps end there.
+    pub fn breaks(&self) -> &[f64] {
+        if let Torque::Tabulated(table) = self { table.times() } else { &[] }
+    }
+}
+
+/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way:
+/// `|Θ| <= π`.
+///
+/// `R` and `−R` are one attitude, so of `q = ±~rest R` the one with a scalar part >= 0 is taken. Along a
+/// motion `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. Half a turn away
+/// the two ways are equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
+pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
+    let [rest, rotor] = [rest, rotor].map(|r| One::each(r.components()));
+    Bivector(One::alone(lanes::turn_from(&rest, &rotor)))
+}
+
+/// The sum of all laws at a point of the motion, without damping and wheels; why and when there is none.
+pub(crate) fn exerted(torques: &[Torque], body: &Gyrostat, state: &Phase) -> Result<Bivector, SimulateError> {
+    let mut total = Bivector::default();
+    for law in torques {
+        let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };
+        total += law.value(body, state).map_err(failed)?;
+    }
+    Ok(total)
+}
+
+/// The momentum of all wheels together.
+pub fn wheel(torques: &[Torque]) -> Bivector {
+    torques.iter().fold(Bivector::default(), |sum, torque| match torque {
+        Torque::Wheel(h) => sum + *h,
+        _ => sum,
+    })
+}
+
+/// The whole torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: that of all laws,
+/// the part `−g I(Ω)`, and what the wheel does as it is turned, `Ω × h`.
+pub fn total(body: &Gyrostat, torques: &[Torque], state: &Phase) -> Result<Bivector, TorqueError> {
+    let omega = body.omega(state.momentum);
+    let mut sum = omega.commutator(body.wheel);
+    for torque in torques {
+        sum = sum + torque.value(body, state)? - body.carried(omega) * torque.damping_rate();
+    }
+    Ok(sum)
+}

@@ -1,0 +1,60 @@
+//! Torques at fixed attitude, solved exactly, and what the rounding of a free step is taken out by.
+
+use crate::error::SimulateError;
+use crate::laws::torque::{Torque, exerted};
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::{Bivector, Rotor};
+
+/// What kicks the momentum while the attitude stands still.
+#[derive(Clone, Debug)]
+pub(crate) struct Kicks {
+    wheel: Bivector,
+    body: Gyrostat,
+    torques: Vec<Torque>,
+    damping: f64,
+}
+
+impl Kicks {
+    /// Torques in principal axes, each dependent on attitude and time at most.
+    pub fn new(body: Gyrostat, torques: Vec<Torque>) -> Kicks {
+        let damping = torques.iter().map(Torque::damping_rate).sum();
+        Kicks { wheel: body.wheel, body, torques, damping }
+    }
+
+    /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
+    pub fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
+        let torque = exerted(&self.torques, &self.body, state)?;
+        let mut impulse = h;
+        let decay = -self.damping * h;
+        if decay != 0.0 {
+            // What is lost is added, not m multiplied by e^(−gt), whose rounding is the same at every step.
+            let lost = decay.exp_m1();
+            state.momentum += (state.momentum - self.wheel) * lost;
+            impulse = h * lost / decay;
+        }
+        state.momentum += torque * impulse;
+        Ok(())
+    }
+}
+
+/// L in space, where the laws leave it constant.
+pub(crate) fn fixed_momentum(torques: &[Torque], start: &Phase) -> Option<Bivector> {
+    let free = torques.iter().all(|t| matches!(t, Torque::Wheel(_)));
+    free.then(|| start.rotor.apply_bivector(start.momentum))
+}
+
+/// Takes the rounding of one free step out of |m| and the direction of `R m ~R`, to first order.
+///
+/// The direction of m is left alone: on an unstable axis a component that is zero stays zero.
+pub(crate) fn restore_momentum(state: &mut Phase, fixed: Bivector) {
+    let size = fixed.norm_squared();
+    if size > 0.0 {
+        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+        let missing = 0.5 * (size - state.momentum.norm_squared()) / size;
+        state.momentum += state.momentum * missing;
+        let wandered = state.rotor.apply_bivector(state.momentum);
+        // exp(−½ a∧b/|a||b|) turns the axial vector a into b; of so small a turn the first term is the whole.
+        let [x, y, z] = (wandered.dual().wedge(fixed.dual()) * (-0.5 / size)).0;
+        state.rotor = Rotor::from_unit_components([1.0, x, y, z]) * state.rotor;
+    }
+}

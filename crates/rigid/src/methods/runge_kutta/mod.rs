@@ -1,0 +1,298 @@
+//! Explicit Runge–Kutta steps on the group of rotors.
+//!
+//! Within a step from the rotor `R0` the attitude is `R = exp(−½σ) R0` with a bivector σ of space, and
+//! `R' = −½Ω_S R` becomes, with the axial vectors of σ and `ω = Ω_S` (the inverse of the exponential's differential,
+//! in closed form for rotations),
+//!
+//! ```text
+//! σ' = ω − ½ σ x ω + c(θ) σ x (σ x ω),   c(θ) = (1 − ½θ cot ½θ)/θ²,   θ = |σ|,
+//! L' = N_S,   Ω_S = R I⁻¹(~R L R) ~R.
+//! ```
+//!
+//! σ and the angular momentum L *in space* live in vector spaces, where any Runge–Kutta method has its full order
+//! (Munthe-Kaas 1999). Whatever the step, |R| = 1, a steady rotation is exact, and what is linear in L is conserved as
+//! by the law: L itself without a torque, L about e3 under gravity. A fast top spins in R but its Ω_S and L change
+//! slowly, which lets the steps be long.
+//!
+//! The centre of mass is stepped along where forces move it: `x' = v`, `v' = F/m`.
+//!
+//! Bodies are stepped side by side in lanes, each by its own step; a single body is lanes of one.
+
+mod exponential;
+mod points;
+mod tableau;
+
+use super::classical::{Bodies, renormalize};
+use crate::error::SimulateError;
+use crate::laws::force::Translation;
+use crate::laws::forcing::{Alone, Exert, Place};
+use crate::laws::torque::Torque;
+use crate::state::carried::Carried;
+use crate::state::phase::Gyrostat;
+use exponential::exponential;
+pub(crate) use points::Points;
+use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
+pub use tableau::{DOP853, Tableau};
+
+/// Beyond this angle in rad of one step the exponential's differential comes near its pole at 2π.
+const LARGEST_TURN: f64 = 3.0;
+
+/// σ and the change of L, of six numbers; of twelve with those of place and velocity.
+type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
+
+/// One step of lengths `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
+/// angular velocity relative to `fastest` (rad/s), whichever is larger; with N = 12 also the velocity relative to the
+/// velocity, and the place relative to the distance or the way of the step. NaN where the step is too long to tell.
+#[inline(always)]
+pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+    tableau: &Tableau,
+    bodies: &Bodies<W, F>,
+    exert: &mut E,
+    from: &Points<W, F>,
+    h: Lanes<W, F>,
+    fastest: Lanes<W, F>,
+) -> (Points<W, F>, Lanes<W, F>) {
+    let nothing = Lanes::all(f64::NAN);
+    let mut slopes = [[Lanes::ZERO; N]; 12];
+    let mut widest = Lanes::ZERO;
+    for stage in 0..tableau.rows.len() {
+        let change = combined(tableau.rows[stage], &slopes, h);
+        let turned = part(&change, 0);
+        let square = dot(&turned, &turned);
+        widest = square.max(widest);
+        if !any_within(&square) {
+            return (*from, nothing);
+        }
+        let dt = Lanes::all(tableau.nodes[stage]) * h;
+        slopes[stage] = slope(bodies, exert, from, &change, square, dt);
+    }
+    let change = combined(tableau.weights, &slopes, h);
+    let mut to = moved(from, &change, h);
+    for k in 0..3 {
+        // Kahan's sum (1965): a steady torque would be rounded alike in every step.
+        let kick = change[3 + k] + from.lost[k];
+        to.momentum[k] = from.momentum[k] + kick;
+        to.lost[k] = kick - (to.momentum[k] - from.momentum[k]);
+    }
+    let turned = part(&change, 0);
+    let square = dot(&turned, &turned);
+    widest = square.max(widest);
+    to.rotor = composed(&exponential(&turned, square).0, &from.rotor);
+    renormalize(&mut to.rotor);
+    let back = matrix(&from.rotor);
+    let fifth = size(bodies, from, &back, &combined(tableau.fifth, &slopes, h), h, fastest);
+    let third = size(bodies, from, &back, &combined(tableau.third, &slopes, h), h, fastest);
+    // As Hairer's code weighs the two: of order 8 where both are small.
+    let square = fifth * fifth;
+    let weighed = (third * third).times_plus(Lanes::all(0.01), square).sqrt();
+    let mut error = square / weighed;
+    for l in 0..W {
+        if fifth.0[l] == 0.0 {
+            error.0[l] = 0.0;
+        }
+        if widest.0[l] > LARGEST_TURN * LARGEST_TURN {
+            error.0[l] = f64::NAN;
+        }
+    }
+    (to, error)
+}
+
+/// Whether any turn, given by its square, is short enough.
+#[inline(always)]
+fn any_within<const W: usize, const F: bool>(square: &Lanes<W, F>) -> bool {
+    let mut any = false;
+    for l in 0..W {
+        any |= square.0[l] <= LARGEST_TURN * LARGEST_TURN;
+    }
+    any
+}
+
+/// σ' and L' at `from` changed by σ and ΔL.
+#[inline(always)]
+fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+    bodies: &Bodies<W, F>,
+    exert: &mut E,
+    from: &Points<W, F>,
+    change: &Change<N, W, F>,
+    square: Lanes<W, F>,
+    dt: Lanes<W, F>,
+) -> Change<N, W, F> {
+    let turned = part(change, 0);
+    let (turn, cotangent) = exponential(&turned, square);
+    let rotor = composed(&turn, &from.rotor);
+    let at = moved(from, change, dt);
+    let axes = matrix(&rotor);
+    let momentum = mapped_back(&axes, &at.momentum);
+    let omega = bodies.omega(&momentum);
+    let place = Place { rotor, omega, time: at.time };
+    let omega = mapped(&axes, &omega);
+    let first = cross(&turned, &omega);
+    let second = cross(&turned, &first);
+    let mut slope = [Lanes::ZERO; N];
+    for k in 0..3 {
+        let straight = first[k].times_plus(Lanes::all(-0.5), omega[k]);
+        slope[k] = cotangent.times_plus(second[k], straight);
+    }
+    if E::ACTS {
+        let mut torque = exert.torque(&place);
+        for k in 0..3 {
+            let carried = momentum[k] - bodies.wheel[k];
+            torque[k] = bodies.damping.times_from(carried, torque[k]);
+        }
+        slope[3..6].copy_from_slice(&mapped(&axes, &torque));
+    }
+    if N == 12 {
+        // The place beside that of the uniform motion from the start of the step.
+        slope[6..9].copy_from_slice(&part(change, 9));
+        slope[9..12].copy_from_slice(&exert.acceleration(&place, &at.center));
+    }
+    slope
+}
+
+/// How large a change is: in attitude, in angular velocity relative to `fastest`, in velocity relative to the velocity,
+/// in place relative to the distance or the way of the step.
+#[inline(always)]
+fn size<const N: usize, const W: usize, const F: bool>(
+    bodies: &Bodies<W, F>,
+    at: &Points<W, F>,
+    axes: &[[Lanes<W, F>; 3]; 3],
+    change: &Change<N, W, F>,
+    h: Lanes<W, F>,
+    fastest: Lanes<W, F>,
+) -> Lanes<W, F> {
+    let mut omega = mapped_back(axes, &part(change, 3));
+    for k in 0..3 {
+        omega[k] = omega[k] * bodies.inverse[k];
+    }
+    let relative = relative(norm(&omega), fastest);
+    let rotation = larger(Lanes::all(0.5) * norm(&part(change, 0)), relative);
+    if N < 12 {
+        return rotation;
+    }
+    let [x, y, z, u, v, w] = at.center;
+    let (speed, distance) = (norm(&[u, v, w]), norm(&[x, y, z]));
+    let way = distance.max(speed * h.abs());
+    let place = super::runge_kutta::relative(norm(&part(change, 6)), way);
+    let velocity = super::runge_kutta::relative(norm(&part(change, 9)), speed.max(way / h.abs()));
+    larger(rotation, larger(place, velocity))
+}
+
+/// `part/whole`, 0 where there is no whole.
+#[inline(always)]
+fn relative<const W: usize, const F: bool>(part: Lanes<W, F>, whole: Lanes<W, F>) -> Lanes<W, F> {
+    let mut ratio = part / whole;
+    for l in 0..W {
+        ratio.0[l] = if whole.0[l] > 0.0 { ratio.0[l] } else { 0.0 };
+    }
+    ratio
+}
+
+/// The larger of two; NaN where one is.
+#[inline(always)]
+fn larger<const W: usize, const F: bool>(a: Lanes<W, F>, b: Lanes<W, F>) -> Lanes<W, F> {
+    let mut larger = b;
+    for l in 0..W {
+        // A NaN of b is not less; one of a is no number.
+        larger.0[l] = if a.0[l] <= b.0[l] || b.0[l].is_nan() { b.0[l] } else { a.0[l] };
+    }
+    larger
+}
+
+/// Three of the numbers.
+#[inline(always)]
+fn part<const N: usize, const W: usize, const F: bool>(
+    change: &Change<N, W, F>,
+    from: usize,
+) -> [Lanes<W, F>; 3] {
+    [change[from], change[from + 1], change[from + 2]]
+}
+
+/// All but the rotor a time dt after `from`.
+#[inline(always)]
+fn moved<const N: usize, const W: usize, const F: bool>(
+    from: &Points<W, F>,
+    change: &Change<N, W, F>,
+    dt: Lanes<W, F>,
+) -> Points<W, F> {
+    let mut to = *from;
+    to.time = from.time + dt;
+    for k in 0..3 {
+        to.momentum[k] = from.momentum[k] + change[3 + k];
+    }
+    if N == 12 {
+        for k in 0..3 {
+            to.center[k] = from.center[k] + from.center[3 + k].times_plus(dt, change[6 + k]);
+            to.center[3 + k] = from.center[3 + k] + change[9 + k];
+        }
+    }
+    to
+}
+
+/// `h Σ a_j k_j`.
+#[inline(always)]
+fn combined<const N: usize, const W: usize, const F: bool>(
+    row: &[(usize, f64)],
+    slopes: &[Change<N, W, F>; 12],
+    h: Lanes<W, F>,
+) -> Change<N, W, F> {
+    let mut sum = [Lanes::ZERO; N];
+    for &(stage, a) in row {
+        let (slope, a) = (&slopes[stage], Lanes::all(a));
+        for k in 0..N {
+            sum[k] = slope[k].times_plus(a, sum[k]);
+        }
+    }
+    for k in 0..N {
+        sum[k] = h * sum[k];
+    }
+    sum
+}
+
+#[inline(always)]
+fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
+    dot(a, a).sqrt()
+}
+
+/// A body, what turns it, and how it is stepped alone.
+#[derive(Clone, Debug)]
+pub struct RungeKutta {
+    body: Gyrostat,
+    torques: Vec<Torque>,
+    translation: Option<Translation>,
+    alone: Bodies<1, false>,
+    tableau: &'static Tableau,
+}
+
+impl RungeKutta {
+    /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
+    pub fn new(
+        body: Gyrostat,
+        torques: Vec<Torque>,
+        translation: Option<Translation>,
+        tableau: &'static Tableau,
+    ) -> RungeKutta {
+        let damping = torques.iter().map(Torque::damping_rate).sum();
+        RungeKutta { body, torques, translation, alone: Bodies::new([(body, damping)]), tableau }
+    }
+
+    /// The method.
+    pub fn tableau(&self) -> &'static Tableau {
+        self.tableau
+    }
+
+    /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
+    /// angular velocity relative to `fastest` (rad/s), whichever is larger; NaN where the step is too long to tell.
+    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
+        let fastest = Lanes([fastest.max(self.body.least_rate())]);
+        let mut at = Points::NONE;
+        at.set(0, from);
+        let mut acting = Alone::new(&self.body, &self.torques, self.translation.as_ref());
+        let (tableau, alone, h): (_, _, One) = (self.tableau, &self.alone, Lanes([h]));
+        let (to, error) = match self.translation {
+            None => step::<6, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
+            Some(_) => step::<12, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
+        };
+        acting.finish()?;
+        Ok((to.get(0), error.0[0]))
+    }
+}

@@ -1,0 +1,138 @@
+//! Structure-preserving steps for a rigid body: products of exact turns.
+//!
+//! In principal axes the kinetic energy `½ Σ m_k²/i_k` of the angular momentum `m` splits, with `p` the
+//! middle axis, into
+//!
+//! ```text
+//! |m|²/(2 i_p)  +  ½ κ_a m_a²  +  ½ κ_b m_b²,     κ_k = 1/i_k − 1/i_p.
+//! ```
+//!
+//! Each part alone is solved exactly by turns. The first commutes with everything and turns the body
+//! about the fixed L: `R ← R exp(−½ h m/i_p)`, m unchanged. The others turn about a body axis by the
+//! angle `α = κ_k m_k h`: `R ← R q`, `m ← ~q m q`, `q = exp(−½ α I e_k)`. Turns keep |m|, |R| and
+//! `R m ~R` whatever the step. With the middle axis left out, the product `κ_a κ_b` that rules the error
+//! is smallest; it vanishes for a symmetric top, which is then solved exactly.
+//!
+//! A torque kicks the momentum at fixed attitude: `m ← m + h N`; with damping, `m' = N − g m` solved
+//! exactly. The symmetric product kick–a–b–a–kick is of order 2, and symmetric compositions
+//! `S(γ_1 h) … S(γ_s h)` of it reach orders 4, 6 and 8.
+//!
+//! A wheel with the relative momentum `h` ([`Gyrostat`]) adds `−h·I⁻¹m` to the energy: a turn about the fixed body axis of
+//! `I⁻¹h`, put in the middle.
+//!
+//! Runge–Kutta–Nyström splittings ([`Nystrom`]) need the free motion whole between kicks: one turn for a symmetric
+//! body, the exact solution of [`FreeMotion`] for any other.
+//!
+//! Without a torque L is constant in space. Rounding would let `R m ~R` wander from it, so after each
+//! step |m| is scaled back and R is turned by the tiny angle that carries `R m ~R` to L. The direction
+//! of m is left alone: on an unstable axis a component that is zero stays zero.
+
+mod sequences;
+pub(crate) mod turns;
+
+use super::kicks::fixed_momentum;
+use crate::error::SimulateError;
+use crate::exact::free::FreeMotion;
+use crate::laws::forcing::Alone;
+use crate::laws::torque::Torque;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::simd::lanes::One;
+use polhode_ga::{Bivector, Rotor};
+pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
+use turns::{Spin, Turns};
+
+/// How kicks and free motion follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sequence {
+    /// Second-order steps, composed.
+    Composition(&'static Composition),
+    /// Kicks between exact free motions.
+    Nystrom(&'static Nystrom),
+}
+
+impl Sequence {
+    /// Kicks and drifts in turn, as fractions of a step, and the kick after the last.
+    pub(crate) fn stages(self) -> (Vec<(f64, f64)>, f64) {
+        match self {
+            Sequence::Composition(composition) => composition.kicks_and_drifts(),
+            Sequence::Nystrom(nystrom) => (nystrom.stages().collect(), nystrom.last()),
+        }
+    }
+}
+
+/// A body in its principal axes, with what turns it and how it is stepped.
+#[derive(Clone, Debug)]
+pub struct Splitting {
+    body: Gyrostat,
+    torques: Vec<Torque>,
+    stages: (Vec<(f64, f64)>, f64),
+    /// Whether drifts are the exact free motion, which is more than some turns.
+    exact_drift: bool,
+    turns: Turns<1, false>,
+}
+
+impl Splitting {
+    /// Moments must be positive; torques in principal axes, each dependent on attitude and time at most.
+    pub fn new(body: Gyrostat, torques: Vec<Torque>, sequence: Sequence, start: &Phase) -> Splitting {
+        let damping = torques.iter().map(Torque::damping_rate).sum();
+        let exact = matches!(sequence, Sequence::Nystrom(_));
+        let fixed = fixed_momentum(&torques, start).map(|momentum| momentum.0);
+        let turns = Turns::new([(body, damping, fixed)]);
+        let exact_drift = exact && !turns.kind().is_symmetric();
+        Splitting { body, torques, stages: sequence.stages(), exact_drift, turns }
+    }
+
+    /// One step of length `h`, which may be negative.
+    pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
+        self.carry(state, &mut Bivector::default(), h)
+    }
+
+    /// The same step, with what rounding has left out of the sum of kicks.
+    pub(crate) fn carry(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
+        let mut acting = Alone::new(&self.body, &self.torques, None);
+        let mut spin = Spin {
+            rotor: One::each(state.rotor.components()),
+            momentum: One::each(state.momentum.0),
+            lost: One::each(lost.0),
+        };
+        if self.exact_drift {
+            let (stages, last) = &self.stages;
+            let mut time = state.time;
+            for &(kick, drift) in stages {
+                self.turns.kick(&mut acting, &mut spin, time, kick * h);
+                self.drift(&mut spin, drift * h);
+                time += drift * h;
+            }
+            self.turns.kick(&mut acting, &mut spin, time, last * h);
+            self.turns.finish(&mut spin);
+        } else {
+            self.turns.step((&self.stages.0, self.stages.1), &mut acting, &mut spin, state.time, h);
+        }
+        acting.finish()?;
+        state.time += h;
+        state.rotor = Rotor::from_unit_components(One::alone(spin.rotor));
+        state.momentum = Bivector(One::alone(spin.momentum));
+        *lost = Bivector(One::alone(spin.lost));
+        Ok(())
+    }
+
+    /// Turns in a step; an exact free motion rounds like some dozens of them.
+    pub fn turns_per_step(&self) -> f64 {
+        let stages = self.stages.0.len() as f64;
+        if self.exact_drift { 60.0 * stages } else { 3.0 * stages }
+    }
+
+    /// Evaluations of the torque in a step.
+    pub fn evaluations(&self) -> u64 {
+        self.stages.0.len() as u64 + 1
+    }
+
+    /// The exact free motion.
+    fn drift(&self, spin: &mut Spin<1, false>, h: f64) {
+        let omega = self.body.omega(Bivector(One::alone(spin.momentum)));
+        let rotor = Rotor::from_unit_components(One::alone(spin.rotor));
+        let (rotor, omega) = FreeMotion::in_principal_axes(self.body.moments, rotor, omega).at(h);
+        spin.rotor = One::each(rotor.components());
+        spin.momentum = One::each(self.body.momentum(omega).0);
+    }
+}

@@ -1,0 +1,300 @@
+//! The turns and kicks of a splitting, over bodies side by side; a single body is lanes of one.
+
+use crate::laws::forcing::{Exert, Place};
+use crate::methods::classical::renormalize;
+use crate::numerics::sinc::cosine_and_sinc;
+use crate::state::phase::Gyrostat;
+use polhode_ga::simd::lanes::{Lanes, composed, cross, dot, mapped, mapped_back, matrix};
+
+/// Rotors and momenta in principal axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spin<const W: usize, const F: bool> {
+    pub rotor: [Lanes<W, F>; 4],
+    pub momentum: [Lanes<W, F>; 3],
+    /// What rounding left out of the sum of kicks: added to the next one (Kahan 1965). Without it a steady torque would
+    /// be rounded alike in every step, and the error would grow as their number and not as its root.
+    pub lost: [Lanes<W, F>; 3],
+}
+
+/// A turn of a splitting: about the axis a or b, or about that of a wheel.
+#[derive(Clone, Copy, Debug)]
+enum Turn {
+    About(usize),
+    AboutWheel,
+}
+
+/// Bodies of one kind are turned about the same axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Kind {
+    /// a and b, and the one that is left out.
+    axes: [usize; 3],
+    symmetric: bool,
+    wheel: bool,
+}
+
+impl Kind {
+    pub fn of(body: &Gyrostat) -> Kind {
+        let mut order = [0, 1, 2];
+        order.sort_by(|&x, &y| body.moments[x].total_cmp(&body.moments[y]));
+        let [a, p, b] = order;
+        // Of a symmetric body one turn is none: that of the second axis.
+        let [a, b] = if kappa(body, a, p) == 0.0 { [b, a] } else { [a, b] };
+        let wheel = body.wheel.0 != [0.0; 3];
+        Kind { axes: [a, b, p], symmetric: kappa(body, b, p) == 0.0, wheel }
+    }
+
+    /// The turns but that about L, and for which part of a step.
+    fn order(self) -> &'static [(Turn, f64)] {
+        use Turn::{About, AboutWheel};
+        match (self.wheel, self.symmetric) {
+            (true, _) => {
+                &[(About(0), 0.5), (About(1), 0.5), (AboutWheel, 1.0), (About(1), 0.5), (About(0), 0.5)]
+            }
+            (false, true) => &[(About(0), 1.0)],
+            (false, false) => &[(About(0), 0.5), (About(1), 1.0), (About(0), 0.5)],
+        }
+    }
+
+    /// Whether one turn about an axis is all.
+    pub fn is_symmetric(self) -> bool {
+        self.symmetric && !self.wheel
+    }
+}
+
+/// `1/i_k − 1/i_p`, without subtracting nearly equal quotients.
+fn kappa(body: &Gyrostat, k: usize, p: usize) -> f64 {
+    let i = body.moments;
+    (i[p] - i[k]) / (i[p] * i[k])
+}
+
+/// Bodies of one kind, and how their kicks and turns follow each other.
+#[derive(Clone, Debug)]
+pub(crate) struct Turns<const W: usize, const F: bool> {
+    kind: Kind,
+    /// κ_a and κ_b; 1/i_p; `−I⁻¹h` of wheels.
+    kappa: [Lanes<W, F>; 2],
+    middle: Lanes<W, F>,
+    against_wheel: [Lanes<W, F>; 3],
+    /// 1/i_k, h and g, for kicks.
+    inverse: [Lanes<W, F>; 3],
+    wheel: [Lanes<W, F>; 3],
+    damping: Lanes<W, F>,
+    damped: bool,
+    /// Where it is constant.
+    fixed: Option<Fixed<W, F>>,
+}
+
+/// L in space with its square and one over that, 0 where it has none.
+#[derive(Clone, Copy, Debug)]
+struct Fixed<const W: usize, const F: bool> {
+    momentum: [Lanes<W, F>; 3],
+    square: Lanes<W, F>,
+    inverse: Lanes<W, F>,
+}
+
+impl<const W: usize, const F: bool> Turns<W, F> {
+    /// Of bodies of one kind, with the g of their dampings, and with L in space where it is constant: for all or none.
+    pub fn new(bodies: [(Gyrostat, f64, Option<[f64; 3]>); W]) -> Turns<W, F> {
+        let kind = Kind::of(&bodies[0].0);
+        let [a, b, p] = kind.axes;
+        let zero = Lanes::ZERO;
+        let mut turns = Turns {
+            kind,
+            kappa: [zero; 2],
+            middle: zero,
+            against_wheel: [zero; 3],
+            inverse: [zero; 3],
+            wheel: [zero; 3],
+            damping: zero,
+            damped: bodies.iter().any(|(_, damping, _)| *damping != 0.0),
+            fixed: None,
+        };
+        for (l, (body, damping, fixed)) in bodies.iter().enumerate() {
+            turns.kappa[0].0[l] = kappa(body, a, p);
+            turns.kappa[1].0[l] = kappa(body, b, p);
+            turns.middle.0[l] = 1.0 / body.moments[p];
+            turns.damping.0[l] = *damping;
+            for k in 0..3 {
+                turns.inverse[k].0[l] = 1.0 / body.moments[k];
+                turns.wheel[k].0[l] = body.wheel.0[k];
+                turns.against_wheel[k].0[l] = -body.wheel.0[k] / body.moments[k];
+            }
+            if let Some(momentum) = fixed {
+                let none = Fixed { momentum: [zero; 3], square: zero, inverse: zero };
+                let all = turns.fixed.get_or_insert(none);
+                let square: f64 = momentum.iter().map(|x| x * x).sum();
+                all.square.0[l] = square;
+                all.inverse.0[l] = if square > 0.0 { 1.0 / square } else { 0.0 };
+                for k in 0..3 {
+                    all.momentum[k].0[l] = momentum[k];
+                }
+            }
+        }
+        turns
+    }
+
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// One step of length h by kicks and drifts in turn, as fractions of it, and a kick after the last.
+    #[inline(always)]
+    pub fn step<E: Exert<W, F>>(
+        &self,
+        (stages, last): (&[(f64, f64)], f64),
+        exert: &mut E,
+        spin: &mut Spin<W, F>,
+        time: f64,
+        h: f64,
+    ) {
+        // A turn about a constant L is the same whenever it is made.
+        if self.fixed.is_some() {
+            self.about_momentum(spin, h);
+        }
+        let mut now = time;
+        for k in 0..=stages.len() {
+            let (kick, drift) = if k < stages.len() { stages[k] } else { (last, 0.0) };
+            if self.fixed.is_none() {
+                self.kick(exert, spin, now, kick * h);
+            }
+            if k < stages.len() {
+                if self.fixed.is_none() {
+                    self.about_momentum(spin, drift * h);
+                }
+                self.about_axes(spin, drift * h);
+                now += drift * h;
+            }
+        }
+        self.finish(spin);
+    }
+
+    /// Takes the rounding of a step out of |R|, and of |m| and the direction of `R m ~R` where L is constant, to first
+    /// order. The direction of m is left alone: on an unstable axis a component that is zero stays zero.
+    #[inline(always)]
+    pub fn finish(&self, spin: &mut Spin<W, F>) {
+        renormalize(&mut spin.rotor);
+        let Some(fixed) = &self.fixed else { return };
+        let m = &mut spin.momentum;
+        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+        let half = Lanes::all(0.5) * fixed.inverse;
+        let missing = (fixed.square - dot(m, m)) * half;
+        for k in 0..3 {
+            m[k] = m[k].times_plus(missing, m[k]);
+        }
+        let wandered = mapped(&matrix(&spin.rotor), m);
+        // exp(−½ a∧b/|a||b|) turns the axial vector a into b; of so small a turn the first term is the whole.
+        let [x, y, z] = cross(&fixed.momentum, &wandered);
+        let turn = [Lanes::all(1.0), x * half, y * half, z * half];
+        spin.rotor = composed(&turn, &spin.rotor);
+    }
+
+    /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
+    #[inline(always)]
+    pub fn kick<E: Exert<W, F>>(&self, exert: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
+        let m = &mut spin.momentum;
+        let (wheel, inverse) = (&self.wheel, &self.inverse);
+        let mut omega = *m;
+        for k in 0..3 {
+            omega[k] = (m[k] - wheel[k]) * inverse[k];
+        }
+        let torque = exert.torque(&Place { rotor: spin.rotor, omega, time: Lanes::all(time) });
+        let mut impulse = Lanes::all(h);
+        if self.damped {
+            let lost;
+            (lost, impulse) = decayed(&self.damping, h);
+            for k in 0..3 {
+                // What is lost is added, not m multiplied by e^(−gt), whose rounding is the same at every step.
+                m[k] = (m[k] - wheel[k]).times_plus(lost, m[k]);
+            }
+        }
+        for k in 0..3 {
+            let kick = torque[k].times_plus(impulse, spin.lost[k]);
+            let sum = m[k] + kick;
+            spin.lost[k] = kick - (sum - m[k]);
+            m[k] = sum;
+        }
+    }
+
+    /// The turn of all bodies about their L. It commutes with the other turns: before them m is the one that they turn.
+    #[inline(always)]
+    pub fn about_momentum(&self, spin: &mut Spin<W, F>, h: f64) {
+        let m = &spin.momentum;
+        let half = self.middle * Lanes::all(0.5 * h);
+        let (cos, sinc) = cosine_and_sinc(half * half * dot(m, m));
+        let factor = -(half * sinc);
+        let turn = [cos, m[0] * factor, m[1] * factor, m[2] * factor];
+        spin.rotor = composed(&spin.rotor, &turn);
+    }
+
+    /// The other turns. In a loop, so that the code of a turn stands once.
+    #[inline(always)]
+    pub fn about_axes(&self, spin: &mut Spin<W, F>, h: f64) {
+        for &(which, part) in self.kind.order() {
+            match which {
+                Turn::About(which) => self.about_axis(spin, which, part * h),
+                Turn::AboutWheel => self.about_wheel(spin, part * h),
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn about_wheel(&self, spin: &mut Spin<W, F>, h: f64) {
+        let half = Lanes::all(-0.5 * h);
+        let w = &self.against_wheel;
+        let (cos, sinc) = cosine_and_sinc(half * half * dot(w, w));
+        let factor = half * sinc;
+        let turn = [cos, w[0] * factor, w[1] * factor, w[2] * factor];
+        spin.rotor = composed(&spin.rotor, &turn);
+        spin.momentum = mapped_back(&matrix(&turn), &spin.momentum);
+    }
+
+    #[inline(always)]
+    fn about_axis(&self, spin: &mut Spin<W, F>, which: usize, h: f64) {
+        let rate = self.kappa[which] * Lanes::all(0.5 * h);
+        // The axes k, i, j are cyclic; a match lets the compiler see them.
+        match self.kind.axes[which] {
+            0 => turn_about::<0, 1, 2, W, F>(spin, rate),
+            1 => turn_about::<1, 2, 0, W, F>(spin, rate),
+            _ => turn_about::<2, 0, 1, W, F>(spin, rate),
+        }
+    }
+}
+
+/// `R ← R q`, `m ← ~q m q` with `q = exp(−half I e_k)`, `half = rate m_k`, written out.
+#[inline(always)]
+fn turn_about<const K: usize, const I: usize, const J: usize, const W: usize, const F: bool>(
+    spin: &mut Spin<W, F>,
+    rate: Lanes<W, F>,
+) {
+    let half = rate * spin.momentum[K];
+    let (cos, sinc) = cosine_and_sinc(half * half);
+    let sin = half * sinc;
+    let r = spin.rotor;
+    spin.rotor[0] = r[K + 1].times_plus(sin, r[0] * cos);
+    spin.rotor[K + 1] = r[0].times_from(sin, r[K + 1] * cos);
+    spin.rotor[I + 1] = r[J + 1].times_plus(sin, r[I + 1] * cos);
+    spin.rotor[J + 1] = r[I + 1].times_from(sin, r[J + 1] * cos);
+    // ~q m q turns the other two components by −2 half; the one about k is exact. The turn is added to m: rounded
+    // cosines and sines would stretch it by the same at every step of a steady motion.
+    let two = sin + sin;
+    let (versine, sine) = (two * sin, two * cos);
+    let (x, y) = (spin.momentum[I], spin.momentum[J]);
+    spin.momentum[I] = x + versine.times_from(x, sine * y);
+    spin.momentum[J] = y - versine.times_plus(y, sine * x);
+}
+
+/// `e^(−gh) − 1`, and what a torque gives in that time: `(1 − e^(−gh))/g`.
+#[inline(always)]
+fn decayed<const W: usize, const F: bool>(damping: &Lanes<W, F>, h: f64) -> (Lanes<W, F>, Lanes<W, F>) {
+    let (mut lost, mut impulse) = (Lanes::ZERO, Lanes::all(h));
+    for l in 0..W {
+        let decay = -damping.0[l] * h;
+        if l > 0 && damping.0[l] == damping.0[0] {
+            (lost.0[l], impulse.0[l]) = (lost.0[0], impulse.0[0]);
+        } else if decay != 0.0 {
+            lost.0[l] = decay.exp_m1();
+            impulse.0[l] = h * lost.0[l] / decay;
+        }
+    }
+    (lost, impulse)
+}

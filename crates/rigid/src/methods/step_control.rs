@@ -1,0 +1,117 @@
+//! The lengths of steps that keep to a tolerance, and where they stop: for single bodies and for those side by side.
+
+use crate::error::SimulateError;
+
+/// The steps of a pass after which its number of steps is foreseen: these, and every doubling.
+const FIRST_FORECAST: u64 = 20_000;
+
+/// A forecast is believed where it exceeds the limit by this over the steps taken, and by a factor of 2: a body may slow
+/// down.
+const DOUBT: f64 = 2e7;
+
+/// Below this turn, in rad, of the fastest rate in a step of many, the steps are as short as stability asks: the law is
+/// stiff.
+const STIFF_TURN: f64 = 0.02;
+
+/// Fewer steps than so many are taken, stiff or not.
+const MANY: f64 = 1e5;
+
+/// How long the next of the steps that keep to a tolerance is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride {
+    /// In s, if nothing is in its way.
+    next: f64,
+    /// That of the step under way, in s.
+    cut: f64,
+    /// The longest that is allowed, in s.
+    longest: f64,
+    /// Whether the step before was too long.
+    refused: bool,
+}
+
+impl Stride {
+    /// With a guess of the first step and the longest allowed, in s.
+    pub fn new(first: f64, longest: f64) -> Stride {
+        let first = first.min(longest);
+        Stride { next: first, cut: first, longest, refused: false }
+    }
+
+    /// Where a step ends on the way from one time to another.
+    pub fn end(&mut self, from: f64, time: f64) -> Result<f64, SimulateError> {
+        let rest = (time - from).abs();
+        // Two steps of half the way avoid a tiny last one.
+        let cut = if self.next >= rest { rest } else { self.next.min(0.5 * rest.max(self.next)) };
+        let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
+        // Output times may be as close as numbers are.
+        if to == from || self.refused && cut < 1e-14 * from.abs() {
+            return Err(SimulateError::StepTooSmall { time: from, step: cut });
+        }
+        self.cut = cut;
+        Ok(to)
+    }
+
+    /// Whether a step of length h is accepted, by its error relative to the tolerance. The next one is the longest whose
+    /// error should be 0.9⁸ of the tolerance.
+    pub fn judge(&mut self, h: f64, error: f64) -> bool {
+        let h = h.abs();
+        // NaN too.
+        if error.is_nan() || error > 1.0 {
+            self.next = h * if error.is_finite() { (0.9 * error.powf(-0.125)).max(0.2) } else { 0.2 };
+            self.refused = true;
+            return false;
+        }
+        let growth = (0.9 * error.powf(-0.125)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
+        // A step cut short by an output time says little of how long it might be.
+        self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
+        self.next = self.next.min(self.longest);
+        self.refused = false;
+        true
+    }
+}
+
+/// How many steps a pass may take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    pub steps: f64,
+    /// Whether stiffness is reported, so that another method can take over.
+    pub reports_stiffness: bool,
+}
+
+impl Limit {
+    /// An error where a pass has taken too many steps, or is foreseen to: after a step of length h that turned the body
+    /// by so much, at a fraction of the way.
+    pub fn check(
+        &self,
+        taken: u64,
+        h: f64,
+        turn: f64,
+        fraction: impl FnOnce() -> f64,
+    ) -> Result<(), SimulateError> {
+        let steps = taken as f64;
+        let step = h.abs();
+        if steps > self.steps {
+            return Err(SimulateError::TooManySteps { steps, step, limit: self.steps });
+        }
+        if !(taken.is_multiple_of(FIRST_FORECAST) && (taken / FIRST_FORECAST).is_power_of_two()) {
+            return Ok(());
+        }
+        let foreseen = steps / fraction().max(f64::MIN_POSITIVE);
+        if self.reports_stiffness && turn.abs() < STIFF_TURN && foreseen > MANY {
+            return Err(SimulateError::Stiff { steps: foreseen });
+        }
+        if foreseen > self.steps * (DOUBT / steps).max(2.0) {
+            return Err(SimulateError::TooManySteps { steps: foreseen, step, limit: self.steps });
+        }
+        Ok(())
+    }
+}
+
+/// Where to stop next on the way from one time to another: there, or where a law is not smooth.
+pub(crate) fn next_stop(breaks: &[f64], from: f64, time: f64) -> f64 {
+    let between = if time > from {
+        breaks.get(breaks.partition_point(|&b| b <= from)).filter(|&&b| b < time)
+    } else {
+        breaks[..breaks.partition_point(|&b| b < from)].last().filter(|&&b| b > time)
+    };
+    between.copied().unwrap_or(time)
+}

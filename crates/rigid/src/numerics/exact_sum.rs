@@ -1,0 +1,81 @@
+//! Exact sums: a number as a sum of floats that do not overlap, of rising size.
+//!
+//! J. R. Shewchuk, *Adaptive precision floating-point arithmetic*, Discrete Comput. Geom. 18 (1997). For
+//! differences that decide what happens and may be as small as they like.
+
+use super::double_double::DoubleDouble;
+
+/// Numbers enough for two products of five factors.
+const MOST: usize = 32;
+
+/// A sum of floats, exact where no product under- or overflows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exact {
+    parts: [f64; MOST],
+    count: usize,
+}
+
+impl Exact {
+    pub const ZERO: Exact = Exact { parts: [0.0; MOST], count: 0 };
+
+    /// The sum with one more number.
+    pub fn plus(self, x: f64) -> Exact {
+        let mut sum = Exact::ZERO;
+        let mut carry = x;
+        for &part in &self.parts[..self.count] {
+            let DoubleDouble { hi, lo } = DoubleDouble::two_sum(carry, part);
+            sum.push(lo);
+            carry = hi;
+        }
+        sum.push(carry);
+        sum
+    }
+
+    pub fn add(self, other: Exact) -> Exact {
+        other.parts[..other.count].iter().fold(self, |sum, &part| sum.plus(part))
+    }
+
+    pub fn times(self, factor: f64) -> Exact {
+        self.parts[..self.count].iter().fold(Exact::ZERO, |sum, &part| {
+            let DoubleDouble { hi, lo } = DoubleDouble::two_product(part, factor);
+            sum.plus(lo).plus(hi)
+        })
+    }
+
+    /// Rounded; the largest first, which no other part can cancel.
+    pub fn value(self) -> DoubleDouble {
+        self.parts[..self.count].iter().rev().fold(DoubleDouble::ZERO, |sum, &part| sum + part.into())
+    }
+
+    fn push(&mut self, part: f64) {
+        if part != 0.0 {
+            self.parts[self.count] = part;
+            self.count += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whole numbers of 30 bits, so that 128 bits hold the exact result, which nearly cancels.
+        #[test]
+        fn as_whole_numbers(a in 1i64..1 << 30, b in 1i64..1 << 30, c in 1i64..1 << 30, e in -9i64..9) {
+            let product = |x: [i64; 4]| {
+                let f = x.map(|x| x as f64);
+                Exact::ZERO.plus(f[0]).plus(-f[3]).times(f[1]).times(f[2]).times(f[1])
+            };
+            let whole = |x: [i64; 4]| {
+                let x = x.map(i128::from);
+                (x[0] - x[3]) * x[1] * x[2] * x[1]
+            };
+            let (x, y) = ([a, b, c, 1], [a, b, c + e, 1]);
+            let found = product(x).add(product(y).times(-1.0)).value();
+            let expected = whole(x) - whole(y);
+            prop_assert_eq!(found.hi as i128 + found.lo as i128, expected);
+        }
+    }
+}

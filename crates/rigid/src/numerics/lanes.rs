@@ -1,0 +1,102 @@
+//! Arithmetic in lanes: phases reduced, exponentials, sine and cosine. No branches.
+
+use super::double_double::DoubleDouble;
+use polhode_ga::simd::double::{sin_cos, two_product, two_sum};
+use std::f64::consts::FRAC_PI_2;
+
+/// Adding 1.5·2⁵² leaves the nearest integer in the last bits; for numbers beyond 2⁵¹ one near enough.
+const INTEGER: f64 = 6_755_399_441_055_744.0;
+
+/// A phase that grows linearly with time, in turns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Phase {
+    /// Per second.
+    pub rate: DoubleDouble,
+    /// At time 0, as a sum: what is large of it is exact.
+    pub start: [f64; 2],
+}
+
+impl Phase {
+    /// The phase at time t less whole turns, in [−½, ½], and its rounding error: what is left of it near a
+    /// quarter turn, too, keeps its digits. The product of rate and time is exact in its first part; off go its
+    /// whole turns, then those that the rest adds.
+    #[inline(always)]
+    pub fn turns<const FMA: bool>(&self, t: f64) -> (f64, f64) {
+        let (product, error) = two_product::<FMA>(self.rate.hi, t);
+        let rest = product - ((product + INTEGER) - INTEGER);
+        let small = (error + self.rate.lo * t) + self.start[1];
+        let (sum, e) = two_sum(rest, self.start[0]);
+        let (sum, e) = two_sum(sum, small + e);
+        (sum - ((sum + INTEGER) - INTEGER), e)
+    }
+}
+
+/// Sine and cosine of a few turns, and a small rest.
+#[inline(always)]
+pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64) {
+    let quarters = 4.0 * turns;
+    let shifted = quarters + INTEGER;
+    let part = (quarters - (shifted - INTEGER)) + 4.0 * rest;
+    let ((sin, _), cos) = sin_cos::<FMA>(shifted.to_bits() & 3, part * FRAC_PI_2, 0.0);
+    (sin, cos)
+}
+
+/// `e^{−x}` and `e^{−x} − 1`, each to a few roundings, for x in [0, 705].
+///
+/// `−x = n ln 2 + r` with `|r| <= ½ ln 2`; the series of `e^r − 1` ends below 2⁻⁵⁶ of it.
+#[inline(always)]
+pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
+    /// ln 2 in two parts, the first of 32 bits, so that its products with n are exact.
+    const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
+    /// 1/k! from 2 on.
+    const C: [f64; 12] = [
+        1.0 / 2.0,
+        1.0 / 6.0,
+        1.0 / 24.0,
+        1.0 / 120.0,
+        1.0 / 720.0,
+        1.0 / 5_040.0,
+        1.0 / 40_320.0,
+        1.0 / 362_880.0,
+        1.0 / 3_628_800.0,
+        1.0 / 39_916_800.0,
+        1.0 / 479_001_600.0,
+        1.0 / 6_227_020_800.0,
+    ];
+    let shifted = INTEGER - x * std::f64::consts::LOG2_E;
+    let n = shifted - INTEGER;
+    let r = (-x - n * LN_2[0]) - n * LN_2[1];
+    let (r2, r4) = (r * r, (r * r) * (r * r));
+    let low = (C[0] + r * C[1]) + r2 * (C[2] + r * C[3]);
+    let middle = (C[4] + r * C[5]) + r2 * (C[6] + r * C[7]);
+    let high = (C[8] + r * C[9]) + r2 * (C[10] + r * C[11]);
+    let p = r + r2 * (low + r4 * (middle + r4 * high));
+    let power = f64::from_bits((shifted.to_bits().wrapping_add(1023)) << 52);
+    (power + power * p, power * p + (power - 1.0))
+}
+
+/// A polynomial, coefficients by rising powers.
+#[inline(always)]
+pub(crate) fn horner<const N: usize>(c: &[f64; N], x: f64) -> f64 {
+    let mut sum = c[N - 1];
+    for k in (0..N - 1).rev() {
+        sum = sum * x + c[k];
+    }
+    sum
+}
+
+/// The same whose coefficients are one number for all lanes, or one for each.
+#[inline(always)]
+pub(crate) fn horner_in_lane<const N: usize, const C: usize>(c: &[[f64; C]; N], l: usize, x: f64) -> f64 {
+    let mut sum = in_lane(&c[N - 1], l);
+    for k in (0..N - 1).rev() {
+        sum = sum * x + in_lane(&c[k], l);
+    }
+    sum
+}
+
+/// What lane l has of one number for all lanes, or one for each.
+#[inline(always)]
+pub(crate) fn in_lane<const C: usize>(numbers: &[f64; C], l: usize) -> f64 {
+    numbers[if C == 1 { 0 } else { l }]
+}

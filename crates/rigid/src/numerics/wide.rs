@@ -1,0 +1,211 @@
+//! Numbers of twice the precision whose exponent does not end: a [`DoubleDouble`] times a power of two.
+//!
+//! Squares and fourth powers of a tilt of 1e-300 keep their digits.
+
+use super::double_double::DoubleDouble;
+use std::cmp::Ordering;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Beyond this many bits the smaller of two terms is below the last digit of the larger one.
+const DIGITS: i64 = 128;
+
+/// `x · 2^exponent`, with `1 <= |x| < 2`, or 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wide {
+    x: DoubleDouble,
+    exponent: i64,
+}
+
+/// 2^n, if it is a normal number.
+pub(crate) fn exp2(n: i64) -> f64 {
+    f64::from_bits(((1023 + n) as u64) << 52)
+}
+
+/// By a power of two, without rounding unless the result is subnormal.
+fn scaled(x: DoubleDouble, power: f64) -> DoubleDouble {
+    DoubleDouble { hi: x.hi * power, lo: x.lo * power }
+}
+
+impl Wide {
+    pub const ZERO: Wide = Wide { x: DoubleDouble::ZERO, exponent: 0 };
+    pub const ONE: Wide = Wide { x: DoubleDouble::ONE, exponent: 0 };
+
+    /// `x · 2^exponent` of a normal number x, or 0.
+    pub fn normal(x: DoubleDouble, exponent: i64) -> Wide {
+        if x.hi == 0.0 {
+            return Wide::ZERO;
+        }
+        let own = ((x.hi.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+        if own == 1024 {
+            return Wide { x, exponent: 0 };
+        }
+        // In two steps, for 2^−1023, by which the largest floats are scaled, is not a normal number.
+        let half = -own / 2;
+        Wide { x: scaled(scaled(x, exp2(half)), exp2(-own - half)), exponent: exponent + own }
+    }
+
+    /// x and the exponent.
+    pub fn parts(self) -> (DoubleDouble, i64) {
+        (self.x, self.exponent)
+    }
+
+    pub fn is_zero(self) -> bool {
+        self.x.hi == 0.0
+    }
+
+    pub fn is_negative(self) -> bool {
+        self.x.hi < 0.0
+    }
+
+    pub fn is_positive(self) -> bool {
+        self.x.hi > 0.0
+    }
+
+    pub fn is_finite(self) -> bool {
+        self.x.hi.is_finite()
+    }
+
+    pub fn abs(self) -> Wide {
+        if self.is_negative() { -self } else { self }
+    }
+
+    /// 0 for a negative number.
+    pub fn sqrt(self) -> Wide {
+        if !self.is_positive() {
+            return Wide::ZERO;
+        }
+        let odd = self.exponent.rem_euclid(2);
+        let root = scaled(self.x, exp2(odd)).sqrt();
+        Wide::normal(root, (self.exponent - odd) / 2)
+    }
+
+    /// In the range of floating point: 0 below it, infinite above.
+    pub fn narrow(self) -> DoubleDouble {
+        // In two steps, of which at most the second leaves the normal numbers.
+        let exponent = self.exponent.clamp(-1500, 1500);
+        let half = exponent / 2;
+        let x = scaled(scaled(self.x, exp2(half)), exp2(exponent - half));
+        if x.hi.is_finite() { x } else { x.hi.into() }
+    }
+
+    /// Rounded to the range of floating point.
+    pub fn value(self) -> f64 {
+        self.narrow().value()
+    }
+}
+
+impl From<DoubleDouble> for Wide {
+    fn from(x: DoubleDouble) -> Wide {
+        // Subnormal numbers become normal.
+        if x.hi.abs() < exp2(-900) { Wide::normal(scaled(x, exp2(900)), -900) } else { Wide::normal(x, 0) }
+    }
+}
+
+impl From<f64> for Wide {
+    fn from(x: f64) -> Wide {
+        DoubleDouble::from(x).into()
+    }
+}
+
+impl PartialEq for Wide {
+    fn eq(&self, o: &Wide) -> bool {
+        self.partial_cmp(o) == Some(Ordering::Equal)
+    }
+}
+
+impl PartialOrd for Wide {
+    fn partial_cmp(&self, o: &Wide) -> Option<Ordering> {
+        (*self - *o).x.hi.partial_cmp(&0.0)
+    }
+}
+
+impl Add for Wide {
+    type Output = Wide;
+    fn add(self, o: Wide) -> Wide {
+        let (large, small) =
+            if self.is_zero() || !o.is_zero() && o.exponent > self.exponent { (o, self) } else { (self, o) };
+        let apart = large.exponent - small.exponent;
+        if small.is_zero() || apart > DIGITS {
+            return large;
+        }
+        Wide::normal(large.x + scaled(small.x, exp2(-apart)), large.exponent)
+    }
+}
+
+impl Neg for Wide {
+    type Output = Wide;
+    fn neg(self) -> Wide {
+        Wide { x: -self.x, ..self }
+    }
+}
+
+impl Sub for Wide {
+    type Output = Wide;
+    fn sub(self, o: Wide) -> Wide {
+        self + -o
+    }
+}
+
+impl Mul for Wide {
+    type Output = Wide;
+    fn mul(self, o: Wide) -> Wide {
+        Wide::normal(self.x * o.x, self.exponent + o.exponent)
+    }
+}
+
+impl Div for Wide {
+    type Output = Wide;
+    fn div(self, o: Wide) -> Wide {
+        Wide::normal(self.x / o.x, self.exponent - o.exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn number() -> impl Strategy<Value = Wide> {
+        (1.0..2.0f64, -1.0..1.0f64, -5000..5000i64, prop::bool::ANY).prop_map(|(hi, lo, exponent, minus)| {
+            let x = DoubleDouble::two_sum(hi, lo * 0.5 * f64::EPSILON);
+            let x = Wide::normal(x, exponent);
+            if minus { -x } else { x }
+        })
+    }
+
+    /// `|x| <= n 2⁻¹⁰⁴ |size|`.
+    fn small(x: Wide, n: f64, size: Wide) -> bool {
+        x.abs() <= size.abs() * Wide::from(n * 2f64.powi(-104))
+    }
+
+    proptest! {
+        /// Identities that hold exactly for real numbers, to a few units of 2⁻¹⁰⁴, far beyond the range of floats.
+        #[test]
+        fn field_identities(a in number(), b in number(), c in number()) {
+            prop_assert!(small(a * (b + c) - a * b - a * c, 16.0, a.abs() * (b.abs() + c.abs())));
+            prop_assert!(small(a / b * b - a, 16.0, a));
+            prop_assert!(small((a * a).sqrt() - a.abs(), 16.0, a));
+            prop_assert_eq!(a < b, b > a);
+            prop_assert!(a - a == Wide::ZERO && a + Wide::ZERO == a && a * Wide::ZERO == Wide::ZERO);
+        }
+
+        /// All floats go there and back.
+        #[test]
+        fn floats(x in prop::num::f64::ANY) {
+            prop_assume!(x.is_finite());
+            prop_assert_eq!(Wide::from(x).value(), x);
+        }
+    }
+
+    #[test]
+    fn beyond_floats() {
+        for extreme in [f64::MAX, -2f64.powi(1023), f64::MIN_POSITIVE, -5e-324] {
+            assert_eq!(Wide::from(extreme).value(), extreme);
+        }
+        let tiny = Wide::from(5e-324);
+        assert_eq!((tiny * tiny).value(), 0.0);
+        assert_eq!((tiny * tiny).sqrt().value(), 5e-324);
+        assert_eq!((Wide::ONE / tiny).value(), f64::INFINITY);
+        assert_eq!((Wide::ONE / tiny * tiny).value(), 1.0);
+    }
+}

@@ -1,0 +1,92 @@
+//! What a run should have conserved, and how far it went astray.
+
+use crate::laws::conserved::Conserved;
+use crate::laws::torque::Torque;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::Rotor;
+
+/// How far a run went astray in what it should have conserved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Certificate {
+    /// The method's name, `exact` for the exact solution.
+    pub method: &'static str,
+    /// Longest step taken, in s; 0 for the exact solution.
+    pub step: f64,
+    /// Steps taken, in all passes.
+    pub steps: u64,
+    /// Evaluations of the torque, in all passes.
+    pub evaluations: u64,
+    /// A cautious estimate of the error, from the difference of the last two passes, or of what an exact solution
+    /// neglects.
+    pub error_estimate: Option<f64>,
+    /// Each conserved quantity: its initial value, and its largest change over the run relative to the
+    /// terms that make it up.
+    pub drifts: Vec<(Conserved, f64, f64)>,
+    /// Largest `abs(|R| − 1)` at the output times.
+    pub norm_drift: f64,
+    /// What the numbers do not show: a law that fixed steps are too long for.
+    pub warnings: Vec<String>,
+}
+
+/// `abs(|R| − 1)`.
+pub(crate) fn off_unit(rotor: Rotor) -> f64 {
+    (rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs()
+}
+
+/// Follows the conserved quantities along a run.
+pub(crate) struct Watch<'a> {
+    body: Gyrostat,
+    torques: &'a [Torque],
+    quantities: Vec<Followed>,
+}
+
+/// A quantity with its value at the start, the size of its terms, and its largest change so far.
+struct Followed {
+    quantity: Conserved,
+    start: f64,
+    scale: f64,
+    drift: f64,
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(body: Gyrostat, torques: &'a [Torque], start: Phase) -> Watch<'a> {
+        let follow = |quantity: Conserved| {
+            // A quantity that starts at zero with nothing to compare to counts absolutely.
+            let scale = match quantity.scale(&body, torques, &start) {
+                0.0 => 1.0,
+                scale => scale,
+            };
+            Followed { quantity, start: quantity.value(&body, torques, &start), scale, drift: 0.0 }
+        };
+        Watch {
+            body,
+            torques,
+            quantities: Conserved::under(&body, torques, &start).into_iter().map(follow).collect(),
+        }
+    }
+
+    /// Each quantity with its relative changes at these points.
+    pub fn changes<'s>(&self, states: impl Iterator<Item = &'s Phase> + Clone) -> Vec<(Conserved, Vec<f64>)> {
+        let change = |followed: &Followed, state: &Phase| {
+            (followed.quantity.value(&self.body, self.torques, state) - followed.start) / followed.scale
+        };
+        let series = |f: &Followed| (f.quantity, states.clone().map(|state| change(f, state)).collect());
+        self.quantities.iter().map(series).collect()
+    }
+
+    pub fn look(&mut self, state: &Phase) {
+        for followed in &mut self.quantities {
+            let value = followed.quantity.value(&self.body, self.torques, state);
+            let drift = (value - followed.start).abs() / followed.scale;
+            // f64::max would forget a NaN.
+            if !(drift <= followed.drift || followed.drift.is_nan()) {
+                followed.drift = drift;
+            }
+        }
+    }
+
+    /// Each quantity with its value at the start and its largest relative change.
+    pub fn finish(self) -> Vec<(Conserved, f64, f64)> {
+        self.quantities.into_iter().map(|f| (f.quantity, f.start, f.drift)).collect()
+    }
+}

@@ -1,0 +1,86 @@
+//! What bounds the steps of a run: where they end, how long they are, how many there may be.
+
+use super::stops::{Sampled, sampled};
+use super::{MAX_STEPS, Options};
+use crate::error::SimulateError;
+use crate::laws::torque::Torque;
+use crate::methods::step_control::Limit;
+use crate::state::phase::{Gyrostat, Phase};
+
+/// What bounds the steps of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Course {
+    /// Times at which steps end, rising: there the laws are not smooth, or change fast.
+    pub breaks: Vec<f64>,
+    /// Whether no law changes so fast that sampling it found stops.
+    pub is_smooth: bool,
+    /// The longest step, in s.
+    pub longest: f64,
+    pub limit: Limit,
+    /// The rate in rad/s at which the torques make the largest moment swing: angular velocities count as no smaller, for
+    /// an error of the attitude makes one of the rate that is as large times this.
+    pub least_rate: f64,
+}
+
+/// The earliest and the latest of times and of the start.
+pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
+    [times.first().map_or(start, |t| t.min(start)), times.last().map_or(start, |t| t.max(start))]
+}
+
+impl Default for Course {
+    fn default() -> Course {
+        let limit = Limit { steps: MAX_STEPS, reports_stiffness: false };
+        Course { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0 }
+    }
+}
+
+/// Laws along time, on both sides of the start.
+pub(crate) type Samples = Vec<[Sampled; 2]>;
+
+/// Laws along these output times, where a tolerance rules the steps; steps of one's own are left as they are.
+pub(crate) fn samples(
+    torques: &[Torque],
+    body: &Gyrostat,
+    start: &Phase,
+    times: &[f64],
+    options: &Options,
+) -> Result<Samples, SimulateError> {
+    if options.step.is_some() {
+        return Ok(Vec::new());
+    }
+    let [first, last] = span(times, start.time);
+    let both = |law: &Torque| -> Result<[Sampled; 2], SimulateError> {
+        Ok([sampled(law, body, start, [first, start.time])?, sampled(law, body, start, [start.time, last])?])
+    };
+    torques.iter().map(both).collect()
+}
+
+impl Course {
+    /// For laws in principal axes, with their samples.
+    pub fn new(
+        torques: &[Torque],
+        samples: &Samples,
+        body: &Gyrostat,
+        start: &Phase,
+        options: &Options,
+    ) -> Course {
+        let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
+        breaks.extend(&options.breaks);
+        breaks.extend(samples.iter().flatten().flat_map(|sampled| &sampled.stops));
+        breaks.sort_by(f64::total_cmp);
+        let size = |(k, law): (usize, &Torque)| {
+            let peaks = samples.get(k).into_iter().flatten().filter_map(|sampled| sampled.peak);
+            let at = |time: f64| law.size_at(body, &Phase { time, ..*start });
+            peaks.map(at).fold(law.size_at(body, start), f64::max)
+        };
+        let torque: f64 = torques.iter().enumerate().map(size).sum();
+        let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
+        Course {
+            breaks,
+            is_smooth: samples.iter().flatten().all(|sampled| sampled.stops.is_empty()),
+            longest: options.max_step.unwrap_or(f64::INFINITY),
+            limit: Limit { steps: options.most_steps(), reports_stiffness: options.may_change_method() },
+            least_rate: (torque / largest).sqrt(),
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! Motion at given times: exact where there is a closed form, else by steps to a tolerance, with a certificate of
+//! what was conserved.
+
+pub mod certificate;
+pub(crate) mod limits;
+mod motion;
+pub(crate) mod noise;
+mod options;
+pub(crate) mod refine;
+pub(crate) mod stops;
+pub(crate) mod sweep;
+
+use crate::body::inertia::Inertia;
+use crate::error::SimulateError;
+use crate::exact::closed_form::{ClosedForm, Fall, check_kept};
+use crate::laws::conserved::energy;
+use crate::laws::event::Event;
+use crate::laws::force::{Force, Translation};
+use crate::laws::torque::{Torque, wheel};
+use crate::methods::step_control::Limit;
+use crate::methods::{Engine, Method, fastest_rate};
+use crate::state::carried::Carried;
+use crate::state::center::Center;
+use crate::state::checks::{check_horizons_from, check_moments};
+use crate::state::phase::{Gyrostat, Phase};
+use certificate::{Certificate, Watch, off_unit};
+use limits::{Course, samples, span};
+use polhode_ga::{Bivector, Rotor, Vector};
+use refine::{Aim, Convergence, Order, Scales};
+use stops::{aliasing, is_aliased};
+pub use sweep::Progress;
+use sweep::{Pace, Pass, Walker, is_finite};
+
+pub use motion::{Motion, States};
+pub use options::{MAX_STEPS, Options};
+
+/// What to solve: a body and its state at the start, time 0 unless another is given. Kept in principal axes.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    frame: Rotor,
+    body: Gyrostat,
+    /// Of the start, in s.
+    time: f64,
+    rotor: Rotor,
+    omega: Bivector,
+    torques: Vec<Torque>,
+    center: Center,
+    /// NaN where nobody said it.
+    mass: f64,
+    translation: Option<Translation>,
+}
+
+pub(crate) const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
+                              their axis, damping alone, spheres under larmor, and constant forces; leave the method \
+                              out for others";
+
+/// The start must have a time.
+pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(SimulateError::BadValue { what: "the time of the start", value })
+    }
+}
+
+/// A body, its angular velocity and what turns it must be usable.
+pub(crate) fn check_body(body: &Gyrostat, omega: Bivector, torques: &[Torque]) -> Result<(), SimulateError> {
+    check_moments(body.moments)?;
+    if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
+        return Err(SimulateError::BadValue { what: "a component of the angular velocity", value });
+    }
+    let momentum = body.momentum(omega);
+    let value = body.kinetic(momentum) + momentum.norm_squared();
+    if !value.is_finite() {
+        return Err(SimulateError::BadValue { what: "the energy of the rotation", value });
+    }
+    for torque in torques {
+        let value = torque.size(body) + torque.damping_rate();
+        if !value.is_finite() {
+            return Err(SimulateError::BadValue { what: "the size of a torque", value });
+        }
+    }
+    Ok(())
+}
+
+impl Problem {
+    /// A body with its rotor (body axes to space) and its angular velocity and torques in body axes. The
+    /// inertia is about the centre of mass, or about the fixed point if there is one.
+    pub fn new(inertia: &Inertia, rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Problem {
+        let frame = inertia.principal_frame();
+        let torques: Vec<Torque> = torques.iter().map(|t| t.clone().in_axes(frame)).collect();
+        Problem {
+            frame,
+            body: Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) },
+            time: 0.0,
+            rotor: rotor * frame,
+            omega: frame.reverse().apply_bivector(omega),
+            torques,
+            center: Center::default(),
+            mass: f64::NAN,
+            translation: None,
+        }
+    }
+
+    /// The same from another start time, in s. Laws that depend on time, output times and events count from time 0
+    /// all the same.
+    pub fn starting_at(mut self, time: f64) -> Problem {
+        self.time = time;
+        self
+    }
+
+    /// The same with the centre of mass at a place in space, and forces, with body components in body axes, on a mass
+    /// in kg, which is NaN where nobody knows it.
+    pub fn with_center(mut self, center: Center, mass: f64, forces: &[Force]) -> Problem {
+        let forces: Vec<Force> = forces.iter().map(|f| f.clone().in_axes(self.frame)).collect();
+        self.center = center;
+        self.mass = mass;
+        self.translation = (!forces.is_empty()).then_some(Translation { mass, forces });
+        self
+    }
+
+    /// The motion at `times` (s, not decreasing); those before the start are reached backwards.
+    ///
+    /// Exact where there is a closed form, if nothing else is asked for. With no fixed step, runs with ever shorter steps
+    /// until two of them agree within the tolerance in the rotor (of size 1) and in the angular velocity relative to its
+    /// largest size.
+    pub fn simulate(
+        &self,
+        times: &[f64],
+        options: Options,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Motion, SimulateError> {
+        self.check(times, &options)?;
+        let start = self.start().phase;
+        let samples = samples(&self.torques, &self.body, &start, times, &options)?;
+        let mut course = Course::new(&self.torques, &samples, &self.body, &start, &options);
+        course.limit.reports_stiffness &= self.translation.is_none();
+        let limit = course.limit;
+        match self.run(times, &options, course.clone(), progress) {
+            Err(SimulateError::Stiff { steps }) => {
+                // Steps of the implicit rule are cheaper and need not be as short. Where it fails or takes as many, stiff
+                // steps have to do.
+                let implicit = Options { method: Some(Method::Midpoint), ..options.clone() };
+                course.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
+                match self.run(times, &implicit, course.clone(), progress) {
+                    Err(SimulateError::Interrupted) => Err(SimulateError::Interrupted),
+                    Err(_) => {
+                        course.limit = Limit { reports_stiffness: false, ..limit };
+                        self.run(times, &options, course, progress)
+                    }
+                    found => found,
+                }
+            }
+            found => found,
+        }
+    }
+
+    /// The motion by one method.
+    fn run(
+        &self,
+        times: &[f64],
+        options: &Options,
+        course: Course,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Motion, SimulateError> {
+        let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
+        let neglected = closed.as_ref().and_then(|closed| closed.neglected(times));
+        let fine = neglected.unwrap_or(0.0) <= options.rtol.unwrap_or(f64::INFINITY);
+        let closed = closed.filter(|_| options.exact || fine);
+        if options.exact && closed.is_none() {
+            return Err(SimulateError::Unfit { method: "exact", reason: NO_CLOSED_FORM });
+        }
+        let fall = self.fall();
+        let method = options.method.unwrap_or_else(|| self.best());
+        let translation = self.translation.clone().filter(|_| fall.is_none());
+        let (engine, name) = match closed {
+            Some(closed) => {
+                check_horizons_from(self.time, times, closed.horizons())?;
+                (Engine::ClosedForm(Box::new(closed)), "exact")
+            }
+            None => (
+                Engine::new(method, self.body, &self.torques, translation, &self.start().phase)?,
+                method.name(),
+            ),
+        };
+        let rate = self.rate();
+        let longest = times.iter().fold(0.0, |m: f64, t| m.max((t - self.time).abs()));
+        let long = |turn: f64| {
+            Pace::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(course.longest))
+        };
+        let events: Vec<Event> =
+            options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
+        let (pace, pass, error) = match (&engine, options.step) {
+            (Engine::ClosedForm(closed), _) if events.is_empty() => {
+                (long(1.0), self.sampled(closed, times)?, neglected)
+            }
+            (Engine::ClosedForm(_), _) => {
+                let pace = long(1.0);
+                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, neglected)
+            }
+            (_, Some(step)) => {
+                let pace = Pace::equal(step.min(course.longest));
+                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, None)
+            }
+            (_, None) => {
+                let aim = Aim::new(method.order(), options.rtol);
+                let first = if method.adapts() { aim.tolerance() } else { long(method.first_turn()) };
+                let follow = |from: &Carried, time: f64| {
+                    let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
+                    fall.iter().for_each(|fall| to.center = fall.at(time));
+                    to
+                };
+                let scales = Scales {
+                    body: self.body,
+                    rounding: engine.rounding(),
+                    in_space: engine.is_in_space(),
+                    is_smooth: course.is_smooth,
+                };
+                let mut passes = Convergence::new(first, aim, scales);
+                let found = loop {
+                    let pass = self.pass(&engine, times, (passes.next(), &course), &events, progress)?;
+                    if let Some(found) = passes.take(pass, &follow)? {
+                        break found;
+                    }
+                };
+                (found.pace, found.pass, Some(found.error))
+            }
+        };
+        if let Some(state) = pass.states.iter().find(|s| !is_finite(s)) {
+            return Err(SimulateError::Diverged { time: state.phase.time });
+        }
+        let exact = name == "exact";
+        let certificate = Certificate {
+            method: name,
+            step: if exact { 0.0 } else { pass.longest },
+            steps: if exact { 0 } else { pass.steps },
+            evaluations: pass.evaluations,
+            error_estimate: error,
+            drifts: pass.drifts,
+            norm_drift: pass.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
+            warnings: options.step.map_or(Vec::new(), |step| self.aliased(times, step)),
+        };
+        Ok(Motion {
+            problem: self.clone(),
+            engine,
+            pace,
+            course,
+            states: pass.states,
+            events: pass.events,
+            certificate,
+        })
+    }
+
+    /// Which laws change too fast for fixed steps.
+    fn aliased(&self, times: &[f64], step: f64) -> Vec<String> {
+        let start = self.start().phase;
+        let span = span(times, start.time);
+        let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, span, step);
+        self.torques.iter().filter(is_aliased).map(|law| aliasing(law, step)).collect()
+    }
+
+    /// The best method of steps.
+    pub(crate) fn best(&self) -> Method {
+        Method::best(&self.body, &self.torques, self.fall().is_none(), &self.start().phase)
+    }
+
+    /// One pass over the times.
+    fn pass(
+        &self,
+        engine: &Engine,
+        times: &[f64],
+        order: (Order, &Course),
+        events: &[Event],
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Pass, SimulateError> {
+        self.pass_from(self.start(), engine, times, order, events, progress)
+    }
+
+    fn pass_from(
+        &self,
+        start: Carried,
+        engine: &Engine,
+        times: &[f64],
+        (Order { pace, number, known_rate, noise }, course): (Order, &Course),
+        events: &[Event],
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) -> Result<Pass, SimulateError> {
+        let watch = Watch::new(self.body, &self.torques, self.start().phase);
+        let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
+        let walker = Walker {
+            body: self.body,
+            engine,
+            watch,
+            pace,
+            first,
+            least_rate: course.least_rate.max(known_rate),
+            noise,
+            longest: course.longest,
+            limit: course.limit,
+            breaks: &course.breaks,
+            events,
+            fall: self.fall(),
+            origin: self.time,
+            mass: self.mass,
+            number,
+            progress,
+        };
+        walker.pass(start, times)
+    }
+
+    /// The closed form at all times, as a pass without steps. An error if it does not keep what the motion conserves.
+    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Pass, SimulateError> {
+        let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
+        let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
+        states.iter().for_each(|state| watch.look(&state.phase));
+        let drifts = watch.finish();
+        check_kept(&drifts)?;
+        Ok(Pass { states, drifts, ..Pass::default() })
+    }
+
+    fn closed_form(&self) -> Option<ClosedForm> {
+        ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.fall()?)
+    }
+
+    /// The rate of the fastest turn and of the fastest change of way, in 1/s: a scale for steps.
+    fn rate(&self) -> f64 {
+        let translation = self.translation.as_ref().map_or(0.0, |t| t.rate(&self.center));
+        fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)
+    }
+
+    /// The motion of the centre of mass, if the forces are constant.
+    fn fall(&self) -> Option<Fall> {
+        let start = self.center;
+        let Some(translation) = &self.translation else {
+            return Some(Fall { time: self.time, start, acceleration: Vector::default() });
+        };
+        let constant = translation.forces.iter().map(|force| match force {
+            Force::Constant(force) => Some(*force),
+            _ => None,
+        });
+        let sum: Option<Vec<Vector>> = constant.collect();
+        let sum = sum?.into_iter().fold(Vector::default(), |sum, force| sum + force);
+        Some(Fall { time: self.time, start, acceleration: sum / translation.mass })
+    }
+
+    fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
+        options.check(times)?;
+        check_start_time(self.time)?;
+        check_body(&self.body, self.omega, &self.torques)
+    }
+
+    fn start(&self) -> Carried {
+        let phase = Phase { rotor: self.rotor, momentum: self.body.momentum(self.omega), time: self.time };
+        Carried::new(phase, self.center)
+    }
+
+    /// In body axes.
+    fn states(&self, states: &[Carried]) -> States {
+        let mut all = States::default();
+        for Carried { phase, center, .. } in states {
+            all.times.push(phase.time);
+            all.rotors.push(phase.rotor * self.frame.reverse());
+            all.omegas.push(self.frame.apply_bivector(self.body.omega(phase.momentum)));
+            all.momenta_space.push(phase.rotor.apply_bivector(phase.momentum));
+            all.energies.push(energy(&self.body, &self.torques, phase));
+            all.centers.push(*center);
+        }
+        all
+    }
+}

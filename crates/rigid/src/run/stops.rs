@@ -1,0 +1,187 @@
+//! Times at which steps stop, found by sampling laws that depend on time.
+//!
+//! A step looks at a law a dozen times. A short push that falls between the looks of a long step would be stepped over,
+//! and the estimate of the error, which comes of the same looks, would not show it. So a law is sampled beforehand, and
+//! an interval in which coarse samples do not foretell the others is halved, and its parts again: around a push the
+//! steps are as short as the push, elsewhere they are free.
+
+use crate::error::SimulateError;
+use crate::laws::torque::Torque;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::{Bivector, Rotor};
+
+/// Intervals between samples on each side of the start: a power of 2. A push that is shorter than one may be missed.
+const SAMPLES: usize = 4096;
+
+/// An interval of so few is not halved.
+const FINEST: usize = 4;
+
+/// Coarse intervals of each interval.
+const COARSE: usize = 8;
+
+/// The deviation from the coarse samples, relative to the largest torque, that counts.
+const DEVIATION: f64 = 1e-3;
+
+/// A law along time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sampled {
+    /// Where steps stop, rising.
+    pub stops: Vec<f64>,
+    /// When the torque is largest, if it depends on time.
+    pub peak: Option<f64>,
+}
+
+/// A law between two times. Laws that are not smooth at known times have stops of their own.
+///
+/// `start` is where functions are evaluated, which may be defined for such states only; formulas and orbits are evaluated
+/// in general position, so that the stops depend on the law alone.
+pub(crate) fn sampled(
+    law: &Torque,
+    body: &Gyrostat,
+    start: &Phase,
+    [from, to]: [f64; 2],
+) -> Result<Sampled, SimulateError> {
+    let circular = matches!(law, Torque::GravityGradient(orbit) if orbit.is_circular());
+    if from == to || circular || !is_to_be_sampled(law) {
+        return Ok(Sampled::default());
+    }
+    let general = Gyrostat::rigid([1.0, 1.25, 1.75]);
+    let (body, state) = match law {
+        Torque::Function(_) => (body, *start),
+        _ => {
+            let rotor = Rotor::from_unit_components([0.76, 0.48, -0.24, 0.36]).renormalized();
+            (&general, Phase { rotor, momentum: Bivector([0.6, -0.5, 0.9]), time: from })
+        }
+    };
+    let time = |k: usize| from + (to - from) * (k as f64 / SAMPLES as f64);
+    let mut values = Vec::with_capacity(SAMPLES + 1);
+    for k in 0..=SAMPLES {
+        match law.value(body, &Phase { time: time(k), ..state }) {
+            Ok(value) => values.push(value),
+            // What a caller's function raises is the caller's; a formula may have no value at this state alone.
+            Err(error) if matches!(law, Torque::Function(_)) => {
+                return Err(SimulateError::Torque { time: time(k), message: error.0 });
+            }
+            Err(_) => return Ok(Sampled::default()),
+        }
+    }
+    let (peak, largest) = values
+        .iter()
+        .map(|value| value.norm())
+        .enumerate()
+        .fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
+    let mut found = Vec::new();
+    halve(&values, 0..SAMPLES, DEVIATION * largest, &mut found);
+    Ok(Sampled { stops: found.into_iter().map(time).collect(), peak: Some(time(peak)) })
+}
+
+/// Halves an interval of samples where the coarse ones do not foretell the others: gives the ends of the halves.
+fn halve(values: &[Bivector], part: std::ops::Range<usize>, allowed: f64, found: &mut Vec<usize>) {
+    if part.len() <= FINEST || is_foretold(&values[part.start..=part.end], allowed) {
+        return;
+    }
+    let middle = (part.start + part.end) / 2;
+    halve(values, part.start..middle, allowed, found);
+    found.push(middle);
+    halve(values, middle..part.end, allowed, found);
+}
+
+/// Whether cubics through coarse samples come near the others.
+fn is_foretold(values: &[Bivector], allowed: f64) -> bool {
+    let count = values.len() - 1;
+    let stride = count / COARSE.min(count / 2);
+    (0..count).all(|k| {
+        // The four coarse samples around it, or those at the end.
+        let first = (k / stride).saturating_sub(1).min((count / stride).saturating_sub(3)) * stride;
+        let nodes = [0, 1, 2, 3].map(|j| (first + j * stride).min(count));
+        let x = (k - first) as f64 / stride as f64;
+        let weights = [
+            -(x - 1.0) * (x - 2.0) * (x - 3.0) / 6.0,
+            x * (x - 2.0) * (x - 3.0) / 2.0,
+            -x * (x - 1.0) * (x - 3.0) / 2.0,
+            x * (x - 1.0) * (x - 2.0) / 6.0,
+        ];
+        let foretold =
+            nodes.iter().zip(weights).fold(Bivector::default(), |sum, (&j, w)| sum + values[j] * w);
+        (foretold - values[k]).norm() <= allowed
+    })
+}
+
+/// Steps that are looked into, and samples in each.
+const LOOKED_AT: usize = 256;
+const INSIDE: usize = 12;
+
+/// Whether a law depends on time in a way that only samples show; tables have their own stops.
+fn is_to_be_sampled(law: &Torque) -> bool {
+    !law.is_autonomous() && !matches!(law, Torque::Tabulated(_))
+}
+
+/// The warning of a law that is aliased.
+pub(crate) fn aliasing(law: &Torque, step: f64) -> String {
+    let what = match law {
+        Torque::Formula(formula) => format!("the torque `{}`", formula.text()),
+        Torque::Function(_) => "the torque of a function".to_owned(),
+        _ => "a torque".to_owned(),
+    };
+    format!(
+        "{what} changes too fast for step = {step} s, which misses part of it; use a shorter step, or leave it out"
+    )
+}
+
+/// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time: what it gives in them by
+/// Simpson's rule, as a method sees it, is compared with the mean of finer samples.
+pub(crate) fn is_aliased(
+    law: &Torque,
+    body: &Gyrostat,
+    start: &Phase,
+    [from, to]: [f64; 2],
+    step: f64,
+) -> bool {
+    if to <= from || !is_to_be_sampled(law) {
+        return false;
+    }
+    let steps = ((to - from) / step).ceil().max(1.0);
+    let h = (to - from) / steps;
+    let looked_at = (steps as usize).min(LOOKED_AT);
+    let value = |time: f64| law.value(body, &Phase { time, ..*start });
+    let (mut missed, mut all) = (0.0, 0.0);
+    for k in 0..looked_at {
+        let begin = from + h * (steps * k as f64 / looked_at as f64).floor();
+        let seen = (value(begin), value(begin + 0.5 * h), value(begin + h));
+        let (Ok(a), Ok(b), Ok(c)) = seen else { return false };
+        let mut mean = Bivector::default();
+        for j in 0..INSIDE {
+            let Ok(inside) = value(begin + h * ((j as f64 + 0.5) / INSIDE as f64)) else { return false };
+            mean += inside * (1.0 / INSIDE as f64);
+            all += inside.norm() / INSIDE as f64;
+        }
+        missed += ((a + b * 4.0 + c) * (1.0 / 6.0) - mean).norm();
+    }
+    missed > 0.1 * all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stops(law: impl Fn(f64) -> f64) -> Vec<usize> {
+        let value = |k: usize| Bivector([0.0, 0.0, law(k as f64 / SAMPLES as f64)]);
+        let values: Vec<Bivector> = (0..=SAMPLES).map(value).collect();
+        let mut found = Vec::new();
+        halve(&values, 0..SAMPLES, DEVIATION, &mut found);
+        found
+    }
+
+    #[test]
+    fn a_smooth_law_has_no_stops() {
+        assert!(stops(|x| x.sin() + x * x).is_empty());
+    }
+
+    #[test]
+    fn stops_surround_a_push() {
+        let found = stops(|x| (-((x - 0.3) / 1e-3).powi(2)).exp());
+        let near = found.iter().filter(|&&k| (k as f64 / SAMPLES as f64 - 0.3).abs() < 5e-3).count();
+        assert!(near >= 4 && found.len() < 60, "{near} of {}", found.len());
+        assert!(found.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+}

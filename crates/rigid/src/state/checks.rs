@@ -1,0 +1,32 @@
+//! Checks that motions of every kind make.
+
+use crate::error::SimulateError;
+
+/// Times must not lie beyond the horizons, backwards and forwards, of an exact motion that starts at time 0.
+pub fn check_horizons(times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
+    check_horizons_from(0.0, times, horizons)
+}
+
+/// The same for a motion that starts at another time.
+pub(crate) fn check_horizons_from(
+    start: f64,
+    times: &[f64],
+    horizons: [f64; 2],
+) -> Result<(), SimulateError> {
+    let horizon = |elapsed: f64| horizons[usize::from(elapsed > 0.0)];
+    match times.iter().position(|&t| (t - start).abs() > horizon(t - start)) {
+        Some(index) => {
+            let elapsed = times[index] - start;
+            Err(SimulateError::BeyondHorizon { index, time: times[index], start, horizon: horizon(elapsed) })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Moments must be positive to turn momentum into rate.
+pub(crate) fn check_moments(moments: [f64; 3]) -> Result<(), SimulateError> {
+    if moments.iter().all(|i| *i > 0.0 && i.is_finite()) {
+        return Ok(());
+    }
+    Err(SimulateError::SingularInertia { moments })
+}

@@ -1,0 +1,113 @@
+//! A scene and its motion.
+
+pub mod crowd;
+
+use crate::rows::{ROW, rows};
+use crowd::Crowd;
+use polhode_ga::Vector;
+use polhode_rigid::body::mesh::{MeshError, MeshFormat, MeshProblem};
+use polhode_rigid::run::{Motion, Problem, Progress};
+use polhode_rigid::scene::Law;
+use polhode_rigid::{Body, Diagnostic, Scene, SimulateError, TriangleMesh};
+use std::cell::OnceCell;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Files that scenes name, by their names there.
+pub type Files = HashMap<String, Vec<u8>>;
+
+/// Asked now and then while a motion is followed: whether to go on.
+pub type GoOn<'a> = &'a mut dyn FnMut() -> bool;
+
+/// A scene whose motion has been followed.
+pub struct Opened {
+    /// What the scene says.
+    pub scene: Scene,
+    /// The body; under gravity the fixed point is the origin of its axes.
+    pub body: Body,
+    /// What turns it.
+    pub laws: Vec<Law>,
+    /// What was solved.
+    pub problem: Problem,
+    /// The motion.
+    pub motion: Motion,
+    mesh: Option<TriangleMesh>,
+    crowd: OnceCell<Result<Crowd, String>>,
+}
+
+/// What is wrong, in words for people.
+fn told(problems: &[Diagnostic]) -> String {
+    let texts: Vec<String> = problems.iter().map(Diagnostic::to_string).collect();
+    texts.join("\n")
+}
+
+impl Opened {
+    /// Reads the text of a scene and follows its motion at its output times, so that it is the one that other faces of
+    /// the core compute. An error says what is wrong, with places; or that the time allowed was not enough.
+    pub fn new(text: &str, name: &str, files: &Files, go_on: GoOn) -> Result<Opened, String> {
+        let scene = Scene::parse(text, Path::new(name)).map_err(|problems| told(&problems))?;
+        // Asked for to make the body and to draw it, and read once: a scene names one mesh.
+        let read = OnceCell::new();
+        let source = |path: &Path| read.get_or_init(|| mesh_among(files, path)).clone();
+        let (body, laws) = scene.build_with(&source).map_err(|problems| told(&problems))?;
+        // `build_with` has read it without an error.
+        let mesh = scene.mesh_with(&source).and_then(Result::ok).map(|mesh| mesh.moved(scene.shift()));
+        let problem = scene.problem(&body, &laws);
+        let motion = problem.simulate(&scene.times(), scene.options(), &mut |_: Progress| go_on());
+        let motion = motion.map_err(|error| match error {
+            SimulateError::Interrupted => "this motion takes too long to follow in the page. Shorten [run] duration or \
+                                           loosen [run] rtol; or follow it with `polhode run` or `polhode view`"
+                .to_owned(),
+            error => error.to_string(),
+        })?;
+        Ok(Opened { scene, body, laws, problem, motion, mesh, crowd: OnceCell::new() })
+    }
+
+    /// Rows of states at any times; exact motions know them all within their horizon, others those of their run.
+    pub fn states(&self, times: &[f64]) -> Result<Vec<[f64; ROW]>, String> {
+        let states = match self.motion.exactly(times) {
+            Some(states) => states,
+            None => self.motion.at(times, &mut |_| true),
+        };
+        states.map(|states| rows(&states)).map_err(|error| error.to_string())
+    }
+
+    /// The surface of the body, in body axes, if it is a mesh.
+    pub fn mesh(&self) -> Option<&TriangleMesh> {
+        self.mesh.as_ref()
+    }
+
+    /// Rotors of the first bodies of the ensemble at a time, at most `count`.
+    pub fn bodies(&self, time: f64, count: usize, go_on: GoOn) -> Result<Vec<[f64; 4]>, String> {
+        let crowd = self.crowd.get_or_init(|| Crowd::new(self, count, go_on));
+        crowd.as_ref().map(|crowd| crowd.at(time)).map_err(String::clone)
+    }
+}
+
+/// The surface of the mesh that a scene names, moved as its body; nothing where it names none or it cannot be read.
+pub fn surface(text: &str, name: &str, files: &Files) -> Option<TriangleMesh> {
+    let scene = Scene::parse(text, Path::new(name)).ok()?;
+    let mesh = scene.mesh_with(&|path: &Path| mesh_among(files, path))?.ok()?;
+    Some(mesh.moved(scene.shift()))
+}
+
+/// The mesh in one of the files.
+fn mesh_among(files: &Files, path: &Path) -> Result<TriangleMesh, MeshError> {
+    let name = path.display().to_string();
+    let fail = |problem| Err(MeshError { name: name.clone(), problem });
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    let Some(format) = MeshFormat::from_extension(&extension) else {
+        return fail(MeshProblem::UnknownExtension(extension.into_owned()));
+    };
+    match files.get(&name) {
+        Some(bytes) => TriangleMesh::parse(bytes, format, &name),
+        None => fail(MeshProblem::Unreadable(
+            "the page was not given this file; open it along with the scene".into(),
+        )),
+    }
+}
+
+/// Coordinates of the vertices, three each.
+pub fn vertices(mesh: &TriangleMesh) -> Vec<f64> {
+    mesh.vertices().iter().flat_map(|Vector(x)| *x).collect()
+}

@@ -70,12 +70,12 @@ fn body(of: &Opened) -> Json {
         ("frame", numbers(&inertia.principal_frame().components())),
         ("solid", Json::or_null(of.scene.solid().map(solid))),
         ("solid_at", numbers(&of.scene.shift().0)),
-        ("mesh", of.mesh().is_some().into()),
+        ("mesh", (of.surface.is_some() && of.scene.solid().is_none()).into()),
     ])
 }
 
 /// A solid by the names that scenes give its sizes.
-fn solid(solid: Solid) -> Json {
+pub fn solid(solid: Solid) -> Json {
     let (kind, sizes) = solid.sizes();
     let size = |(name, size): (&'static str, Size)| match size {
         Size::One(length) => (name, length.into()),

@@ -107,8 +107,8 @@ function SecondMoments({ body, controls }: { body: BodyChoice; controls: Control
   return (
     <>
       <p class="note">
-        The second moment ∫x² dm along each axis. A moment of inertia is the sum of the two others, i₁ = ∫(x₂² +
-        x₃²) dm, so every setting is a possible body.
+        The second moment ∫x² dm along each axis. A moment of inertia is the sum of the two others, i₁ = ∫(x₂²
+        + x₃²) dm, so every setting is a possible body.
       </p>
       {body.spread.map((spread, k) => (
         <Slider

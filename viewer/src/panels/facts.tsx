@@ -94,14 +94,13 @@ function Top({ top }: { top: NonNullable<About["top"]> }) {
   return (
     <>
       <Fact name="Tilt from vertical">{least === most ? `${least}°` : `${least}° to ${most}°`}</Fact>
-      {top.nutation_period !== null && (
-        <Fact name="Nutation period">{duration(top.nutation_period, 7)}</Fact>
-      )}
+      {top.nutation_period !== null && <Fact name="Nutation period">{duration(top.nutation_period, 7)}</Fact>}
       {turn !== null && turn !== 0 && (
         <Fact name="Precession">{duration(turn, 7)} per turn about e₃, on average</Fact>
       )}
       <Fact name="Upright">
-        {top.sleeps ? "stable" : "unstable"}; stable from a spin of {significant(top.critical_spin, 5)} rad/s on
+        {top.sleeps ? "stable" : "unstable"}; stable from a spin of {significant(top.critical_spin, 5)} rad/s
+        on
       </Fact>
     </>
   );

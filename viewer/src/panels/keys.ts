@@ -32,7 +32,8 @@ export function changeSpeed(model: Model, direction: 1 | -1): void {
   const speed = model.speed.value;
   const power = 10 ** Math.floor(Math.log10(speed) + 1e-9);
   const speeds = [0.5, 1, 2, 5, 10].map((first) => first * power);
-  const next = direction > 0 ? speeds.find((s) => s > speed * 1.01) : speeds.findLast((s) => s < speed * 0.99);
+  const next =
+    direction > 0 ? speeds.find((s) => s > speed * 1.01) : speeds.findLast((s) => s < speed * 0.99);
   if (next !== undefined && next >= SLOWEST && next <= FASTEST)
     model.speed.value = Number(next.toPrecision(3));
 }

@@ -54,7 +54,12 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
             onChange: (value: number) => set(parameter, value),
           };
           return parameter.name === AXIS ? (
-            <Select key={common.id} label="Plane" options={PLANES.map((plane, k) => [k, plane])} {...common} />
+            <Select
+              key={common.id}
+              label="Plane"
+              options={PLANES.map((plane, k) => [k, plane])}
+              {...common}
+            />
           ) : (
             <Slider key={common.id} {...parameter} {...common} />
           );

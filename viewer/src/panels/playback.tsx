@@ -121,13 +121,7 @@ function Speed({ model }: { model: Model }) {
   const shown = speed < 200 ? `${typed(speed, 3)}×` : `${duration(speed, 3, timeUnit(2 * speed))}/s`;
   return (
     <div class="field speed" role="group" aria-label="Speed">
-      <IconButton
-        id="slower"
-        label="Slower"
-        press="["
-        icon="minus"
-        onClick={() => changeSpeed(model, -1)}
-      />
+      <IconButton id="slower" label="Slower" press="[" icon="minus" onClick={() => changeSpeed(model, -1)} />
       <output id="speed" title="Seconds of motion per second of real time">
         {shown}
       </output>

@@ -30,18 +30,21 @@ export function Readout({ model }: { model: Model }) {
     <>
       <dl class="readout">
         <Quantity symbol={<Symbol name="R" />} note="attitude, body to space" unit="">
-          <Terms
-            values={row.subarray(State.rotor, State.rotor + 4)}
-            blades={["", ...PLANES]}
-            scale={ROTOR}
-          />
+          <Terms values={row.subarray(State.rotor, State.rotor + 4)} blades={["", ...PLANES]} scale={ROTOR} />
         </Quantity>
         {bivector("B", State.omegaBody, omega, "rad/s", "angular velocity, body axes", "omega")}
         {bivector("S", State.omegaSpace, omega, "rad/s", "angular velocity, space axes", "omega")}
         {bivector("", State.momentumSpace, momentum, "kg m²/s", "angular momentum, space axes", "momentum")}
       </dl>
       <dl class="readout pair">
-        <Quantity symbol={<span>|<Symbol name="L" />|</span>} unit="kg m²/s">
+        <Quantity
+          symbol={
+            <span>
+              |<Symbol name="L" />|
+            </span>
+          }
+          unit="kg m²/s"
+        >
           <Value
             value={length(row, State.momentumSpace)}
             start={momentum}

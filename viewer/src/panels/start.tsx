@@ -59,8 +59,8 @@ export function StartPanel({ controls }: { controls: Controls }) {
         unit={rateUnit(usual)}
         onChange={(rate) => controls.setStart({ ...start, spin: { ...spin, rate } })}
       />
-      {spinAngle("off", "Angle off the axis", OFF)}
-      {spinAngle("toward", "Direction of it", CIRCLE)}
+      {spinAngle("off", "Off-axis angle", OFF)}
+      {spinAngle("toward", "Off-axis direction", CIRCLE)}
       {attitudeAngle("tilt", "Tilt of f₃ from e₃", HALF)}
       {attitudeAngle("turn", "Turn about e₃", CIRCLE)}
       {attitudeAngle("roll", "Roll about f₃", CIRCLE)}

@@ -1,9 +1,7 @@
-import { Quaternion, Vector3 } from "three";
-import { type About, type Motion, ROW, State } from "../core/core.ts";
+import { Vector3 } from "three";
+import { type About, type Motion, ROW, State, type Surface, type Triple } from "../core/core.ts";
 import { firstRow, span } from "../model/model.ts";
-import { equivalent, spinningTop, surfaceOf } from "./solids.ts";
-import { AXES, quaternion, vector } from "./rotor.ts";
-import type { Surface } from "./surface.ts";
+import { AXES, vector } from "./rotor.ts";
 
 /** Length of the arrows f1, f2, f3, and radius of the sphere on which the tip of one of them draws its path. */
 export const REACH = 1.25;
@@ -16,9 +14,8 @@ export const REACH = 1.25;
 export interface Figure {
   motion: Motion;
   about: About;
-  /** The body's surface in body axes from the drawn origin, in drawn units, and how its faces are told apart. */
+  /** The surface of the body in body axes from the drawn origin, in drawn units. */
   surface: Surface;
-  tinted: "plain" | "sides" | "quadrants";
   /** The centre of mass from the drawn origin in body axes, in drawn units. */
   centre: Vector3;
   /** Unit vector in body axes whose path in space is drawn. */
@@ -37,13 +34,12 @@ export function figureOf(motion: Motion): Figure {
   const omega = largest(rows, State.omegaSpace);
   const momentum = largest(rows, State.momentumSpace);
   const arm = about.held ? armOf(about) : new Vector3();
-  const body = shape(motion, arm);
-  const size = Math.max(farthest(body.surface), arm.length()) || 1;
+  const surface = surfaceFrom(motion, arm);
+  const size = Math.max(farthest(surface), arm.length()) || 1;
   return {
     motion,
     about,
-    surface: scaled(body.surface, 1 / size),
-    tinted: body.tinted,
+    surface: { ...surface, vertices: surface.vertices.map((x) => x / size) },
     centre: arm.clone().divideScalar(size),
     traced: arm.length() > 0 ? arm.clone().normalize() : nearestAxis(vector(rows, State.omegaBody)),
     rate: REACH / (longestSemiAxis(about, rows) || omega || 1),
@@ -58,49 +54,13 @@ function armOf({ body, heavy }: About): Vector3 {
   return centre.length() > 0 || !heavy ? centre : vector(heavy);
 }
 
-/** The body's surface from the drawn origin, in m; `arm` points from there to the centre of mass of a top. */
-function shape(motion: Motion, arm: Vector3): Pick<Figure, "surface" | "tinted"> {
+/** The surface from the drawn origin, m: the fixed point, the origin of body axes, or else the centre of mass. */
+function surfaceFrom(motion: Motion, arm: Vector3): Surface {
   const { body, held } = motion.about;
-  const still = new Quaternion();
-  const away = held ? new Vector3() : vector(body.center_of_mass).negate();
-  const mesh = motion.surface();
-  if (mesh) return { surface: moved(mesh, still, away), tinted: "plain" };
-  if (body.solid) {
-    const at = vector(body.solid_at).add(away);
-    const tinted = body.solid.kind === "box" ? "sides" : "quadrants";
-    return { surface: moved(surfaceOf(body.solid), still, at), tinted };
-  }
-  const frame = quaternion(body.frame);
-  if (arm.length() === 0) {
-    const solid = equivalent(body.moments);
-    const tinted = solid.kind === "box" ? "sides" : "quadrants";
-    return { surface: moved(surfaceOf(solid), frame, new Vector3()), tinted };
-  }
-  // A body that is held, of which moments alone are known: a top if it has an axis, else a box halfway up the arm.
-  const upright = AXES.findIndex(
-    (axis) => Math.abs(axis.clone().applyQuaternion(frame).dot(arm)) > 0.999 * arm.length(),
-  );
-  const [a, b] = body.moments.filter((_, k) => k !== upright);
-  if (upright >= 0 && Math.abs(a! - b!) < 1e-6 * Math.max(a!, b!)) {
-    const onto = new Quaternion().setFromUnitVectors(AXES[2], arm.clone().normalize());
-    return { surface: moved(spinningTop(arm.length()), onto, new Vector3()), tinted: "quadrants" };
-  }
-  const box = surfaceOf(equivalent(body.moments));
-  const size = (0.6 * arm.length()) / farthest(box);
-  return { surface: moved(scaled(box, size), frame, arm), tinted: "sides" };
-}
-
-function moved({ vertices, faces }: Surface, turn: Quaternion, by: Vector3): Surface {
-  const points = new Float32Array(vertices.length);
-  const point = new Vector3();
-  for (let at = 0; at < points.length; at += 3) {
-    vector(vertices, at, point).applyQuaternion(turn).add(by).toArray(points, at);
-  }
-  return { vertices: points, faces };
-}
-
-function scaled({ vertices, faces }: Surface, by: number): Surface {
-  return { vertices: Float32Array.from(vertices, (x) => x * by), faces };
+  const surface = motion.surface(arm.toArray());
+  // A surface that follows from the moments is about the centre of mass already.
+  const away: Triple = held || !(body.solid || body.mesh) ? [0, 0, 0] : body.center_of_mass;
+  return { ...surface, vertices: surface.vertices.map((x, k) => x - away[k % 3]!) };
 }
 
 function farthest({ vertices }: Surface): number {

@@ -31,7 +31,8 @@ import { quaternion, vector } from "./rotor.ts";
 
 /** WebGL 2 is not available. */
 export class NoWebGL extends Error {
-  override message = "No 3-d picture: WebGL 2 is missing or switched off in this browser. All values are shown.";
+  override message =
+    "No 3-d picture: WebGL 2 is missing or switched off in this browser. All values are shown.";
 }
 
 const LOST = "The graphics card has let go of the picture; it is drawn again as soon as that can be.";

@@ -1,4 +1,5 @@
-//! What the threads that work on an ensemble share: the bodies that nobody has taken yet, and what is told of the others.
+//! What the threads that work on an ensemble share: the bodies that nobody has taken yet, and what is told of the
+//! others.
 
 use super::Ensemble;
 use super::output::{Outputs, Own};

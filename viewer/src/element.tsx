@@ -9,7 +9,7 @@ import type { Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
 import { bindKeys, commitOnEnter } from "./panels/keys.ts";
-import { mayMove, openPreset, PRESETS } from "./presets/index.ts";
+import { mayAutoplay, openPreset, PRESETS } from "./presets/index.ts";
 import styles from "./theme.css?inline";
 
 /** From this width on, in px, panels stand beside the picture: the same as in theme.css. */
@@ -110,7 +110,7 @@ export class PolhodeViewer extends HTMLElement {
       if (given) await model.show(given);
       if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
       else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
-        model.look({ playing: mayMove() });
+        model.look({ playing: mayAutoplay() });
     } catch (error) {
       model.problem.value = words(error);
     }

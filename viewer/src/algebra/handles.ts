@@ -101,38 +101,42 @@ export class Handles {
     return tip.clone().addScaledVector(view, moved.sub(tip).dot(up));
   }
 
-  /** Moves a vector along the axes nearest to right and up on the screen, and with Shift nearest to the view. */
+  /** Moves a vector along the axis nearest to right or up on the screen, or with Shift to the view. */
   private moveByKey(event: KeyboardEvent, drawable: Drawable): void {
-    const signs: Record<string, [0 | 1, number]> = {
-      ArrowRight: [0, 1],
-      ArrowLeft: [0, -1],
-      ArrowUp: [1, 1],
-      ArrowDown: [1, -1],
-    };
-    const key = signs[event.key];
-    if (!key || !this.camera) return;
+    const step = KEYS[event.key];
+    if (!step || !this.camera) return;
     event.preventDefault();
     event.stopPropagation();
-    const [screen, sign] = key;
-    const columns = [0, 1].map((k) => new Vector3().setFromMatrixColumn(this.camera!.matrixWorld, k));
-    const right = nearestAxis(columns[0]!, [0, 1, 2]);
-    const up = nearestAxis(
-      columns[1]!,
-      [0, 1, 2].filter((k) => k !== right.axis),
+    const [key, sign] = step;
+    const { matrixWorld } = this.camera;
+    const directions = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(matrixWorld, k));
+    directions[2]!.negate();
+    // Each direction takes the nearest of the axes that are left.
+    const axes = [0, 1, 2];
+    const steps = directions.map((direction) => {
+      const axis = axes.reduce((a, b) => (size(direction, b) > size(direction, a) ? b : a));
+      axes.splice(axes.indexOf(axis), 1);
+      return AXES[axis as 0 | 1 | 2].clone().multiplyScalar(Math.sign(direction.getComponent(axis)) || 1);
+    });
+    const along = steps[key === 1 && event.shiftKey ? 2 : key]!;
+    this.move(
+      drawable.line,
+      along
+        .multiplyScalar(sign * STEP)
+        .add(drawable.vector!)
+        .toArray(),
     );
-    const deep = nearestAxis(
-      this.camera.getWorldDirection(new Vector3()),
-      [0, 1, 2].filter((k) => k !== right.axis && k !== up.axis),
-    );
-    const { axis, sense } = screen === 0 ? right : event.shiftKey ? deep : up;
-    const moved = drawable.vector!.clone().addScaledVector(AXES[axis as 0 | 1 | 2], sign * sense * STEP);
-    this.move(drawable.line, moved.toArray());
   }
 }
 
-/** The axis nearest to a direction, and the sense. */
-function nearestAxis(direction: Vector3, axes: number[]): { axis: number; sense: number } {
-  const sizes = axes.map((k) => Math.abs(direction.getComponent(k)));
-  const axis = axes[sizes.indexOf(Math.max(...sizes))]!;
-  return { axis, sense: Math.sign(direction.getComponent(axis)) || 1 };
+/** The direction of an arrow key, 0 to the right or 1 up, and its sign. */
+const KEYS: Record<string, [0 | 1, number]> = {
+  ArrowRight: [0, 1],
+  ArrowLeft: [0, -1],
+  ArrowUp: [1, 1],
+  ArrowDown: [1, -1],
+};
+
+function size(direction: Vector3, axis: number): number {
+  return Math.abs(direction.getComponent(axis));
 }

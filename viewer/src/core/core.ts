@@ -1,6 +1,6 @@
 /**
- * The interface to the core: the Rust code that Python calls, compiled to WebAssembly. All physics and all algebra of
- * the page come from it. Frames, signs and orders of components follow CONVENTIONS.md: bivectors (e2e3, e3e1, e1e2),
+ * The values that the page exchanges with the core (`wasm.ts`): the Rust code that Python calls, compiled to WebAssembly.
+ * All physics and all algebra of the page come from it. Frames, signs and orders of components follow CONVENTIONS.md: bivectors (e2e3, e3e1, e1e2),
  * rotors (1, e2e3, e3e1, e1e2), `a' = R a ~R` from body axes to space axes. SI units.
  */
 
@@ -9,34 +9,6 @@ export class Problem extends Error {}
 
 /** Files that scenes name, by their names in the scene. */
 export type Files = ReadonlyMap<string, Uint8Array>;
-
-export interface Core {
-  /** Solves a scene. A Problem if the scene is wrong or takes longer than `budget` seconds. */
-  open(scene: string, options?: { name?: string; files?: Files; budget?: number }): Motion;
-  /**
-   * A motion computed elsewhere, as rows of states, which are interpolated for display. `about` is an `About` as JSON
-   * text; the scene gives the surface of the body.
-   */
-  recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion;
-  /**
-   * The scene with tables replaced by those of `change`, a TOML text. An empty table removes that of the scene; a dotted
-   * key such as `run.samples` replaces one field.
-   */
-  merged(scene: string, change: string): string;
-  /** Evaluates lines of formulas, each with the names that earlier lines define. */
-  evaluated(lines: string): Line[];
-  /** The solid of a kind that fills a box of these side lengths, m. */
-  solid(kind: SolidKind, lengths: Triple): Solid;
-  /**
-   * The second moments ∫x_k² dm, kg m², of a body with these principal moments and this frame: along the body axes if
-   * they are principal axes, with a null frame, and along the principal axes otherwise.
-   */
-  secondMoments(moments: Triple, frame: Quadruple): { spread: Triple; frame: Quadruple | null };
-  /** The inertia matrix in body axes of a body with second moments along axes, which a rotor takes to body axes. */
-  inertia(spread: Triple, frame: Quadruple): Triple[];
-  /** The angles of the rotor exp(−½ turn e1e2) exp(−½ tilt e2e3) exp(−½ roll e1e2), rad. */
-  attitude(rotor: Quadruple): { turn: number; tilt: number; roll: number };
-}
 
 /** Numbers per row of states. */
 export const ROW = 24;
@@ -67,25 +39,6 @@ export interface Surface {
   vertices: Float64Array;
   faces: Uint32Array;
   tints: Uint32Array;
-}
-
-export interface Motion {
-  readonly about: About;
-  /**
-   * Rows of states at times in any order; a Problem for times at which the motion is not known. Exact motions are known
-   * within `about.horizon` of the start, others for `about.duration` from the start on.
-   */
-  states(times: ArrayLike<number>): Float64Array;
-  /**
-   * The surface of the body in body axes; where only its moments are known, that of an equivalent box, ball or spinning
-   * top. `arm` points from the fixed point to the centre of mass, m.
-   */
-  surface(arm: Triple): Surface;
-  /** The side lengths of a box around the body, m. */
-  extents(): Triple;
-  /** The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. */
-  bodies(time: number, count: number): Float64Array;
-  close(): void;
 }
 
 export type SolidKind =

@@ -2,10 +2,8 @@ import packed from "virtual:polhode-core";
 import { unpacked } from "../packed.ts";
 import {
   type About,
-  type Core,
   type Files,
   type Line,
-  type Motion,
   Problem,
   type Quadruple,
   type Solid,
@@ -44,26 +42,43 @@ export async function loadCore(): Promise<Core> {
   const imports = { page: { now: () => performance.now() / 1000 } };
   const module = await WebAssembly.compile(await unpacked(packed));
   const instance = await WebAssembly.instantiate(module, imports);
-  return new WasmCore(instance.exports as unknown as Exports);
+  return new Core(instance.exports as unknown as Exports);
 }
 
-class WasmCore implements Core {
+/** The core. What a call takes is put into rooms first; its reply is read afterwards. */
+export class Core {
   constructor(readonly exports: Exports) {}
 
-  open(scene: string, { name = "scene.toml", files = new Map(), budget = BUDGET }: OpenOptions = {}): Motion {
+  /** Solves a scene. A Problem if the scene is wrong or takes longer than `budget` seconds. */
+  open(
+    scene: string,
+    {
+      name = "scene.toml",
+      files = new Map(),
+      budget = BUDGET,
+    }: Partial<{ name: string; files: Files; budget: number }> = {},
+  ): Motion {
     this.putScene(scene, name, files);
     const handle = this.checked(() => this.exports.open(budget));
     this.checked(() => this.exports.about_motion(handle));
-    return new WasmMotion(this, handle, JSON.parse(this.text()) as About);
+    return new Motion(this, handle, JSON.parse(this.text()) as About);
   }
 
+  /**
+   * A motion computed elsewhere, as rows of states, which are interpolated for display. `about` is an `About` as JSON
+   * text; the scene gives the surface of the body.
+   */
   recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion {
     this.put(rows);
     if (of) this.putScene(of.scene, of.name, of.files);
     const handle = this.checked(() => this.exports.record());
-    return new WasmMotion(this, handle, JSON.parse(about) as About);
+    return new Motion(this, handle, JSON.parse(about) as About);
   }
 
+  /**
+   * The scene with tables replaced by those of `change`, a TOML text. An empty table removes that of the scene; a dotted
+   * key such as `run.samples` replaces one field.
+   */
   merged(scene: string, change: string): string {
     this.putText(scene);
     this.putText(change);
@@ -71,12 +86,14 @@ class WasmCore implements Core {
     return this.text();
   }
 
+  /** Evaluates lines of formulas, each with the names that earlier lines define. */
   evaluated(lines: string): Line[] {
     this.putText(lines);
     this.checked(() => this.exports.evaluate());
     return JSON.parse(this.text()) as Line[];
   }
 
+  /** The solid of a kind that fills a box of these side lengths, m. */
   solid(kind: SolidKind, lengths: Triple): Solid {
     this.putText(kind);
     this.put(Float64Array.from(lengths));
@@ -84,16 +101,22 @@ class WasmCore implements Core {
     return JSON.parse(this.text()) as Solid;
   }
 
+  /**
+   * The second moments ∫x_k² dm, kg m², of a body with these principal moments and this frame: along the body axes if
+   * they are principal axes, with a null frame, and along the principal axes otherwise.
+   */
   secondMoments(moments: Triple, frame: Quadruple): { spread: Triple; frame: Quadruple | null } {
     const [a, b, c, ...rest] = this.numbers(this.exports.second_moments, [...moments, ...frame]);
     return { spread: [a!, b!, c!], frame: rest.length > 0 ? (rest as Quadruple) : null };
   }
 
+  /** The inertia matrix in body axes of a body with second moments along axes, which a rotor takes to body axes. */
   inertia(spread: Triple, frame: Quadruple): Triple[] {
     const rows = this.numbers(this.exports.inertia, [...spread, ...frame]);
     return [0, 3, 6].map((k) => rows.slice(k, k + 3) as Triple);
   }
 
+  /** The angles of the rotor exp(−½ turn e1e2) exp(−½ tilt e2e3) exp(−½ roll e1e2), rad. */
   attitude(rotor: Quadruple): { turn: number; tilt: number; roll: number } {
     const [turn, tilt, roll] = this.numbers(this.exports.attitude, rotor) as Triple;
     return { turn, tilt, roll };
@@ -151,21 +174,28 @@ class WasmCore implements Core {
   }
 }
 
-type OpenOptions = NonNullable<Parameters<Core["open"]>[1]>;
-
-class WasmMotion implements Motion {
+/** The motion of a scene, or a recorded one. */
+export class Motion {
   constructor(
-    private readonly core: WasmCore,
+    private readonly core: Core,
     private readonly handle: number,
     readonly about: About,
   ) {}
 
+  /**
+   * Rows of states at times in any order; a Problem for times at which the motion is not known. Exact motions are known
+   * within `about.horizon` of the start, others for `about.duration` from the start on.
+   */
   states(times: ArrayLike<number>): Float64Array {
     this.core.put(Float64Array.from(times));
     this.core.checked(() => this.core.exports.states(this.handle));
     return this.core.floats();
   }
 
+  /**
+   * The surface of the body in body axes; where only its moments are known, that of an equivalent box, ball or spinning
+   * top. `arm` points from the fixed point to the centre of mass, m.
+   */
   surface(arm: Triple): Surface {
     this.putBody(arm);
     const size = 3 * this.core.checked(() => this.core.exports.surface(this.handle));
@@ -179,12 +209,14 @@ class WasmMotion implements Motion {
     };
   }
 
+  /** The side lengths of a box around the body, m. */
   extents(): Triple {
     this.putBody([0, 0, 0]);
     this.core.checked(() => this.core.exports.extents(this.handle));
     return Array.from(this.core.floats()) as Triple;
   }
 
+  /** The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. */
   bodies(time: number, count: number): Float64Array {
     this.core.checked(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
     return this.core.floats();

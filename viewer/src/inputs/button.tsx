@@ -10,7 +10,7 @@ const ICONS = {
   close: "M6.4 5 12 10.6 17.6 5 19 6.4 13.4 12l5.6 5.6-1.4 1.4-5.6-5.6L6.4 19 5 17.6l5.6-5.6L5 6.4z",
 };
 
-type IconName = keyof typeof ICONS;
+export type IconName = keyof typeof ICONS;
 
 /** A decorative icon; the label of its button says what the button does. */
 export function Icon({ name }: { name: IconName }) {

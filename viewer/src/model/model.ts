@@ -1,5 +1,6 @@
 import { batch, computed, signal } from "@preact/signals";
-import { type About, type Core, type Files, type Motion, Problem, ROW, State } from "../core/core.ts";
+import { type About, type Files, Problem, ROW, State } from "../core/core.ts";
+import type { Core, Motion } from "../core/wasm.ts";
 import type { CameraName, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
 

@@ -4,42 +4,47 @@ import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
 
+type Fact = [name: string, value: ComponentChildren];
+
 /** Properties of the whole motion: regime, laws, periods, and accuracy. */
 export function Facts({ model }: { model: Model }) {
   const about = model.about.value;
   if (!about) return null;
-  const { free } = about;
+  const { body, free, top } = about;
+  const facts: Fact[] = [
+    ...about.laws.map(({ name, text }): Fact => {
+      const shown = about.heavy && HEAVY.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
+      return [LAWS[name] ?? name, <code>{shown}</code>];
+    }),
+    ...(free ? freeFacts(free) : []),
+    ...(top ? topFacts(top) : []),
+    ["Moments", `${list(body.moments)} kg m²${about.held ? " about the fixed point" : ""}`],
+    ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
+    ["Bodies", about.ensemble?.toLocaleString("en")],
+    ["Method", methodOf(about)],
+  ];
+  const regime = regimeOf(about);
   return (
     <>
       <dl class="facts">
-        {free && (
-          <Fact name="Regime" id="regime">
-            {free.regime}
-            {free.period !== null && circled(about.body.moments, free.axis)}
-          </Fact>
+        {regime && (
+          <div class="fact">
+            <dt>Regime</dt>
+            <dd id="regime">
+              {regime}
+              {free && free.period !== null && circled(body.moments, free.axis)}
+            </dd>
+          </div>
         )}
-        {about.top && (
-          <Fact name="Regime" id="regime">
-            {about.top.regime}
-          </Fact>
+        {facts.map(
+          ([name, value]) =>
+            value && (
+              <div class="fact" key={name}>
+                <dt>{name}</dt>
+                <dd>{value}</dd>
+              </div>
+            ),
         )}
-        {about.laws.map((law) => (
-          <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
-            <code>
-              {about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : shortened(law.text)}
-            </code>
-          </Fact>
-        ))}
-        {free && <Times free={free} />}
-        {about.top && <Top top={about.top} />}
-        <Fact name="Moments">
-          <span class="digits">{about.body.moments.map((moment) => significant(moment, 5)).join(", ")}</span>{" "}
-          kg m²
-          {about.held && " about the fixed point"}
-        </Fact>
-        {about.body.mass !== null && <Fact name="Mass">{significant(about.body.mass, 5)} kg</Fact>}
-        {about.ensemble !== null && <Fact name="Bodies">{about.ensemble.toLocaleString("en")}</Fact>}
-        <Fact name="Method">{methodOf(about)}</Fact>
       </dl>
       <Conserved about={about} />
     </>
@@ -70,40 +75,30 @@ const HEAVY = new Set(["gravity", "heavy"]);
 
 /** The vector m g l, in N m. */
 function weight(heavy: Triple): string {
-  const parts = heavy.map((part) => significant(part, 5));
-  return `(${parts.join(", ")}) N m`;
+  return `(${list(heavy)}) N m`;
 }
 
-function Times({ free }: { free: NonNullable<About["free"]> }) {
-  return (
-    <>
-      {free.period !== null && <Fact name="Period of Ω">{duration(free.period, 7)}</Fact>}
-      {free.flip_time !== null && <Fact name="Flip period">{duration(free.flip_time, 7)}</Fact>}
-      {free.precession_period !== null && (
-        <Fact name="Precession">{duration(free.precession_period, 7)} per turn about L</Fact>
-      )}
-      {free.modulus > 0 && <Fact name="Modulus k">{significant(free.modulus, 7)}</Fact>}
-    </>
-  );
+/** Periods of a free body. */
+function freeFacts({ period, flip_time, precession_period, modulus }: NonNullable<About["free"]>): Fact[] {
+  return [
+    ["Period of Ω", period !== null && duration(period, 7)],
+    ["Flip period", flip_time !== null && duration(flip_time, 7)],
+    ["Precession", precession_period !== null && `${duration(precession_period, 7)} per turn about L`],
+    ["Modulus k", modulus > 0 && significant(modulus, 7)],
+  ];
 }
 
 /** Nutation and precession of a heavy top, and whether it is stable upright. */
-function Top({ top }: { top: NonNullable<About["top"]> }) {
-  const [least, most] = top.tilt.map((angle) => significant(angle / DEGREE.size, 5));
-  const turn = top.precession_rate && (2 * Math.PI) / Math.abs(top.precession_rate);
-  return (
-    <>
-      <Fact name="Tilt from vertical">{least === most ? `${least}°` : `${least}° to ${most}°`}</Fact>
-      {top.nutation_period !== null && <Fact name="Nutation period">{duration(top.nutation_period, 7)}</Fact>}
-      {turn !== null && turn !== 0 && (
-        <Fact name="Precession">{duration(turn, 7)} per turn about e₃, on average</Fact>
-      )}
-      <Fact name="Upright">
-        {top.sleeps ? "stable" : "unstable"}; stable from a spin of {significant(top.critical_spin, 5)} rad/s
-        on
-      </Fact>
-    </>
-  );
+function topFacts({ tilt, nutation_period, precession_rate, ...top }: NonNullable<About["top"]>): Fact[] {
+  const [least, most] = tilt.map((angle) => significant(angle / DEGREE.size, 5));
+  const turn = precession_rate && (2 * Math.PI) / Math.abs(precession_rate);
+  const stable = top.sleeps ? "stable" : "unstable";
+  return [
+    ["Tilt from vertical", least === most ? `${least}°` : `${least}° to ${most}°`],
+    ["Nutation period", nutation_period !== null && duration(nutation_period, 7)],
+    ["Precession", turn && `${duration(turn, 7)} per turn about e₃, on average`],
+    ["Upright", `${stable}; stable from a spin of ${significant(top.critical_spin, 5)} rad/s on`],
+  ];
 }
 
 /** The regime of the motion in words; empty if it has no name. */
@@ -115,6 +110,10 @@ export function regimeOf(about: About | null): string {
 function circled(moments: Triple, axis: 1 | 2 | 3): string {
   const which = moments[axis - 1] === Math.max(...moments) ? "largest" : "smallest";
   return `: Ω circles axis ${axis}, which has the ${which} moment`;
+}
+
+function list(numbers: readonly number[]): string {
+  return numbers.map((number) => significant(number, 5)).join(", ");
 }
 
 /** The arguments of a law, rounded; a formula is left as it is. */
@@ -156,14 +155,5 @@ function Conserved({ about }: { about: About }) {
         </tr>
       </tbody>
     </table>
-  );
-}
-
-function Fact({ name, id, children }: { name: string; id?: string; children: ComponentChildren }) {
-  return (
-    <div class="fact">
-      <dt>{name}</dt>
-      <dd {...(id ? { id } : {})}>{children}</dd>
-    </div>
   );
 }

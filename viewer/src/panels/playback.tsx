@@ -2,11 +2,17 @@ import { useRef } from "preact/hooks";
 import type { About } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
 import { duration, timeUnit } from "../format/units.ts";
-import { IconButton } from "../inputs/button.tsx";
+import { IconButton, type IconName } from "../inputs/button.tsx";
 import { NumberField } from "../inputs/number.tsx";
 import { type Model, span } from "../model/model.ts";
 import { methodOf } from "./facts.tsx";
 import { changeSpeed, step } from "./keys.ts";
+
+const STEPS: [id: string, label: string, press: string, icon: IconName, act: (model: Model) => void][] = [
+  ["restart", "To the start", "Home", "restart", (model) => model.toStart()],
+  ["step-back", "Step back", "←", "back", (model) => step(model, -1)],
+  ["step", "Step forward", "→", "forward", (model) => step(model, 1)],
+];
 
 /** Play, step, speed and time. */
 export function Playback({ model }: { model: Model }) {
@@ -25,27 +31,9 @@ export function Playback({ model }: { model: Model }) {
           onClick={() => (model.playing.value = !playing)}
         />
         <div class="buttons">
-          <IconButton
-            id="restart"
-            label="To the start"
-            press="Home"
-            icon="restart"
-            onClick={() => model.toStart()}
-          />
-          <IconButton
-            id="step-back"
-            label="Step back"
-            press="←"
-            icon="back"
-            onClick={() => step(model, -1)}
-          />
-          <IconButton
-            id="step"
-            label="Step forward"
-            press="→"
-            icon="forward"
-            onClick={() => step(model, 1)}
-          />
+          {STEPS.map(([id, label, press, icon, act]) => (
+            <IconButton key={id} id={id} label={label} press={press} icon={icon} onClick={() => act(model)} />
+          ))}
         </div>
         <TimeSlider model={model} about={about} />
         <TimeField model={model} about={about} />

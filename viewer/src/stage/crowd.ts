@@ -1,5 +1,6 @@
 import { BoxGeometry, Group, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
-import { type Motion, Problem } from "../core/core.ts";
+import { Problem } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
 import type { Palette } from "../palette.ts";
 import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part } from "./part.ts";

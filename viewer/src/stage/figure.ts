@@ -1,5 +1,6 @@
 import { Vector3 } from "three";
-import { type About, type Motion, ROW, State, type Surface, type Triple } from "../core/core.ts";
+import { type About, ROW, State, type Surface, type Triple } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
 import { firstRow, span } from "../model/model.ts";
 import { AXES, vector } from "./rotor.ts";
 

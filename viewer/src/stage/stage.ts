@@ -11,7 +11,8 @@ import {
   Vector3,
   WebGLRenderer,
 } from "three";
-import { type Motion, State } from "../core/core.ts";
+import { State } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
 import type { CameraName, Shown } from "../document.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";

@@ -1,4 +1,5 @@
-import type { About, Core, Motion, Quadruple, Solid, SolidKind, Triple } from "../core/core.ts";
+import type { About, Quadruple, Solid, SolidKind, Triple } from "../core/core.ts";
+import type { Core, Motion } from "../core/wasm.ts";
 import { table } from "./toml.ts";
 
 /** The body chosen by the controls. */

@@ -188,6 +188,13 @@ def test_attitude_angles_give_the_rotor(angles, core):
     np.testing.assert_allclose(again * np.sign(again @ rotor(*angles)), rotor(*angles), rtol=0, atol=1e-15)
 
 
+def test_plane_and_angle_of_a_rotor(core):
+    rotor = ph.Rotor.from_plane_angle(ph.bivector([1, 2, 2]) / 3, 4.0)
+    found = core.ask("called", name="planeAngle", given=[rotor.components.tolist()])
+    np.testing.assert_allclose(found["plane"], np.array([1, 2, 2]) / 3, rtol=1e-15)
+    assert found["angle"] == pytest.approx(4.0, rel=1e-15)
+
+
 def test_units_of_the_page_are_those_of_scenes(core):
     text = (ROOT / "viewer/src/format/units.ts").read_text()
     times = re.search(r"TIMES = \[(.*?)\];", text)[1]

@@ -267,6 +267,15 @@ pub extern "C" fn attitude() -> i32 {
     answered(|_, rooms| Ok((0, bytes(Rotor::from_unit_components(numbers(&rooms)?).zxz_angles()))))
 }
 
+/// Takes a rotor; answers the unit plane and the angle of [`Rotor::plane_angle`].
+#[unsafe(no_mangle)]
+pub extern "C" fn plane_angle() -> i32 {
+    answered(|_, rooms| {
+        let (plane, angle) = Rotor::from_unit_components(numbers(&rooms)?).plane_angle();
+        Ok((0, bytes(plane.0.into_iter().chain([angle]))))
+    })
+}
+
 /// Rotors of the first bodies of an ensemble, at most `count`, at a time. The first call follows them, for at most so
 /// many seconds.
 #[unsafe(no_mangle)]

@@ -1,5 +1,6 @@
 import { Vector3 } from "three";
-import type { Line, Triple } from "../core/core.ts";
+import type { Line, Quadruple, Triple } from "../core/core.ts";
+import type { Core } from "../core/wasm.ts";
 import { vectorLiteral } from "./literal.ts";
 import { nonzeroGrades } from "./notation.ts";
 
@@ -28,20 +29,20 @@ export interface Drawable {
 }
 
 /** The drawables of lines, in their order. */
-export function drawablesOf(lines: readonly Line[]): Drawable[] {
-  const drawables: Drawable[] = [];
+export function drawablesOf(lines: readonly Line[], core: Core): Drawable[] {
+  const items: Drawable[] = [];
   const named = new Map<string, Drawable>();
   lines.forEach((line, number) => {
     const { value, name, shown } = line;
     // A bare name shows a value that is already drawn.
     if (!value || shown === null || (name === null && named.has(shown))) return;
-    const drawable = drawableOf(line, number, drawables.length % COLOURS, named);
-    if (!drawable) return;
-    drawables.push(drawable);
-    if (name !== null) named.set(name, drawable);
+    const item = drawableOf(line, number, items.length % COLOURS, named, core);
+    if (!item) return;
+    items.push(item);
+    if (name !== null) named.set(name, item);
   });
   for (const { shown } of lines) if (shown !== null) recordTurned(shown, named);
-  return drawables;
+  return items;
 }
 
 function drawableOf(
@@ -49,33 +50,34 @@ function drawableOf(
   number: number,
   colour: number,
   named: Map<string, Drawable>,
+  core: Core,
 ): Drawable | null {
   const { components, rotor } = line.value!;
   const grades = nonzeroGrades(line.value!);
   const part = (grade: number, start: number) =>
     grades.includes(grade) ? new Vector3(...(components.slice(start, start + 3) as Triple)) : null;
   const nonzero = (vector: Vector3 | null) => (vector && vector.length() > 0 ? vector : null);
-  const drawable: Drawable = {
+  const item: Drawable = {
     line: number,
     label: line.name ?? (line.shown!.length <= LONGEST ? line.shown! : `(${number + 1})`),
     colour,
     vector: nonzero(part(1, 1)),
     bivector: rotor ? null : nonzero(part(2, 4)),
     trivector: grades.includes(3) && components[7] !== 0 ? components[7]! : null,
-    rotor: rotor ? turnOf(components) : null,
+    rotor: rotor ? turnOf(components, core) : null,
     edges: edges(line.shown!, named),
     movable: isMovable(line),
   };
-  const visible = drawable.vector ?? drawable.bivector ?? drawable.trivector ?? drawable.rotor;
-  return visible === null ? null : drawable;
+  const visible = item.vector ?? item.bivector ?? item.trivector ?? item.rotor;
+  return visible === null ? null : item;
 }
 
-/** The turn of a rotor, cos(θ/2) − sin(θ/2) B. */
-function turnOf(components: readonly number[]): Drawable["rotor"] {
-  const axis = new Vector3(-components[4]!, -components[5]!, -components[6]!);
-  const size = axis.length();
-  if (size < 1e-12) return null;
-  return { axis: axis.divideScalar(size), angle: 2 * Math.atan2(size, components[0]!), turned: [] };
+/** The rotation of a rotor; null for the rotors 1 and −1, up to rounding. */
+function turnOf([scalar, , , , ...bivector]: readonly number[], core: Core): Drawable["rotor"] {
+  const rotor = [scalar, ...bivector.slice(0, 3)] as Quadruple;
+  if (Math.hypot(...rotor.slice(1)) < 1e-12) return null;
+  const { plane, angle } = core.planeAngle(rotor);
+  return { axis: new Vector3(...plane), angle, turned: [] };
 }
 
 /** The vectors of a wedge product of named vectors, or of bivectors that are wedge products of such. */
@@ -83,13 +85,9 @@ function edges(shown: string, named: Map<string, Drawable>): Vector3[] {
   const factors = shown.replace(/[()]/gu, "").split("∧");
   if (factors.length < 2) return [];
   const swept = factors.map((factor) => {
-    const drawable = named.get(factor);
-    if (!drawable) return null;
-    return drawable.edges.length > 0
-      ? drawable.edges
-      : drawable.vector && !drawable.bivector
-        ? [drawable.vector]
-        : null;
+    const item = named.get(factor);
+    if (!item) return null;
+    return item.edges.length > 0 ? item.edges : item.vector && !item.bivector ? [item.vector] : null;
   });
   const all = swept.flatMap((vectors) => vectors ?? []);
   return swept.includes(null) || all.length > 3 ? [] : all;

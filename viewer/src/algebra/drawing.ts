@@ -1,5 +1,14 @@
 import { effect, type ReadonlySignal } from "@preact/signals";
-import { Color, DirectionalLight, HemisphereLight, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import {
+  Box3,
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
 import type { Triple } from "../core/core.ts";
 import type { Palette } from "../palette.ts";
 import { Viewpoint } from "../stage/camera.ts";
@@ -25,7 +34,7 @@ const SIDES = [
   [-1, 0.6],
 ] as const;
 
-/** The colours of drawables, in order. */
+/** The colours of items, in order. */
 export function colours(palette: Palette): string[] {
   return [...palette.axes, palette.trace, palette.polhode, palette.text];
 }
@@ -61,7 +70,7 @@ export class Drawing {
 
   constructor(
     private readonly host: HTMLElement,
-    private readonly drawables: ReadonlySignal<readonly Drawable[]>,
+    private readonly items: ReadonlySignal<readonly Drawable[]>,
     private readonly palette: ReadonlySignal<Palette>,
     move: (line: number, components: Triple) => void,
   ) {
@@ -84,7 +93,7 @@ export class Drawing {
     this.canvas.addEventListener("webglcontextrestored", this.draw);
     this.observer = new ResizeObserver(this.resize);
     this.observer.observe(host);
-    this.unsubscribe = effect(() => this.show(drawables.value, palette.value));
+    this.unsubscribe = effect(() => this.show(items.value, palette.value));
   }
 
   dispose(): void {
@@ -105,51 +114,43 @@ export class Drawing {
 
   /** Fits everything into view and restores the initial camera. */
   home(): void {
-    this.fit(this.drawables.peek());
-    this.show(this.drawables.peek(), this.palette.peek());
+    this.fit(this.items.peek());
+    this.show(this.items.peek(), this.palette.peek());
     this.viewpoint.go("oblique", AXES[2], this.calm.matches);
   }
 
-  private show(drawables: readonly Drawable[], palette: Palette): void {
-    this.keepInView(drawables);
+  private show(items: readonly Drawable[], palette: Palette): void {
+    this.keepInView(items);
     this.old.push(...this.figures.map((figure) => figure.shapes), ...(this.frame ? [this.frame] : []));
     for (const shapes of this.old) this.scene.remove(shapes.object);
     const tones = colours(palette);
-    this.figures = drawables.map((drawable) =>
-      figureOf(drawable, drawables, this.screen, tones[drawable.colour]!, this.unit),
-    );
+    this.figures = items.map((item) => figureOf(item, items, this.screen, tones[item.colour]!, this.unit));
     this.frame = this.axes(palette);
     this.scene.add(this.frame.object, ...this.figures.map((figure) => figure.shapes.object));
     this.name(tones, palette);
     this.handles.show(
-      drawables.filter((drawable) => drawable.movable && drawable.vector),
+      items.filter((item) => item.movable && item.vector),
       tones,
     );
     this.light(palette);
-    const list = drawables.map((drawable) => `${drawable.label}, ${described(drawable)}`).join("; ");
+    const list = items.map((item) => `${item.label}, ${described(item)}`).join("; ");
     this.canvas.setAttribute("aria-label", `Drawing of: ${list || "nothing"}. Arrow keys rotate it.`);
     this.draw();
   }
 
   /** Keeps the unit while sizes are similar; otherwise a dragged vector would move away from the pointer. */
-  private keepInView(drawables: readonly Drawable[]): void {
-    const subject = drawables.map((drawable) => drawable.label).join(" ");
-    const reach = Math.max(...drawables.flatMap(extent).map((point) => point.length()), 0) * this.unit;
+  private keepInView(items: readonly Drawable[]): void {
+    const subject = items.map((item) => item.label).join(" ");
+    const reach = Math.max(...items.flatMap(extent).map((point) => point.length()), 0) * this.unit;
     const farthest = this.middle.length() + LARGEST;
-    if (subject !== this.subject || reach > farthest || (reach > 0 && reach < SMALLEST)) this.fit(drawables);
+    if (subject !== this.subject || reach > farthest || (reach > 0 && reach < SMALLEST)) this.fit(items);
     this.subject = subject;
   }
 
-  private fit(drawables: readonly Drawable[]): void {
-    const points = drawables.flatMap(extent);
+  private fit(items: readonly Drawable[]): void {
+    const points = items.flatMap(extent);
     if (points.length === 0) points.push(new Vector3(1, 1, 1), new Vector3());
-    const [low, high] = [Math.min, Math.max].map(
-      (most) =>
-        new Vector3(
-          ...([0, 1, 2].map((k) => most(...points.map((point) => point.getComponent(k)))) as Triple),
-        ),
-    ) as [Vector3, Vector3];
-    const middle = low.add(high).multiplyScalar(0.5);
+    const middle = new Box3().setFromPoints(points).getCenter(new Vector3());
     const radius = Math.max(...points.map((point) => point.distanceTo(middle)));
     this.unit = radius > 0 ? BALL / radius : 1;
     this.middle = middle.multiplyScalar(this.unit);
@@ -186,7 +187,7 @@ export class Drawing {
     return shapes;
   }
 
-  /** Labels the drawables and the axes. */
+  /** Labels the items and the axes. */
   private name(tones: string[], palette: Palette): void {
     for (const { label } of this.named) label.dispose();
     const step = this.step();
@@ -195,14 +196,14 @@ export class Drawing {
       label.paint(palette.faint);
       return { label, figure: null, at: axis.clone().multiplyScalar(step) };
     });
-    const drawables = this.figures.map((figure) => {
-      const { letter, index, primes } = nameParts(figure.drawable.label);
+    const items = this.figures.map((figure) => {
+      const { letter, index, primes } = nameParts(figure.item.label);
       const label = this.labels.add(letter + primes, { rank: 1, ...(index && { index }) });
-      label.paint(tones[figure.drawable.colour]!);
+      label.paint(tones[figure.item.colour]!);
       label.say(figure.mark.note);
       return { label, figure, at: figure.mark.at };
     });
-    this.named = [...drawables, ...axes];
+    this.named = [...items, ...axes];
   }
 
   private light(palette: Palette): void {
@@ -243,7 +244,7 @@ export class Drawing {
     for (const { label, figure, at } of this.named) {
       label.at.copy(at);
       if (!figure?.mark.rim) continue;
-      const [across, high] = SIDES[figure.drawable.colour % SIDES.length]!;
+      const [across, high] = SIDES[figure.item.colour % SIDES.length]!;
       const { axis, radius } = figure.mark.rim;
       const towards = right.clone().multiplyScalar(across).addScaledVector(up, high).projectOnPlane(axis);
       label.at.copy(towards.setLength(radius));

@@ -11,9 +11,9 @@ export interface Mark {
   rim?: { axis: Vector3; radius: number };
 }
 
-/** The shapes and the label of a drawable, in drawn units: `unit` times the values. */
+/** The shapes and the label of a item, in drawn units: `unit` times the values. */
 export interface Figure {
-  drawable: Drawable;
+  item: Drawable;
   shapes: Shapes;
   mark: Mark;
 }
@@ -23,8 +23,8 @@ const TURN = 0.5;
 const DASHED = { width: 1.3, opacity: 0.8, behind: 0.5, dash: 0.045 };
 
 export function figureOf(
-  drawable: Drawable,
-  drawables: readonly Drawable[],
+  item: Drawable,
+  items: readonly Drawable[],
   screen: Screen,
   colour: string,
   unit: number,
@@ -32,62 +32,60 @@ export function figureOf(
   const shapes = new Shapes(screen, colour);
   let mark: Mark = { at: new Vector3(), note: "" };
   const scaled = (vector: Vector3) => vector.clone().multiplyScalar(unit);
-  const [a, b, c] = drawable.edges.map(scaled);
-  if (drawable.rotor) {
-    const alone = !drawables.some(
-      (other) => other !== drawable && other.rotor && other.rotor.turned.length > 0,
-    );
-    mark = turn(shapes, drawable.rotor, unit, alone);
+  const [a, b, c] = item.edges.map(scaled);
+  if (item.rotor) {
+    const alone = !items.some((other) => other !== item && other.rotor && other.rotor.turned.length > 0);
+    mark = turn(shapes, item.rotor, unit, alone);
   }
-  if (drawable.trivector !== null) {
+  if (item.trivector !== null) {
     if (a && b && c) {
       const base = (other: Drawable) =>
-        other.bivector && other.edges.every((edge, k) => edge === drawable.edges[k]);
+        other.bivector && other.edges.every((edge, k) => edge === item.edges[k]);
       shapes.parallelepiped(a, b, c, {
-        base: !drawables.some((other) => other.edges.length === 2 && base(other)),
+        base: !items.some((other) => other.edges.length === 2 && base(other)),
       });
       mark.at = a.clone().add(b).add(c);
     } else {
-      mark.at = cube(shapes, drawable.trivector, unit);
+      mark.at = cube(shapes, item.trivector, unit);
     }
-    if (drawable.trivector < 0) mark.note = "left-handed";
+    if (item.trivector < 0) mark.note = "left-handed";
   }
-  if (drawable.bivector) {
+  if (item.bivector) {
     if (a && b && !c) {
       shapes.parallelogram(a, b);
       mark.at = a.clone().add(b);
     } else {
-      const radius = discRadius(drawable.bivector) * unit;
-      shapes.disc(drawable.bivector, radius);
-      mark.rim = { axis: drawable.bivector, radius };
+      const radius = discRadius(item.bivector) * unit;
+      shapes.disc(item.bivector, radius);
+      mark.rim = { axis: item.bivector, radius };
     }
   }
-  if (drawable.vector) {
-    shapes.arrow(scaled(drawable.vector));
-    mark = { at: scaled(drawable.vector), note: mark.note };
+  if (item.vector) {
+    shapes.arrow(scaled(item.vector));
+    mark = { at: scaled(item.vector), note: mark.note };
   }
-  return { drawable, shapes, mark };
+  return { item, shapes, mark };
 }
 
 /** Points that must be in view, in the units of the values. */
-export function extent(drawable: Drawable): Vector3[] {
+export function extent(item: Drawable): Vector3[] {
   const points = [new Vector3()];
-  if (drawable.vector) points.push(drawable.vector);
-  const [a, b, c] = drawable.edges;
+  if (item.vector) points.push(item.vector);
+  const [a, b, c] = item.edges;
   if (a && b) points.push(a, b, a.clone().add(b));
   if (a && b && c) points.push(c, ...[a, b, a.clone().add(b)].map((point) => point.clone().add(c)));
-  if (drawable.bivector && !b) {
-    const radius = discRadius(drawable.bivector);
-    const right = across(drawable.bivector).multiplyScalar(radius);
-    const up = drawable.bivector.clone().normalize().cross(right);
+  if (item.bivector && !b) {
+    const radius = discRadius(item.bivector);
+    const right = across(item.bivector).multiplyScalar(radius);
+    const up = item.bivector.clone().normalize().cross(right);
     points.push(right, up, right.clone().negate(), up.clone().negate());
   }
-  if (drawable.trivector !== null && !c) {
-    const half = Math.cbrt(Math.abs(drawable.trivector)) / 2;
+  if (item.trivector !== null && !c) {
+    const half = Math.cbrt(Math.abs(item.trivector)) / 2;
     points.push(new Vector3(half, half, half), new Vector3(-half, -half, -half));
   }
-  for (const vector of drawable.rotor?.turned ?? []) {
-    points.push(vector, vector.clone().applyAxisAngle(drawable.rotor!.axis, drawable.rotor!.angle));
+  for (const vector of item.rotor?.turned ?? []) {
+    points.push(vector, vector.clone().applyAxisAngle(item.rotor!.axis, item.rotor!.angle));
   }
   return points;
 }

@@ -11,7 +11,7 @@ const HINT = "Arrow keys move it; Shift with up or down moves it along the view.
 /** Buttons at the tips of vectors for dragging them in the plane of the screen, or with Shift along the view. */
 export class Handles {
   private readonly layer = document.createElement("div");
-  private buttons: { button: HTMLButtonElement; drawable: Drawable }[] = [];
+  private buttons: { button: HTMLButtonElement; item: Drawable }[] = [];
   private camera: Camera | null = null;
   private size = new Vector2(1, 1);
 
@@ -32,57 +32,57 @@ export class Handles {
   }
 
   /** Reuses the buttons, so that they keep the focus and the pointer. */
-  show(drawables: readonly Drawable[], colours: readonly string[]): void {
-    while (this.buttons.length > drawables.length) this.buttons.pop()!.button.remove();
-    drawables.forEach((drawable, k) => {
-      const entry = this.buttons[k] ?? this.add(drawable);
-      entry.drawable = drawable;
-      const parts = drawable.vector!.toArray().map((x) => Number(x.toFixed(2)));
-      entry.button.setAttribute("aria-label", `${drawable.label} = (${parts.join(", ")}). ${HINT}`);
-      entry.button.title = `Drag ${drawable.label}; with Shift, along the view`;
-      entry.button.style.color = colours[drawable.colour]!;
-      entry.button.dataset["handle"] = drawable.label;
+  show(items: readonly Drawable[], colours: readonly string[]): void {
+    while (this.buttons.length > items.length) this.buttons.pop()!.button.remove();
+    items.forEach((item, k) => {
+      const entry = this.buttons[k] ?? this.add(item);
+      entry.item = item;
+      const parts = item.vector!.toArray().map((x) => Number(x.toFixed(2)));
+      entry.button.setAttribute("aria-label", `${item.label} = (${parts.join(", ")}). ${HINT}`);
+      entry.button.title = `Drag ${item.label}; with Shift, along the view`;
+      entry.button.style.color = colours[item.colour]!;
+      entry.button.dataset["handle"] = item.label;
     });
   }
 
   place(camera: Camera, width: number, height: number): void {
     this.camera = camera;
     this.size.set(width, height);
-    for (const { button, drawable } of this.buttons) {
-      const at = this.tip(drawable).project(camera);
+    for (const { button, item } of this.buttons) {
+      const at = this.tip(item).project(camera);
       const [x, y] = [((1 + at.x) * width) / 2, ((1 - at.y) * height) / 2];
       button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     }
   }
 
-  private tip(drawable: Drawable): Vector3 {
-    return drawable.vector!.clone().multiplyScalar(this.unit());
+  private tip(item: Drawable): Vector3 {
+    return item.vector!.clone().multiplyScalar(this.unit());
   }
 
-  private add(drawable: Drawable): { button: HTMLButtonElement; drawable: Drawable } {
+  private add(item: Drawable): { button: HTMLButtonElement; item: Drawable } {
     const button = document.createElement("button");
     button.type = "button";
     button.className = "handle";
-    const entry = { button, drawable };
+    const entry = { button, item };
     this.buttons.push(entry);
     this.layer.append(button);
     let last: { x: number; y: number; tip: Vector3 } | null = null;
     button.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       button.setPointerCapture(event.pointerId);
-      last = { x: event.clientX, y: event.clientY, tip: this.tip(entry.drawable) };
+      last = { x: event.clientX, y: event.clientY, tip: this.tip(entry.item) };
     });
     button.addEventListener("pointermove", (event) => {
       if (!last || !button.hasPointerCapture(event.pointerId)) return;
       // All digits of the tip are kept here: a rounded tip would not follow small movements.
       const tip = this.dragged(last.tip, event.clientX - last.x, event.clientY - last.y, event.shiftKey);
       last = { x: event.clientX, y: event.clientY, tip };
-      this.move(entry.drawable.line, tip.clone().divideScalar(this.unit()).toArray());
+      this.move(entry.item.line, tip.clone().divideScalar(this.unit()).toArray());
     });
     for (const end of ["pointerup", "pointercancel"] as const) {
       button.addEventListener(end, () => (last = null));
     }
-    button.addEventListener("keydown", (event) => this.moveByKey(event, entry.drawable));
+    button.addEventListener("keydown", (event) => this.moveByKey(event, entry.item));
     return entry;
   }
 
@@ -102,7 +102,7 @@ export class Handles {
   }
 
   /** Moves a vector along the axis nearest to right or up on the screen, or with Shift to the view. */
-  private moveByKey(event: KeyboardEvent, drawable: Drawable): void {
+  private moveByKey(event: KeyboardEvent, item: Drawable): void {
     const step = KEYS[event.key];
     if (!step || !this.camera) return;
     event.preventDefault();
@@ -120,10 +120,10 @@ export class Handles {
     });
     const along = steps[key === 1 && event.shiftKey ? 2 : key]!;
     this.move(
-      drawable.line,
+      item.line,
       along
         .multiplyScalar(sign * STEP)
-        .add(drawable.vector!)
+        .add(item.vector!)
         .toArray(),
     );
   }

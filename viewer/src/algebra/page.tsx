@@ -15,7 +15,7 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
     if (model.lines.peek() === "") model.lines.value = ALGEBRA_PRESETS[0]!.lines;
   }, [model]);
   const lines = useComputed(() => model.core.evaluated(model.lines.value));
-  const drawables = useComputed(() => drawablesOf(lines.value));
+  const items = useComputed(() => drawablesOf(lines.value, model.core));
   const tones = useComputed(() => colours(palette.value));
   const change = useMemo(
     () => (line: number, text: (old: string) => string) => {
@@ -31,11 +31,11 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
       <style>{styles}</style>
       <Choice model={model} />
       <Picture
-        drawables={drawables}
+        items={items}
         palette={palette}
         move={(line, to) => change(line, (old) => withVector(old, to))}
       />
-      <Rows text={model.lines} lines={lines} drawables={drawables} tones={tones} change={change} />
+      <Rows text={model.lines} lines={lines} items={items} tones={tones} change={change} />
     </div>
   );
 }
@@ -79,22 +79,22 @@ function Choice({ model }: { model: Model }) {
 }
 
 function Picture(props: {
-  drawables: ReadonlySignal<readonly Drawable[]>;
+  items: ReadonlySignal<readonly Drawable[]>;
   palette: ReadonlySignal<Palette>;
   move: (line: number, to: [number, number, number]) => void;
 }) {
-  const { drawables, palette, move } = props;
+  const { items, palette, move } = props;
   const place = useRef<HTMLDivElement>(null);
   const drawing = useRef<Drawing | null>(null);
   const missing = useSignal<string | null>(null);
   useEffect(() => {
     try {
-      drawing.current = new Drawing(place.current!, drawables, palette, move);
+      drawing.current = new Drawing(place.current!, items, palette, move);
     } catch (error) {
       missing.value = words(error);
     }
     return () => drawing.current?.dispose();
-  }, [drawables, palette]);
+  }, [items, palette]);
   return (
     <section class="drawing" aria-label="Drawing">
       <div class="drawn" ref={place} />

@@ -12,13 +12,13 @@ type Change = (line: number, text: (old: string) => string) => void;
 interface Props {
   text: Signal<string>;
   lines: ReadonlySignal<readonly Line[]>;
-  drawables: ReadonlySignal<readonly Drawable[]>;
+  items: ReadonlySignal<readonly Drawable[]>;
   tones: ReadonlySignal<readonly string[]>;
   change: Change;
 }
 
 /** The lines with their values. Enter, Backspace, Delete, arrow keys and pasting work across lines. */
-export function Rows({ text, lines, drawables, tones, change }: Props) {
+export function Rows({ text, lines, items, tones, change }: Props) {
   const list = useRef<HTMLOListElement>(null);
   /** The row and column of the caret after the next render. */
   const caret = useRef<[number, number] | null>(null);
@@ -28,10 +28,10 @@ export function Rows({ text, lines, drawables, tones, change }: Props) {
     caret.current = null;
     focusAt(list.current, row, column);
   });
-  const named = new Map(drawables.value.map((drawable) => [drawable.label, drawable]));
+  const named = new Map(items.value.map((item) => [item.label, item]));
   const colourOf = (name: string) => {
-    const drawable = named.get(name);
-    return drawable ? tones.value[drawable.colour] : undefined;
+    const item = named.get(name);
+    return item ? tones.value[item.colour] : undefined;
   };
   /** Replaces rows by a text, and puts the caret at an offset in it. */
   const replace = (first: number, count: number, written: string, at: number): void => {
@@ -65,8 +65,8 @@ export function Rows({ text, lines, drawables, tones, change }: Props) {
     <section class="rows" aria-label="Lines">
       <ol ref={list}>
         {lines.value.map((line, row) => {
-          const drawable = drawables.value.find((one) => one.line === row);
-          const tone = drawable && tones.value[drawable.colour];
+          const item = items.value.find((one) => one.line === row);
+          const tone = item && tones.value[item.colour];
           const scalar =
             line.value?.grades.join() === "0" && line.name !== null ? scalarLiteral(line.text) : null;
           return (
@@ -105,11 +105,7 @@ export function Rows({ text, lines, drawables, tones, change }: Props) {
                   onChange={(number) => change(row, (old) => withScalar(old, number))}
                 />
               )}
-              <Result
-                id={`came-${row}`}
-                line={line}
-                literal={scalar !== null || (drawable?.movable ?? false)}
-              />
+              <Result id={`came-${row}`} line={line} literal={scalar !== null || (item?.movable ?? false)} />
             </li>
           );
         })}

@@ -41,20 +41,8 @@ export interface Surface {
   tints: Uint32Array;
 }
 
-export type SolidKind =
-  | "box"
-  | "ellipsoid"
-  | "sphere"
-  | "hollow_sphere"
-  | "cylinder"
-  | "cone"
-  | "capsule"
-  | "rod"
-  | "disc"
-  | "torus";
-
 /** A uniform solid: its kind, and its dimensions in m by their names in scenes. */
-export type Solid = { kind: SolidKind; [dimension: string]: SolidKind | number | Triple };
+export type Solid = { kind: string; [dimension: string]: string | number | Triple };
 
 export type Triple = [number, number, number];
 export type Quadruple = [number, number, number, number];

@@ -7,7 +7,6 @@ import {
   Problem,
   type Quadruple,
   type Solid,
-  type SolidKind,
   type Surface,
   type Triple,
 } from "./core.ts";
@@ -32,6 +31,7 @@ interface Exports {
   second_moments(): number;
   inertia(): number;
   attitude(): number;
+  plane_angle(): number;
 }
 
 /** Default limit on the time to solve a scene, s. */
@@ -94,7 +94,7 @@ export class Core {
   }
 
   /** The solid of a kind that fills a box of these side lengths, m. */
-  solid(kind: SolidKind, lengths: Triple): Solid {
+  solid(kind: string, lengths: Triple): Solid {
     this.putText(kind);
     this.put(Float64Array.from(lengths));
     this.checked(() => this.exports.solid());
@@ -120,6 +120,12 @@ export class Core {
   attitude(rotor: Quadruple): { turn: number; tilt: number; roll: number } {
     const [turn, tilt, roll] = this.numbers(this.exports.attitude, rotor) as Triple;
     return { turn, tilt, roll };
+  }
+
+  /** The unit plane and the angle, from 0 to 2π, of a rotor. */
+  planeAngle(rotor: Quadruple): { plane: Triple; angle: number } {
+    const [x, y, z, angle] = this.numbers(this.exports.plane_angle, rotor) as Quadruple;
+    return { plane: [x, y, z], angle };
   }
 
   /** Calls an export that takes numbers and replies with numbers. */

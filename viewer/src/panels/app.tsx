@@ -69,43 +69,28 @@ export function App({ model, palette, compact, wide }: Props) {
 function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
   const { model, palette, compact, wide, controls, folds } = props;
   const known = model.about.value !== null;
+  const varied = !compact && controls.about.value !== null;
+  const panels: [shown: boolean, id: string, title: string, open: boolean, content: ComponentChildren][] = [
+    [known, "state", "State", !compact || wide, <Readout model={model} />],
+    [varied, "start", "Spin and attitude", wide, <StartPanel controls={controls} />],
+    [known, "motion", "Motion", wide && !compact, <Facts model={model} />],
+    [varied, "body", "Body", false, <BodyPanel controls={controls} />],
+    [varied, "laws", "Torques", false, <LawsPanel controls={controls} />],
+    [true, "view", "View", false, <ViewPanel model={model} />],
+    [!compact, "text", "Scene", !known, <Editor model={model} />],
+  ];
   return (
     <main class="motion">
       <Picture model={model} palette={palette} />
       <Playback model={model} />
       <aside class="panels" aria-label="Values and controls">
-        {known && (
-          <Panel id="state" title="State" open={!compact || wide} folds={folds}>
-            <Readout model={model} />
-          </Panel>
-        )}
-        {!compact && controls.about.value && (
-          <Panel id="start" title="Spin and attitude" open={wide} folds={folds}>
-            <StartPanel controls={controls} />
-          </Panel>
-        )}
-        {known && (
-          <Panel id="motion" title="Motion" open={wide && !compact} folds={folds}>
-            <Facts model={model} />
-          </Panel>
-        )}
-        {!compact && controls.about.value && (
-          <>
-            <Panel id="body" title="Body" open={false} folds={folds}>
-              <BodyPanel controls={controls} />
-            </Panel>
-            <Panel id="laws" title="Torques" open={false} folds={folds}>
-              <LawsPanel controls={controls} />
-            </Panel>
-          </>
-        )}
-        <Panel id="view" title="View" open={false} folds={folds}>
-          <ViewPanel model={model} />
-        </Panel>
-        {!compact && (
-          <Panel id="text" title="Scene" open={!known} folds={folds}>
-            <Editor model={model} />
-          </Panel>
+        {panels.map(
+          ([shown, id, title, open, content]) =>
+            shown && (
+              <Panel key={id} id={id} title={title} open={open} folds={folds}>
+                {content}
+              </Panel>
+            ),
         )}
       </aside>
       <Announcement model={model} />

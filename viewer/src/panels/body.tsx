@@ -3,11 +3,11 @@ import { DENSITY, lengthUnit, massUnit, si } from "../format/units.ts";
 import { around, type Range } from "../inputs/range.ts";
 import { Select } from "../inputs/select.tsx";
 import { Slider } from "../inputs/slider.tsx";
-import { type BodyChoice, isThin, reshaped, resized, SIZES, sizeOf } from "../vary/body.ts";
+import { type BodyChoice, dimensions, isThin, reshaped, resized, sizeOf } from "../vary/body.ts";
 import type { Controls } from "../vary/controls.ts";
 
 /** Without the rod, which has no moment about its axis and so no definite rate about it. */
-const FORMS: [BodyChoice["form"], string][] = [
+const FORMS: [form: string, label: string][] = [
   ["masses", "Second moments"],
   ["box", "Box"],
   ["ellipsoid", "Ellipsoid"],
@@ -56,7 +56,7 @@ function Sizes({ body, solid, controls }: { body: BodyChoice; solid: Solid; cont
   const first = body.first ?? solid;
   return (
     <>
-      {SIZES[solid.kind].map(([name, label]) => (
+      {dimensions(solid).map(([name, label]) => (
         <Slider
           key={name}
           id={`size-${name.replaceAll(/[._]/g, "-")}`}

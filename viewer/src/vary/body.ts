@@ -1,11 +1,11 @@
-import type { About, Quadruple, Solid, SolidKind, Triple } from "../core/core.ts";
+import type { About, Quadruple, Solid, Triple } from "../core/core.ts";
 import type { Core, Motion } from "../core/wasm.ts";
 import { table } from "./toml.ts";
 
 /** The body chosen by the controls. */
 export interface BodyChoice {
-  /** The body of the scene, a body given by its second moments, or a solid. */
-  form: "scene" | "masses" | SolidKind;
+  /** `scene`, the body of the scene; `masses`, a body given by its second moments; or the kind of a solid. */
+  form: string;
   /** The dimensions of the solid, if it is one. */
   solid: Solid | null;
   /** The solid when its form was chosen; the sliders take their ranges from it. */
@@ -18,42 +18,16 @@ export interface BodyChoice {
   frame: Quadruple | null;
 }
 
-/** The dimensions of each solid: `radius`, or `lengths.0` for the first of several, with labels. */
-export const SIZES: Record<SolidKind, [name: string, label: string][]> = {
-  box: [
-    ["lengths.0", "Side along e₁"],
-    ["lengths.1", "Side along e₂"],
-    ["lengths.2", "Side along e₃"],
-  ],
-  ellipsoid: [
-    ["semi_axes.0", "Semi-axis e₁"],
-    ["semi_axes.1", "Semi-axis e₂"],
-    ["semi_axes.2", "Semi-axis e₃"],
-  ],
-  sphere: [["radius", "Radius"]],
-  hollow_sphere: [
-    ["outer_radius", "Outer radius"],
-    ["inner_radius", "Inner radius"],
-  ],
-  cylinder: [
-    ["radius", "Radius"],
-    ["height", "Height"],
-  ],
-  cone: [
-    ["radius", "Radius"],
-    ["height", "Height"],
-  ],
-  capsule: [
-    ["radius", "Radius"],
-    ["height", "Cylinder height"],
-  ],
-  rod: [["length", "Length"]],
-  disc: [["radius", "Radius"]],
-  torus: [
-    ["major_radius", "Ring radius"],
-    ["minor_radius", "Tube radius"],
-  ],
-};
+const LISTS: Record<string, string> = { lengths: "Length along", semi_axes: "Semi-axis" };
+
+/** The names of the dimensions of a solid, `radius`, or `lengths.0` for the first of several, with labels. */
+export function dimensions({ kind: _, ...sizes }: Solid): [name: string, label: string][] {
+  return Object.entries(sizes).flatMap(([name, size]): [string, string][] =>
+    size instanceof Array
+      ? size.map((_, k) => [`${name}.${k}`, `${LISTS[name]} e${"₁₂₃"[k]}`])
+      : [[name, name[0]!.toUpperCase() + name.slice(1).replace("_", " ")]],
+  );
+}
 
 /** Solids without a volume have a mass but no density. */
 export const isThin = (form: BodyChoice["form"]): boolean => form === "rod" || form === "disc";
@@ -83,7 +57,7 @@ export function reshaped(
   return { ...choice, form, amount, solid, first: solid };
 }
 
-/** A dimension of a solid by its name in `SIZES`. */
+/** A dimension of a solid by its name in `dimensions`. */
 export function sizeOf(solid: Solid, name: string): number {
   const [field, index] = name.split(".");
   const value = solid[field!] as number | Triple;

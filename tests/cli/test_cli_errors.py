@@ -250,7 +250,7 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
 def test_ctrl_c_ends_a_background_job_of_a_script(command, scene):
     """Such a job is started to ignore the signal; the shell replaces itself by the command."""
     (scene.parent / "long.toml").write_text(ENDLESS)
-    program = "from polhode import _cli; print('go', flush=True); raise SystemExit(_cli.main())"
+    program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"
     through = ["bash", "-c", 'trap "" INT; exec "$@"', "bash", sys.executable, "-c", program]
     with processes.start([*through, *command], cwd=scene.parent, stdin=processes.PIPE) as process:
         assert process.stdout.readline() == "go\n"
@@ -263,7 +263,7 @@ def test_ctrl_c_ends_a_background_job_of_a_script(command, scene):
 def test_an_interrupted_run_leaves_no_trace(tmp_path):
     (tmp_path / "long.toml").write_text(ENDLESS)
     (tmp_path / "out.nc").write_bytes(b"older")
-    program = "from polhode import _cli; print('go', flush=True); raise SystemExit(_cli.main())"
+    program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"
     command = [sys.executable, "-c", program, "run", "long.toml", "-o", "out.nc"]
     with processes.start(command, cwd=tmp_path) as process:
         assert process.stdout.readline() == "go\n"

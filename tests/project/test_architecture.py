@@ -1,4 +1,4 @@
-"""The rooms know each other in one direction only, and the guides name what exists."""
+"""Crates, folders and files depend on each other in one direction, and the guides name what exists."""
 
 import ast
 import re
@@ -6,6 +6,11 @@ import tomllib
 from pathlib import Path
 
 import pytest
+
+from circles import circles
+from python_imports import import_graph
+from rust_paths import uses_of_files
+from typescript_imports import imports
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "python" / "polhode"
@@ -37,45 +42,64 @@ def test_the_algebra_depends_on_nothing():
     assert "dependencies" not in crate
 
 
-def module_name(path: Path) -> str:
-    """`_arrays`, `_generic.exact`; a package has the name of its directory."""
-    parts = path.relative_to(PACKAGE).with_suffix("").parts
-    return ".".join(part for part in parts if part != "__init__" or len(parts) == 1)
+# The folders of the package from the lowest up: each imports only those before it. The public modules of laws belong
+# to mechanics.
+FOLDERS = (
+    *("_support", "_generic", "_algebra", "_formula", "_mechanics"),
+    *("jax", "_scene", "_report", "_figures", "_viewer", "_cli"),
+)
 
 
-def module_imports(path: Path, modules: set[str]) -> set[str]:
-    """Return the modules of the package that are imported along with this one."""
-    found = set()
-    for node in ast.parse(path.read_text()).body:
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("polhode"):
-            for name in node.names:
-                dotted = f"{node.module}.{name.name}".removeprefix("polhode.")
-                found.add(dotted if dotted in modules else node.module.removeprefix("polhode."))
+def by_folder(graph: dict[str, set[str]], depth: int, separator: str) -> dict[str, set[str]]:
+    """Return the folders that each folder uses, from the files that each file uses."""
+    found: dict[str, set[str]] = {}
+    for name, others in graph.items():
+        folder = name.split(separator)[depth]
+        found.setdefault(folder, set()).update({o.split(separator)[depth] for o in others} - {folder})
     return found
 
 
-def test_python_modules_form_no_circle():
-    paths = {module_name(path): path for path in PACKAGE.rglob("*.py")}
-    graph = {name: module_imports(path, set(paths)) for name, path in paths.items()}
-    assert "_generic.exact" in graph["_generic.coefficients"]
-    done: set[str] = set()
-
-    def visit(name: str, path: tuple[str, ...]) -> None:
-        assert name not in path, " -> ".join((*path, name))
-        if name not in done:
-            for other in graph.get(name, set()):
-                visit(other, (*path, name))
-            done.add(name)
-
-    for name in graph:
-        visit(name, ())
+def test_python_files_form_no_circle():
+    """Imports inside functions count; only a package and what is in it may import each other."""
+    graph = import_graph(PACKAGE)
+    assert "polhode._algebra.rotor" in graph["polhode._algebra.interpolation"]
+    assert "polhode._viewer.server" in graph["polhode._cli.main"]
+    assert circles(graph) == []
 
 
-def test_the_package_does_not_use_the_strategies_for_tests():
-    used = {
-        path.name for path in PACKAGE.rglob("*.py") if "strategies" in module_imports(path, {"strategies"})
+def test_python_folders_import_downwards():
+    def placed(name: str) -> str:
+        return re.sub(r"^polhode\.(event|force|torque)$", r"polhode._mechanics.\1", name)
+
+    graph = {
+        placed(name): {placed(other) for other in others - {"polhode"}}
+        for name, others in import_graph(PACKAGE).items()
+        if "." in name
     }
-    assert not used
+    folders = by_folder(graph, 1, ".")
+    assert set(FOLDERS) | {"strategies"} == set(folders) - {"_native"}
+    for folder, others in folders.items():
+        allowed = FOLDERS if folder == "strategies" else FOLDERS[: FOLDERS.index(folder)]
+        assert others - {"_native"} <= set(allowed), folder
+
+
+@pytest.mark.parametrize("crate", ["ga", "rigid", "py", "wasm"])
+def test_rust_files_form_no_circle(crate):
+    graph = uses_of_files(ROOT / "crates" / crate / "src")
+    assert len(graph) > 3
+    assert circles(graph) == []
+
+
+def test_viewer_files_and_folders_form_no_circle():
+    graph = imports(ROOT / "viewer/src")
+    assert circles(graph) == []
+    folders = by_folder(graph, 0, "/")
+    assert circles(folders) == []
+    assert "panels" not in folders["vary"]
+
+
+def test_circles_are_found():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"a"}}) == [["b", "c"]]
 
 
 def test_importing_needs_numpy_only():
@@ -104,5 +128,9 @@ def test_paths_named_in_the_guides_exist(guide):
     assert guide != "ARCHITECTURE.md" or len(named) > 10
 
 
-def test_architecture_is_short():
+def test_architecture_is_one_page():
     assert len((ROOT / "ARCHITECTURE.md").read_text().splitlines()) <= 100
+
+
+def test_few_modules_lie_directly_in_the_package():
+    assert len(list(PACKAGE.glob("*.py"))) + len(list(PACKAGE.glob("*.pyi"))) <= 12

@@ -83,7 +83,7 @@ impl Element for f32 {
     }
 }
 
-/// A function of two rows, one by one: the numbers that it gives as a `Kernel`.
+/// A function of two rows, one by one: the numbers that it gives as a [`Kernel`].
 pub(crate) trait ByRow: Sync {
     /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
     const FAST_ROWS: bool = false;

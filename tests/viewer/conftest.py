@@ -9,10 +9,9 @@ from missing import left_out
 from node_core import node_core
 from polhode._viewer import document as _document
 from polhode._viewer import html
+from studios import require_browser
 from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
-
-BUNDLE = ROOT / "python/polhode/_viewer/viewer.js"
 
 
 def pytest_terminal_summary(terminalreporter):
@@ -51,15 +50,9 @@ def follow(tmp_path_factory):
 @pytest.fixture(scope="package")
 def browser():
     """Chromium, one for all tests. Its driver must end with this directory: it holds an event loop."""
-    if not BUNDLE.exists():
-        left_out("the viewer was not built: make viewer")
-    try:
-        from playwright.sync_api import sync_playwright
-    except ImportError:
-        left_out("playwright was not found")
-    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if path is None:
-        left_out("Chromium was not found")
+    path = require_browser()
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=list(CHROMIUM), chromium_sandbox=False)
         yield browser

@@ -1,19 +1,23 @@
-import { effect, type ReadonlySignal } from "@preact/signals";
+import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { render } from "preact";
 import { Problem, State } from "./core/core.ts";
 import { loadCore } from "./core/wasm.ts";
 import { type PageDocument, parsed, type ViewState } from "./document.ts";
 import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
-import type { Palette } from "./palette.ts";
+import { LIGHT, type Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
 import { bindKeys, takeAtEnter } from "./panels/keys.ts";
 import { mayMove, openPreset, PRESETS } from "./presets/index.ts";
+import { type PictureOptions, Stage } from "./stage/stage.ts";
 import styles from "./theme.css?inline";
 
 /** From this width on, in px, panels stand beside the picture: the same as in theme.css. */
 const WIDE = 900;
+
+/** For print. */
+const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
 
 /**
  * `<polhode-viewer>`: a motion, its read-outs and its controls. It shows the document that it is given by its property
@@ -29,10 +33,15 @@ export class PolhodeViewer extends HTMLElement {
   ready: Promise<Model>;
 
   private resolve!: (model: Model) => void;
+  /** Rejected where the viewer cannot start. */
+  private readonly failure: Promise<never>;
+  private fail!: (error: unknown) => void;
   private given: PageDocument | null = null;
   private model: Model | null = null;
   private palette: ReadonlySignal<Palette> | null = null;
   private leave: (() => void)[] = [];
+  /** What `capture` draws with. */
+  private studio: Stage | null = null;
   private readonly place: HTMLElement;
   /** Not in the attribute `style`, which is the embedding page's. */
   private readonly colours = document.createElement("style");
@@ -40,6 +49,8 @@ export class PolhodeViewer extends HTMLElement {
   constructor() {
     super();
     this.ready = new Promise((resolve) => (this.resolve = resolve));
+    this.failure = new Promise<never>((_, reject) => (this.fail = reject));
+    this.failure.catch(() => {});
     const root = this.attachShadow({ mode: "open" });
     const style = document.createElement("style");
     style.textContent = styles;
@@ -153,6 +164,7 @@ export class PolhodeViewer extends HTMLElement {
       this.model.problem.value = words(error);
       return;
     }
+    this.fail(error);
     this.dataset["state"] = "problem";
     render(
       <div class="notice" role="alert">
@@ -163,8 +175,24 @@ export class PolhodeViewer extends HTMLElement {
     );
   };
 
+  /**
+   * Draws the state at a time, for films and figures: on white, with its labels, without the page around it. No clock
+   * runs; the same time gives the same picture.
+   *
+   * Returns a PNG in base64.
+   */
+  async capture(time: number, options: PictureOptions): Promise<string> {
+    const model = await Promise.race([this.ready, this.failure]);
+    if (model.problem.value !== null) throw new Problem(model.problem.value);
+    this.studio ??= new Stage(document.createElement("div"), model, signal(PAPER));
+    model.playing.value = false;
+    model.seek(time);
+    if (model.time.value !== time) throw new Problem(`the motion is not known at t = ${time} s`);
+    return this.studio.picture(options).toDataURL("image/png").replace(/^.*,/, "");
+  }
+
   private draw(model: Model): void {
-    if (!this.palette) return;
+    if (!this.palette || this.hasAttribute("bare")) return;
     const compact = this.hasAttribute("compact");
     const wide = this.clientWidth >= WIDE;
     render(<App model={model} palette={this.palette} compact={compact} wide={wide} />, this.place);
@@ -206,6 +234,8 @@ export class PolhodeViewer extends HTMLElement {
   private stop(): void {
     for (const leave of this.leave) leave();
     this.leave = [];
+    this.studio?.dispose();
+    this.studio = null;
     render(null, this.place);
     this.model?.dispose();
     if (this.model) this.ready = new Promise((resolve) => (this.resolve = resolve));

@@ -105,13 +105,18 @@ def frame_picture(axes: Axes, points: Array, margin: float) -> None:
 
 
 def view_of(view: Any) -> View:
-    """Return the look that a caller asks for: azimuth and elevation in degrees, or None for the usual one."""
+    """Return the view that a caller asks for, as `angles_of`; the usual one for None."""
+    return View(*(angles_of(view) or USUAL))
+
+
+def angles_of(view: Any) -> tuple[float, float] | None:
+    """Return azimuth and elevation in degrees, or None for None; a ValueError for anything else."""
     if view is None:
-        return View()
+        return None
     angles = as_floats(view, "view")
     if angles.shape != (2,) or not np.isfinite(angles).all():
         raise ValueError(f"view is {view!r}; it must be azimuth and elevation in degrees, such as (35, 22)")
-    return View(*angles)
+    return float(angles[0]), float(angles[1])
 
 
 def _with_crossings(points: Array, facing: Array) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._figures.camera import view_of
+from polhode._figures.camera import angles_of
 from polhode._figures.spheres import axis_figure, orbit_figure, polhode_figure
 from polhode._figures.style import main_axis, motion_figure, require_times
 from polhode._report.describe import kind_of, long_axis, orbit_of, weight, wheel
@@ -53,7 +53,9 @@ def check(kind: str, view: Any, time: float | None) -> None:
         raise ValueError(f"view is for the kinds {', '.join(_SEEN)}; {kind!r} has no depth")
     if time is not None and kind != "scene":
         raise ValueError(f"time is for the kind 'scene'; {kind!r} shows all times")
-    view_of(view)
+    angles_of(view)
+    if kind == "scene":
+        optional("playwright", "film", "a figure of kind 'scene'")
 
 
 def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
@@ -139,7 +141,7 @@ def _phase(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
 
 
 def _scene(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures.stage import scene_figure
+    from polhode._figures.scene import scene_figure
 
     return scene_figure(trajectory, view, time)
 

@@ -28,7 +28,7 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._native import SceneError
 from polhode._scene.scene import Scene
 from polhode._scene.writer import Problem, UnwritableError
-from polhode._support.arrays import as_float
+from polhode._support.arrays import Array, as_float
 from polhode._support.packing import packed, unpacked
 from polhode._viewer.recording import recorded
 from polhode.torque import Torque, damping, heavy, larmor, settled
@@ -130,16 +130,19 @@ def of_file(path: Path) -> Document:
     return of_scene(Scene.read(path))
 
 
-def of_trajectory(trajectory: Trajectory, path: Path = Path("motion.nc")) -> Document:
+def of_trajectory(
+    trajectory: Trajectory, path: Path = Path("motion.nc"), times: Array | None = None
+) -> Document:
     """Return the document of one body's motion, which was read from a path.
 
-    The mesh of a scene that came with a file is looked for beside that file.
+    The mesh of a scene in a file is looked for beside that file. At `times` (n,), in s, the page shows the
+    states of `Trajectory.at`, if the motion has states between the output times.
     """
     trajectory._require_one("the viewer")
     shown, origin = _live(trajectory, path)
     if "scene" in shown and trajectory.certificate.method == "exact":
         return shown
-    return {**shown, "recorded": recorded(trajectory, origin, "files" in shown)}
+    return {**shown, "recorded": recorded(trajectory, origin, "files" in shown, times)}
 
 
 def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem | None]:

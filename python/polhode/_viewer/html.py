@@ -50,16 +50,17 @@ def bundle_path() -> Path:
     return _BUNDLE
 
 
-def page(shown: Document) -> str:
-    """Return a page that shows a document: one file of HTML, without anything from outside.
+def page(shown: Document, bare: bool = False) -> str:
+    """Return a page that shows a document: one file of HTML that loads nothing else.
 
-    A FileNotFoundError where the viewer was not built.
+    A bare one draws nothing by itself; it takes pictures. A FileNotFoundError if the viewer was not built.
     """
     data = json.dumps(shown, allow_nan=False).replace("<", "\\u003c")
     return _PAGE.format(
         policy=f'\n<meta http-equiv="Content-Security-Policy" content="{_INLINE_POLICY}">',
         title=_title(title_of(shown)),
-        element=f'<polhode-viewer><script type="application/json">{data}</script></polhode-viewer>',
+        element=f"<polhode-viewer{' bare' * bare}>"
+        f'<script type="application/json">{data}</script></polhode-viewer>',
         script=f'<script type="module">\n{_inline(bundle_path().read_text(encoding="utf-8"))}</script>',
     )
 

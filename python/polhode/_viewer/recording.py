@@ -35,7 +35,9 @@ _MOST_ROWS = 20_000
 _SOME = 101
 
 
-def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool) -> dict[str, str]:
+def recorded(
+    trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool, times: Array | None = None
+) -> dict[str, str]:
     """Return what a page needs to show the motion of one body without following it again.
 
     At most 20,000 rows, evenly chosen among the output times. Where the motion is known between these, and
@@ -48,14 +50,16 @@ def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool)
     origin
         What was run, or asked for; None where that is not known.
     mesh
-        Whether the document brings the mesh of its scene.
+        Whether the document has the mesh of its scene.
+    times
+        More times (n,), in s, to have rows of, if the motion has states between the output times.
 
     Raises
     ------
     ValueError
         If the motion does not go beyond its start, or has numbers that are not finite.
     """
-    points = _points(trajectory, origin)
+    points = _points(trajectory, origin, np.empty(0) if times is None else times)
     rows = _rows(points)
     if not (finite := np.isfinite(rows).all(axis=1)).all():
         when = points.time[np.argmin(finite)]
@@ -82,10 +86,11 @@ def state_at(given: dict[str, str], time: float) -> State:
     return State(rotor, bivector(row[5:8]), vector(row[18:21]), vector(row[21:24]), time=when)
 
 
-def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
+def _points(trajectory: Trajectory, origin: Scene | Problem | None, more: Array) -> _Points:
     """Return the states that are kept: from the start on, or from the first one where no start is known."""
     times = trajectory.time
     first = float(origin.state.time) if origin is not None else float(times[0]) if len(times) else 0.0
+    first = float(min([first, *more]))
     last = float(times[-1]) if len(times) else first
     if last <= first:
         raise ValueError(
@@ -99,10 +104,10 @@ def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
         intervals = len(met) - 1
         # Equal parts of each interval, so that the output times stay among them.
         parts = min(math.ceil(rate * (last - first) / _TURN / intervals), (_MOST_ROWS - 1) // intervals)
-        if parts > 1 or times[0] != first:
+        if parts > 1 or times[0] != first or len(more):
             parts = max(parts, 1)
             closer = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), met)
-            return _Points.of(trajectory._motion.at(closer))
+            return _Points.of(trajectory._motion.at(np.union1d(closer, more)))
     # Output times may stand twice, and before the start.
     rising = np.flatnonzero((np.diff(times, prepend=-np.inf) > 0) & (times >= first))
     if len(rising) < 2:

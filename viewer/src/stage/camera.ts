@@ -69,6 +69,14 @@ export class Viewpoint {
     this.changed();
   }
 
+  /** Looks from an azimuth, from e1 towards e2, and an elevation above e1∧e2, in degrees. */
+  from(azimuth: number, elevation: number): void {
+    this.move = null;
+    const radians = Math.PI / 180;
+    // Spherical coordinates about y have their zero at z, where TO_Y puts −e2.
+    this.stand(new Spherical(this.fit, (90 - elevation) * radians, (azimuth + 90) * radians));
+  }
+
   get moving(): boolean {
     return this.move !== null;
   }

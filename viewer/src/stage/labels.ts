@@ -3,6 +3,10 @@ import { type Camera, type Matrix4, type Vector2, Vector3 } from "three";
 /** CSS pixels. */
 const HEIGHT = 19;
 const GAP = 5;
+/** Of letters below the top of a label, of an index below that, and the width of the halo. */
+const BASELINE = 14;
+const DROP = 4;
+const HALO = 4;
 /** Labels have values on a canvas at least so wide. */
 const ROOMY = 520;
 const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
@@ -20,11 +24,14 @@ export class Label {
   private readonly value = document.createElement("span");
   private readonly symbolWidth: number;
   private valueWidth = 0;
+  private color = "";
+  /** Where it was placed last; null where it is hidden or found no room. */
+  place: Point | null = null;
   /** On which side of its point it stands, right and up; null for that away from the centre. */
   side: Point | null = null;
 
   constructor(
-    symbol: string,
+    private readonly symbol: string,
     readonly style: { index?: number | string; rank: number },
     private readonly gone: (label: Label) => void,
   ) {
@@ -67,7 +74,31 @@ export class Label {
   }
 
   paint(color: string): void {
-    this.element.style.color = color;
+    this.element.style.color = this.color = color;
+  }
+
+  /** Draws what the element shows, with a halo, where it was placed. */
+  draw(context: CanvasRenderingContext2D, background: string): void {
+    if (!this.place) return;
+    const write = (text: string, font: string, x: number, y: number): void => {
+      context.font = `${font} ${FAMILY}`;
+      context.strokeText(text, x, y);
+      context.fillText(text, x, y);
+    };
+    const { x, y } = this.place;
+    [context.strokeStyle, context.fillStyle] = [background, this.color];
+    [context.lineWidth, context.lineJoin] = [HALO, "round"];
+    const letter = `italic ${SIZES.letter}px`;
+    write(this.symbol, letter, x, y + BASELINE);
+    if (this.style.index !== undefined)
+      write(
+        String(this.style.index),
+        `${SIZES.small}px`,
+        x + measured(this.symbol, letter),
+        y + BASELINE + DROP,
+      );
+    if (this.value.style.display !== "none")
+      write(this.value.textContent ?? "", `${SIZES.small}px`, x + this.symbolWidth + GAP, y + BASELINE);
   }
 
   dispose(): void {
@@ -92,6 +123,7 @@ interface Box {
 export class Labels {
   readonly element = document.createElement("div");
   private labels: Label[] = [];
+  private background = "";
 
   constructor() {
     // What they say, the description of the canvas and the panels say too.
@@ -113,9 +145,15 @@ export class Labels {
 
   /** A halo of the background parts letters from lines behind them. */
   paint(background: string): void {
+    this.background = background;
     this.element.style.textShadow = [1, 1, 2, 2, 3, 3]
       .map((blur) => `0 0 ${blur}px ${background}`)
       .join(", ");
+  }
+
+  /** Draws the labels where they were placed last, on a canvas in CSS pixels. */
+  draw(context: CanvasRenderingContext2D): void {
+    for (const label of this.labels) label.draw(context, this.background);
   }
 
   place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
@@ -125,12 +163,14 @@ export class Labels {
     const taken: Box[] = [];
     const centre = onScreen(new Vector3().setFromMatrixPosition(space), camera, width, height);
     for (const label of this.labels) {
+      label.place = null;
       if (label.hidden) continue;
       const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
       const box = free(around(point, centre, label.width(width < ROOMY), label.side), taken, width, height);
       label.element.style.visibility = box ? "" : "hidden";
       if (!box) continue;
       taken.push(box);
+      label.place = { x: box.left, y: box.top };
       label.element.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;
     }
   }

@@ -78,7 +78,9 @@ export class Paths implements Part {
       ? [shown.trace, shown.herpolhode]
       : [shown.trace, shown.herpolhode, shown.polhode];
     if (!this.figure || !all.includes(true)) return;
-    if (!(Math.abs(time - this.middle) <= this.tail / 2)) this.ask(this.figure, time);
+    // The stretch follows from the time alone, so that a time always has the same picture.
+    const middle = this.tail * Math.round(time / this.tail);
+    if (middle !== this.middle) this.ask(this.figure, middle);
     const since = time - this.middle;
     this.trace.fade(since / this.tail, AHEAD);
     this.herpolhode.fade(since / this.turns, AHEAD);

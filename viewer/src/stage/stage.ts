@@ -34,6 +34,25 @@ export class NoWebGL extends Error {}
 
 const LOST = "The graphics card has let go of the picture; it is drawn again as soon as that can be.";
 
+/** A picture of the stage, as wide and high as it says, in pixels. */
+export interface PictureOptions {
+  width: number;
+  height: number;
+  /** Pixels in a CSS pixel, in which letters and lines are measured. */
+  scale: number;
+  /** For how many seconds the motion has played: arrowheads run around the rims of the discs. */
+  played?: number;
+  /** To look from, in degrees: the azimuth from e1 towards e2, the elevation above e1∧e2. Else from the model's camera. */
+  view?: [azimuth: number, elevation: number];
+  /** Texts above and below. */
+  title?: string;
+  note?: string;
+}
+
+/** Texts of a picture, and their distance from its edges in CSS pixels. */
+const CAPTION = '15px "DejaVu Sans", "Liberation Sans", system-ui, sans-serif';
+const MARGIN = 16;
+
 /** The longest time that a frame lets pass: a page that was hidden goes on from where it was. */
 const LONGEST = 0.1;
 
@@ -206,6 +225,35 @@ export class Stage {
     this.frame(performance.now());
   };
 
+  /** Draws the present with its labels, at once and in any size. For a stage whose host has none. */
+  picture(options: PictureOptions): HTMLCanvasElement {
+    const { width, height, scale, view, title = "", note = "" } = options;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [width, height];
+    const size = new Vector2(width / scale, height / scale);
+    if (!size.equals(this.screen.value)) {
+      this.renderer.setPixelRatio(1);
+      this.renderer.setSize(width, height, false);
+      this.screen.value.copy(size);
+      this.viewpoint.resize(width, height);
+    }
+    this.played = options.played ?? 0;
+    if (view) {
+      this.camera = this.model.camera.peek();
+      this.viewpoint.from(...view);
+    }
+    this.show();
+    const context = canvas.getContext("2d")!;
+    context.drawImage(this.canvas, 0, 0);
+    context.scale(scale, scale);
+    this.labels.draw(context);
+    context.fillStyle = this.palette.peek().text;
+    context.font = CAPTION;
+    context.fillText(title, MARGIN, MARGIN + 11);
+    context.fillText(note, MARGIN, size.y - MARGIN);
+    return canvas;
+  }
+
   private readonly frame = (now: number): void => {
     this.request = 0;
     const began = performance.now();
@@ -218,7 +266,7 @@ export class Stage {
         this.played += passed;
       }
       this.viewpoint.step(passed);
-      this.show();
+      if (this.seen) this.show();
     } finally {
       this.drawing = false;
     }
@@ -236,7 +284,6 @@ export class Stage {
   /** Draws the present. */
   private show(): void {
     const { model, renderer, viewpoint } = this;
-    if (!this.seen) return;
     const shown = model.shown.peek();
     this.follow();
     this.paint();

@@ -1,4 +1,4 @@
-"""The three figures of the handout; every number in them comes from the algebra."""
+"""The three figures of the handout, computed with the algebra."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def swept_trivector(a: Multivector, b: Multivector, c: Multivector) -> Figure:
     sense = "right" if swept > 0 else "left"
     explain(
         figure,
-        f"a = {_told(a)}, b = {_told(b)}, c = {_told(c)}: a∧b = {_told(a ^ b)}, and swept along c "
+        f"a = {_text(a)}, b = {_text(b)}, c = {_text(c)}: a∧b = {_text(a ^ b)}, and swept along c "
         f"a∧b∧c = {swept:.4g} I, the volume with its sense, {sense}-handed (handout eq. 1.2 and 1.3).",
     )
     return figure
@@ -98,16 +98,16 @@ def turned_vector(a: Multivector, B: Multivector, angle: float) -> Figure:
     frame_picture(axes, view.project(np.concatenate([rim, tips_of])), 0.22)
     explain(
         figure,
-        f"B = {_told(plane)} with B² = {_told(plane | plane)}, θ = {np.degrees(angle):.4g}°, "
-        f"R = {_told(R)}. a = {_told(a)} goes to a' = {_told(turned)}: the part a∥ = (a·B) B⁻¹ in the plane "
-        f"turns by θ in its sense, a⊥ = (a∧B) B⁻¹ stays (handout eq. 2.4).",
+        f"B = {_text(plane)} with B² = {_text(plane | plane)}, θ = {np.degrees(angle):.4g}°, "
+        f"R = {_text(R)}. a = {_text(a)} goes to a' = {_text(turned)}: the part a∥ = (a·B) B⁻¹ in the plane "
+        f"turns by θ in its sense, a⊥ = (a∧B) B⁻¹ does not change (handout eq. 2.4).",
     )
     return figure
 
 
 @in_our_look
 def inertia_of_plane(body: Body, lengths: Any, B: Multivector) -> Figure:
-    """Figure 3: the inertia map of a box takes the plane of rotation B to I(B), in general in another one."""
+    """Figure 3: the inertia map of a box takes the plane of rotation B to I(B), in general another plane."""
     L = body.inertia(B)
     figure, axes = _picture("The inertia tensor takes the plane of rotation B to I(B)")
     view = View(32, 20)
@@ -132,15 +132,15 @@ def inertia_of_plane(body: Body, lengths: Any, B: Multivector) -> Figure:
     i = ", ".join(f"{x:.4g}" for x in body.inertia.principal_moments)
     explain(
         figure,
-        f"A box with the moments {i} kg m²: B = {_told(B)} rad/s goes to I(B) = {_told(L)} kg m²/s, each "
+        f"A box with the moments {i} kg m²: B = {_text(B)} rad/s goes to I(B) = {_text(L)} kg m²/s, each "
         f"component by its own moment (handout eq. 4.18 and 4.24). The planes meet at {meet:.4g}°. "
-        f"Areas in proportion to |B| and |I(B)|; the thin arrows are their duals.",
+        f"Areas are proportional to |B| and |I(B)|; the thin arrows are their duals.",
     )
     return figure
 
 
 def handout_figure(number: int) -> Figure:
-    """Return figure 1, 2 or 3 of the handout, with numbers chosen to look at."""
+    """Return figure 1, 2 or 3 of the handout, with example values."""
     if number == 1:
         return swept_trivector(0.15 * e1 + 1.5 * e2, -1.2 * e1 + 0.15 * e2, -0.1 * e1 + 0.4 * e2 + 1.05 * e3)
     if number == 2:
@@ -160,8 +160,8 @@ def _picture(title: str) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
-def _told(value: Multivector) -> str:
-    """Return a value with few digits, indices set low, numbers kept beside their blades."""
+def _text(value: Multivector) -> str:
+    """Return a value with few digits, subscripts, and no line break before a blade."""
     text = repr(value.map(np.vectorize(lambda x: float(f"{x:.4g}"))))
     for k in "123":
         text = text.replace(f"e{k}", f"e{'₁₂₃'[int(k) - 1]}")
@@ -190,7 +190,7 @@ def _write(
 
 
 def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
-    """Draw the solid of three edges (3, 3): its first face and later ones on the way, edges behind dashed."""
+    """Draw the solid of three edges (3, 3) with its swept face at four places; edges behind are dashed."""
     a, b, c = edges
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     base = square @ edges[:2]
@@ -200,7 +200,7 @@ def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
         if 0 < share < 1:
             axes.fill(*flat.T, facecolor="none", edgecolor=_ORANGE, lw=0.5, alpha=0.5, zorder=2)
     hand = np.sign(np.linalg.det(edges))
-    # Which of the two faces across each edge vector looks at us: that at its end, or that at its start.
+    # For each edge vector, whether the face at its end, and not that at its start, is towards us.
     at_end = [float(hand * np.cross(*others) @ view.toward) > 0 for others in ((b, c), (c, a), (a, b))]
     for k in range(3):
         first, second = (k + 1) % 3, (k + 2) % 3
@@ -216,7 +216,7 @@ def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
 
 
 def _arrowprops(colour: str, width: float, head: float) -> dict[str, Any]:
-    """Return how matplotlib draws an arrow from end to end."""
+    """Return the properties of an arrow that ends exactly at its points."""
     return {
         "arrowstyle": "-|>",
         "color": colour,

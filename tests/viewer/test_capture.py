@@ -3,6 +3,7 @@
 import asyncio
 import io
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -63,8 +64,8 @@ def test_the_state_is_that_of_the_motion_at_the_time(torque):
             studio.capture(float(time))
             found, state = shown(studio), moved.at(time)
             assert found["time"] == time
-            # The page computes an exact motion with other instructions, and turns a row's rotor by nothing: a few
-            # units in the last place.
+            # The page computes an exact motion with other instructions, and interpolates at rows: a few units in
+            # the last place.
             atol = 1e-14
             np.testing.assert_allclose(found["rotor"], state.rotor.components, rtol=0, atol=atol)
             np.testing.assert_allclose(found["omega_body"], state.omega_body.components, rtol=0, atol=atol)
@@ -113,13 +114,14 @@ def test_times_outside_of_the_motion_are_refused():
 
 
 def test_it_runs_inside_an_event_loop():
-    """As in a notebook, where Playwright refuses to run."""
+    """As in a notebook, where Playwright refuses to run. In a thread: ours may have a loop already."""
 
     async def cell():
         with opened(motion()) as studio:
             return studio.capture(0.0)
 
-    assert asyncio.run(cell()).startswith(b"\x89PNG")
+    with ThreadPoolExecutor(1) as thread:
+        assert thread.submit(lambda: asyncio.run(cell())).result().startswith(b"\x89PNG")
 
 
 def test_figures_have_the_picture():

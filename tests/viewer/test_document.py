@@ -349,7 +349,7 @@ def test_what_cannot_be_shown_is_said():
             document.document(*arguments, **named)
 
     scene = ph.Scene.read(EXAMPLES / "toutatis.toml")
-    refused(TypeError, "cannot show what is of type int", 3)
+    refused(TypeError, "cannot show a value of type int", 3)
     refused(TypeError, "give its state", MOMENTS)
     refused(TypeError, "torque cannot be given for a Scene", scene, torque=T.damping(1))
     refused(TypeError, "duration cannot be given for a Scene, which has its own", scene, duration=3)

@@ -175,7 +175,7 @@ def test_a_picture_that_was_lost_comes_back(opened, follow):
             window.loss.loseContext();
         }"""
     )
-    message = page.page.get_by_role("status").get_by_text("let go of the picture")
+    message = page.page.get_by_role("status").get_by_text("graphics context was lost")
     message.wait_for()
     page.compare(follow("t-handle"))
     page.page.evaluate("window.loss.restoreContext()")

@@ -99,7 +99,7 @@ def test_only_this_machine_is_answered(served):
     for host in others:
         for path in ("/", "/viewer.js", "/document.json"):
             status, _, content = answer(served, path, host=host)
-            assert (status, content) == (403, b"this is no name of this server\n")
+            assert (status, content) == (403, b"not a host name of this server\n")
     assert not served.verify_request(None, ("192.0.2.1", 5))
 
 

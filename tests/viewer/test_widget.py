@@ -200,7 +200,7 @@ def test_the_scene_of_the_page_runs_here():
 def test_a_recording_cannot_be_run():
     viewer = ph.view(INERTIA, START, lambda t, R, W: -0.1 * W, duration=1)
     assert viewer.scene is None
-    with pytest.raises(ValueError, match="no scene says it"):
+    with pytest.raises(ValueError, match="is a recording without a scene"):
         viewer.run()
 
 
@@ -263,9 +263,9 @@ def test_the_names_are_those_of_the_page(line):
     view = re.search(r"interface ViewState {(.*?)\n}", text, flags=re.DOTALL)[1]
     assert tuple(re.findall(r"^  (\w+):", view, flags=re.MULTILINE)) == _widget._VIEW
     drawn = re.search(r"interface Shown {(.*?)\n}", text, flags=re.DOTALL)[1]
-    told = re.search(r"What is drawn, by name: (.*?)\.", _widget.Viewer.__doc__, flags=re.DOTALL)[1]
+    listed = re.search(r"Visibility by name: (.*?)\.", _widget.Viewer.__doc__, flags=re.DOTALL)[1]
     names = re.findall(r"^  (\w+):", drawn, flags=re.MULTILINE)
-    assert re.split(r",\s+", told) == names == list(_widget.DRAWN)
+    assert re.split(r",\s+", listed) == names == list(_widget.DRAWN)
     # What the page tells is taken, and what it hears is sent.
     widget = (ROOT / "viewer/src/widget.ts").read_text()
     says = re.search(r"function told\(.*?return {(.*?)\n  };", widget, flags=re.DOTALL)[1]

@@ -5,10 +5,10 @@ import type { Figure } from "./figure.ts";
 import type { Instant, Part } from "./part.ts";
 import { type Look, look, type Surface } from "./surface.ts";
 
-/** Tints of faces: plain, the other quadrants, and the sides across axes 1, 2 and 3. */
+/** Tints of faces: plain, alternate quadrants, and the sides perpendicular to axes 1, 2 and 3. */
 const TINTS = 5;
 
-/** The body. Sides of a box and quadrants of what is round have tints of their own, so that one sees how it turns. */
+/** The body. Sides of boxes and quadrants of round solids have different tints, so that their rotation is visible. */
 export class Body implements Part {
   readonly inBody = new Group();
   private readonly materials = Array.from({ length: TINTS }, () => new MeshLambertMaterial());
@@ -38,7 +38,7 @@ export class Body implements Part {
   update(_: Instant, shown: Shown): void {
     this.inBody.visible = shown.body;
     for (const material of this.materials) {
-      // What is inside and behind shall be seen with Poinsot's construction.
+      // Transparent with Poinsot's construction, which is inside and behind it.
       if (material.transparent === shown.poinsot) continue;
       material.transparent = shown.poinsot;
       material.opacity = shown.poinsot ? 0.55 : 1;
@@ -60,7 +60,7 @@ export class Body implements Part {
   }
 }
 
-/** Edges lie in the faces: they are seen a little nearer, in the same place of the picture. */
+/** Edges lie in faces: they are drawn slightly nearer, at the same place in the picture. */
 function inkOfEdges(): LineBasicMaterial {
   const ink = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
   ink.onBeforeCompile = (shader) => {
@@ -81,7 +81,7 @@ function quadrant(_: readonly number[], [x, y]: readonly number[]): number {
   return x! * y! > 0 ? 1 : 0;
 }
 
-/** While a slider moves, motions follow each other fast, mostly of the same body. */
+/** While a slider moves, motions change often, and mostly have the same surface. */
 function same(a: Surface, b: Surface): boolean {
   return (
     a.vertices.length === b.vertices.length &&

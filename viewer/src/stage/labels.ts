@@ -3,20 +3,20 @@ import { type Camera, type Matrix4, type Vector2, Vector3 } from "three";
 /** CSS pixels. */
 const HEIGHT = 19;
 const GAP = 5;
-/** Of letters below the top of a label, of an index below that, and the width of the halo. */
+/** The baseline below the top of a label, that of an index below it, and the width of the halo. */
 const BASELINE = 14;
 const DROP = 4;
 const HALO = 4;
-/** Labels have values on a canvas at least so wide. */
+/** Labels have values on a canvas of at least this width. */
 const ROOMY = 520;
 const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
 const SIZES = { letter: 17, small: 13 };
-/** Measures texts; to ask the page for their width in each frame would lay it out anew. */
+/** Measures texts; measuring elements in each frame would cause a new layout. */
 const ruler = document.createElement("canvas").getContext("2d")!;
-/** Where a label goes that would lie on another: so many heights up or down. */
+/** Shifts of a label that would overlap another, in heights. */
 const PLACES = [0, -1, 1, -2, 2];
 
-/** A label of a point, in the italic letters of formulas with an index, and perhaps a value. */
+/** A label of a point: an italic symbol, with an index or a value. */
 export class Label {
   /** In space axes, in drawn units. */
   readonly at = new Vector3();
@@ -25,9 +25,9 @@ export class Label {
   private readonly symbolWidth: number;
   private valueWidth = 0;
   private color = "";
-  /** Where it was placed last; null where it is hidden or found no room. */
+  /** Its last place; null if it is hidden or there was no room. */
   place: Point | null = null;
-  /** On which side of its point it stands, right and up; null for that away from the centre. */
+  /** The side of its point that it is on, right and up; null for away from the centre. */
   side: Point | null = null;
 
   constructor(
@@ -63,7 +63,7 @@ export class Label {
     this.valueWidth = value ? GAP + measured(value, `${SIZES.small}px`) : 0;
   }
 
-  /** The width; without its value where there is little room. */
+  /** Its width, without the value if `short`. */
   width(short: boolean): number {
     this.value.style.display = short ? "none" : "";
     return this.symbolWidth + (short ? 0 : this.valueWidth);
@@ -77,7 +77,7 @@ export class Label {
     this.element.style.color = this.color = color;
   }
 
-  /** Draws what the element shows, with a halo, where it was placed. */
+  /** Draws the label at its last place, with a halo. */
   draw(context: CanvasRenderingContext2D, background: string): void {
     if (!this.place) return;
     const write = (text: string, font: string, x: number, y: number): void => {
@@ -119,14 +119,14 @@ interface Box {
   bottom: number;
 }
 
-/** The layer of labels over the canvas. Those of low rank get their place first; who finds none is not seen. */
+/** The layer of labels over the canvas. Labels of low rank are placed first; those without room are hidden. */
 export class Labels {
   readonly element = document.createElement("div");
   private labels: Label[] = [];
   private background = "";
 
   constructor() {
-    // What they say, the description of the canvas and the panels say too.
+    // The description of the canvas and the panels have the same content.
     this.element.setAttribute("aria-hidden", "true");
     this.element.style.cssText =
       "position: absolute; inset: 0; overflow: hidden; pointer-events: none; user-select: none; " +
@@ -143,7 +143,7 @@ export class Labels {
     return label;
   }
 
-  /** A halo of the background parts letters from lines behind them. */
+  /** A halo in the colour of the background separates letters from lines. */
   paint(background: string): void {
     this.background = background;
     this.element.style.textShadow = [1, 1, 2, 2, 3, 3]
@@ -151,7 +151,7 @@ export class Labels {
       .join(", ");
   }
 
-  /** Draws the labels where they were placed last, on a canvas in CSS pixels. */
+  /** Draws the labels at their last places, in CSS pixels. */
   draw(context: CanvasRenderingContext2D): void {
     for (const label of this.labels) label.draw(context, this.background);
   }
@@ -187,8 +187,7 @@ function onScreen(point: Vector3, camera: Camera, width: number, height: number)
 }
 
 /**
- * The box of a label beside a point. Without a side of its own it goes away from the centre, so far that the point is
- * not in it; else beyond the line through the point across that side.
+ * The box of a label beside a point: away from the centre until the point is outside, or on the given side.
  */
 function around(point: Point, centre: Point, width: number, side: Point | null): Box {
   let [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];

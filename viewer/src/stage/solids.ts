@@ -14,9 +14,9 @@ import { mergeVertices } from "three/addons/utils/BufferGeometryUtils.js";
 import type { Solid, Triple } from "../core/core.ts";
 import type { Surface } from "./surface.ts";
 
-/** Steps around an axis of revolution. A multiple of four, so that no face lies in two quadrants. */
+/** Steps around an axis of revolution; a multiple of four, so that each face is in one quadrant. */
 const ROUND = 64;
-/** What has no thickness is drawn with this part of its size. */
+/** Relative thickness of thin solids. */
 const THIN = 0.03;
 
 /** The surface of a solid in its own axes, m; axes of revolution lie along e3, as in crates/rigid/src/solids.rs. */
@@ -33,7 +33,7 @@ export function surfaceOf(solid: Solid): Surface {
     case "cylinder":
       return upright(new CylinderGeometry(solid.radius, solid.radius, solid.height, ROUND));
     case "cone":
-      // Three centres it on half its height.
+      // Three centres it at half its height.
       return upright(new ConeGeometry(solid.radius, solid.height, ROUND).translate(0, solid.height / 2, 0));
     case "capsule":
       return upright(new CapsuleGeometry(solid.radius, solid.height, 24, ROUND));
@@ -47,8 +47,8 @@ export function surfaceOf(solid: Solid): Surface {
 }
 
 /**
- * A solid for a body of which the principal moments alone are known: the uniform box that has them, in principal
- * axes, for a mass of 1; a ball where its sides differ by less than a twentieth.
+ * A solid for a body with known principal moments only: the uniform box of mass 1 with these moments; a ball if its
+ * sides differ by less than 5 %.
  */
 export function equivalent(moments: Triple): Solid {
   const [a, b, c] = moments;
@@ -61,7 +61,7 @@ export function equivalent(moments: Triple): Solid {
   return { kind: "box", lengths };
 }
 
-/** Half the section of a spinning top: distances from its axis and heights, for a centre of mass at height 1. */
+/** Profile of a spinning top: radii and heights, for a centre of mass at height 1. */
 const TOP: [number, number][] = [
   [0, 0],
   [0.025, 0.03],
@@ -77,7 +77,7 @@ const TOP: [number, number][] = [
   [0, 1.63],
 ];
 
-/** A spinning top of textbooks: its tip at the origin, its centre of mass at a height along e3, with a stem above. */
+/** A spinning top with its tip at the origin and its centre of mass at a height on e3. */
 export function spinningTop(height: number): Surface {
   const section = new SplineCurve(TOP.map(([radius, along]) => new Vector2(radius, along))).getPoints(24);
   for (const point of section) point.set(Math.max(point.x, 0), point.y).multiplyScalar(height);
@@ -93,7 +93,7 @@ function upright(geometry: BufferGeometry, scale: Triple = [1, 1, 1]): Surface {
   return welded(geometry.rotateX(Math.PI / 2).scale(...scale));
 }
 
-/** Three gives each face vertices of its own; here faces share them. */
+/** Merges vertices: those of Three are separate for each face. */
 function welded(geometry: BufferGeometry): Surface {
   geometry.deleteAttribute("normal").deleteAttribute("uv").computeBoundingSphere();
   const whole = mergeVertices(geometry, 1e-6 * geometry.boundingSphere!.radius);

@@ -6,16 +6,16 @@ export interface Surface {
   faces: ArrayLike<number>;
 }
 
-/** Faces that meet at less than this look like one smooth surface, others have an edge between them. */
+/** Faces that meet at a smaller angle are shaded smoothly; others have an edge between them. */
 const CREASE = Math.cos((35 * Math.PI) / 180);
 
-/** What a surface looks like: faces with normals, in one group for each tint, and the edges where it is sharp. */
+/** Geometry of a surface: faces with normals, one group per tint, and sharp edges. */
 export interface Look {
   faces: BufferGeometry;
   edges: BufferGeometry;
 }
 
-/** The look of a surface; `tint` gives each face a number from its normal and its centre. */
+/** The geometry of a surface; `tint` is the tint of a face by its normal and centre. */
 export function look(
   surface: Surface,
   tint: (normal: readonly number[], centre: readonly number[]) => number = () => 0,
@@ -53,7 +53,7 @@ export function look(
   return { faces: geometry, edges: sharpEdges(surface, normals, around) };
 }
 
-/** For each face its unit normal and its area, twice. */
+/** The unit normal and twice the area of each face. */
 function faceNormals({ vertices, faces }: Surface): Float64Array {
   const normals = new Float64Array((faces.length / 3) * 4);
   for (let f = 0; f < faces.length / 3; f++) {
@@ -75,7 +75,7 @@ function faceNormals({ vertices, faces }: Surface): Float64Array {
   return normals;
 }
 
-/** Which faces meet at each vertex: those of vertex v stand from start[v] to start[v + 1]. */
+/** The faces at each vertex: those of vertex v are faces[start[v]] to faces[start[v + 1] − 1]. */
 function facesAround({ vertices, faces }: Surface): { start: Uint32Array; faces: Uint32Array } {
   const start = new Uint32Array(vertices.length / 3 + 1);
   for (let k = 0; k < faces.length; k++) start[faces[k]! + 1]!++;

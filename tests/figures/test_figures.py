@@ -1,4 +1,4 @@
-"""Figures of every kind: what is drawn is right, read back from what is drawn; files; refusals."""
+"""Figures of every kind: their curves read back from matplotlib, their files, and errors."""
 
 import io
 import pickle
@@ -89,7 +89,7 @@ def test_kinds_that_fit_are_drawn_and_others_are_refused(name, motions):
 
 
 def texts_of(figure):
-    """All texts that are drawn; ticks beyond the ends of an axis are not."""
+    """All visible texts, without those of ticks outside of the limits."""
     found = [figure._suptitle, figure._supxlabel]
     for axes in figure.axes:
         found += [axes.title, axes._left_title, *axes.texts]
@@ -114,7 +114,7 @@ def test_no_two_texts_overlap(name, motions):
             for other, another in boxes[:k]:
                 across = min(box.x1, another.x1) - max(box.x0, another.x0)
                 up = min(box.y1, another.y1) - max(box.y0, another.y0)
-                # Boxes have some air around the letters.
+                # Boxes have margins around the letters.
                 assert min(across, up) < 3, (kind, text, other)
 
 
@@ -204,7 +204,7 @@ VIEWS = [(35, 22), (-120, 5), (200, -40), (0, 0), (0, 90), (77, -90)]
 
 @pytest.mark.parametrize("view", VIEWS)
 def test_the_part_behind_is_dashed_in_every_view(view):
-    """Each point of the polhode is in the half on whose side of the ellipsoid its normal points."""
+    """Each point of the polhode is solid if its normal is towards the viewer, else dashed."""
     motion = free((1, 2, 3), (1, 0.5, -0.25))
     look = View(*view)
     dashed, solid = (
@@ -219,7 +219,7 @@ def test_the_part_behind_is_dashed_in_every_view(view):
         drawn_here = drawn_here[~np.isnan(drawn_here[:, 0])]
         missing = [p for p in flat[chosen] if np.abs(drawn_here - p).max(axis=1).min() > 1e-12]
         assert not missing
-        # And nothing else but where it passes the outline, an end of each stretch.
+        # Besides, only the points on the outline.
         assert len(drawn_here) - chosen.sum() <= np.count_nonzero(np.diff(ours))
 
 
@@ -243,7 +243,7 @@ def test_the_herpolhode_is_in_its_plane_between_its_circles():
     (curve, *_), momentum = of_colour(motion.plot("herpolhode").axes[0], HERPOLHODE), motion.momentum_space[0]
     direction = momentum / float(momentum.norm())
     omega = samples(motion).rotor(samples(motion).omega_body)
-    # |ω|² is that in the plane and that of the plane's distance, 2E/|L|.
+    # |ω|² is the sum of the squares of the part in the plane and of its distance, 2E/|L|.
     distance = 2 * motion.energy[0] / float(momentum.norm())
     np.testing.assert_allclose(-(omega | direction).components[..., 0], distance, rtol=1e-12)
     radii = np.hypot(*curve.T)
@@ -252,7 +252,7 @@ def test_the_herpolhode_is_in_its_plane_between_its_circles():
     (least, largest) = (float(c.mean()) for c in circles)
     for circle in circles:
         np.testing.assert_allclose(circle, circle.mean(), rtol=1e-12)
-    # The core's own curve over a period, at other points than those of the figure.
+    # The curve of the core over a period, at points other than those of the figure.
     around = ph.FreeMotion(motion.inertia, R0, motion.omega_body[0]).herpolhode(1000)
     own = np.sqrt(np.asarray(around.norm()) ** 2 - distance**2)
     # Extremes fall between samples: a miss of half a step is quadratic in 2π/4096.
@@ -265,7 +265,7 @@ def test_the_herpolhode_is_in_its_plane_between_its_circles():
 
 
 def test_the_herpolhode_turns_in_the_sense_of_L():
-    """A prolate top's ω goes round L the way of the turning; the frame g1, g2 is right-handed about L."""
+    """ω of a prolate top goes around L in the sense of L; g1, g2 is right-handed about L."""
     motion = free((2, 2, 1), (0.3, 0, 1.0), np.linspace(0, 1, 50))
     (curve, *_) = of_colour(motion.plot("herpolhode").axes[0], HERPOLHODE)
     angle = np.unwrap(np.arctan2(*curve.T[::-1]))
@@ -276,25 +276,25 @@ def test_the_herpolhode_turns_in_the_sense_of_L():
 # --- tops
 
 
-def test_the_locus_keeps_to_the_bounds_of_its_tilt():
+def test_the_locus_stays_between_the_bounds_of_its_tilt():
     motion = top()
-    told = ph.LagrangeTop(motion.inertia, R0, motion.omega_body[0], [0, 0, 2]).describe()
+    about = ph.LagrangeTop(motion.inertia, R0, motion.omega_body[0], [0, 0, 2]).describe()
     axes = motion.plot("locus").axes[0]
     view = View()
     path = samples(motion).rotor(ph.e3).components
     tilt = np.arccos(path[:, 2])
-    assert tilt.min() >= told["tilt_min"] - 1e-9
-    assert tilt.max() <= told["tilt_max"] + 1e-9
+    assert tilt.min() >= about["tilt_min"] - 1e-9
+    assert tilt.max() <= about["tilt_max"] + 1e-9
     halves = of_colour(axes, TRACE)
     points = np.concatenate([half[~np.isnan(half[:, 0])] for half in halves[:2]])
     for point in view.project(path[::20]):
         assert np.abs(points - point).max(axis=1).min() < 1e-12
-    # The black circles are those of the bounds: the front of each has points of its height.
+    # The black circles are the bounds of the tilt.
     fronts = [line for line in of_colour(axes, "#222222") if len(line) > 100][1::2]
     assert len(fronts) == 2
-    for angle, front in zip((told["tilt_min"], told["tilt_max"]), fronts, strict=True):
+    for angle, front in zip((about["tilt_min"], about["tilt_max"]), fronts, strict=True):
         seen = front[~np.isnan(front[:, 0])]
-        # Of a parallel in the picture the middle is the pole's times cos θ, and the width sin θ.
+        # A parallel is an ellipse around cos θ times the pole, of width sin θ.
         center = view.project(np.array([0, 0, np.cos(angle)]))
         relative = (seen - center) / [1, np.sin(np.radians(22))]
         # The points on the outline are on chords of 1°.
@@ -303,21 +303,21 @@ def test_the_locus_keeps_to_the_bounds_of_its_tilt():
 
 def test_the_tops_portrait_is_its_curve_of_energy():
     motion = top()
-    told = ph.LagrangeTop(motion.inertia, R0, motion.omega_body[0], [0, 0, 2]).describe()
+    about = ph.LagrangeTop(motion.inertia, R0, motion.omega_body[0], [0, 0, 2]).describe()
     axes = motion.plot("phase").axes[0]
     (curve, *_) = of_colour(axes, TRACE)
     theta, rate = np.radians(curve).T
     # The rate is the derivative of the tilt: half a step's curvature, (0.0125 s)² θ'''/6, is below 1e-2.
     time = samples(motion).time
     np.testing.assert_allclose(np.gradient(theta, time)[2:-2], rate[2:-2], atol=2e-2)
-    # The energy that is drawn for tilts and rates is that of the motion.
-    energy = _tilt._energy(motion, np.array([0, 0, 2.0]), told, theta, rate)
+    # The energy of these tilts and rates is that of the motion.
+    energy = _tilt._energy(motion, np.array([0, 0, 2.0]), about, theta, rate)
     np.testing.assert_allclose(energy, motion.energy[0], rtol=1e-10)
     bounds = sorted(float(line[0, 0]) for line in of_colour(axes, "#222222") if len(line) == 2)[1:]
-    np.testing.assert_allclose(bounds, np.degrees([told["tilt_min"], told["tilt_max"]]))
+    np.testing.assert_allclose(bounds, np.degrees([about["tilt_min"], about["tilt_max"]]))
 
 
-def test_the_satellites_portrait_swings_about_up(motions):
+def test_the_portrait_of_a_satellite_has_its_amplitude(motions):
     axes = motions["gravity-gradient"].plot("phase").axes[0]
     (curve, *_) = of_colour(axes, TRACE)
     assert np.abs(curve[:, 0]).max() == pytest.approx(20, abs=0.01)
@@ -347,7 +347,7 @@ def test_the_map_and_the_sphere_show_the_motion():
     momentum = motion.inertia(motion.omega_body).components
     direction = momentum / np.linalg.norm(momentum, axis=1, keepdims=True)
     (curve, *_) = of_colour(flat, POLHODE)
-    # It goes about the first axis, which is in the middle; the third is above.
+    # It goes around the first axis, which is in the middle; the third is at the top.
     np.testing.assert_allclose(
         np.radians(curve[:, 0]), np.arctan2(direction[:, 1], direction[:, 0]), atol=1e-12
     )
@@ -371,7 +371,7 @@ def test_a_wheels_family_has_equal_energies():
 # --- drift
 
 
-def test_drifts_are_drawn_as_they_are(motions):
+def test_drifts_are_the_data(motions):
     motion = motions["nutating-top"]
     sizes, *panels, rotor = motion.plot("drift").axes
     assert [text.get_text().split(" / ")[0] for text in sizes.get_legend().get_texts()] == ["energy", "|L|"]
@@ -433,7 +433,7 @@ def test_figure_2_shows_the_turned_vector():
     np.testing.assert_allclose(at["a⊥ = a'⊥"], view.project((a - inside).grade(1).components), atol=1e-12)
 
 
-def test_figure_1_tells_the_trivector():
+def test_figure_1_states_the_trivector():
     a, b, c = ph.e1 + 0.1 * ph.e2, 1.5 * ph.e2, 0.2 * ph.e1 + 2 * ph.e3
     figure = drawn(swept_trivector(a, b, c))
     assert "a∧b∧c = 3 I" in figure.get_supxlabel().replace("\n", " ")
@@ -469,8 +469,8 @@ def test_figure_3_shows_B_and_its_momentum():
     figure = drawn(inertia_of_plane(body, lengths, B))
     L = body.inertia(B)
     cosine = np.dot(B.components, L.components) / np.linalg.norm(B.components) / np.linalg.norm(L.components)
-    told = figure.get_supxlabel().replace("\n", " ")
-    assert f"The planes meet at {np.degrees(np.arccos(cosine)):.4g}°" in told
+    caption = figure.get_supxlabel().replace("\n", " ")
+    assert f"The planes meet at {np.degrees(np.arccos(cosine)):.4g}°" in caption
     view = View(32, 20)
     for colour, value in ((OMEGA, B), (MOMENTUM, L)):
         rim = np.concatenate([line for line in of_colour(figure.axes[0], colour) if len(line) > 50])
@@ -481,7 +481,7 @@ def test_figure_3_shows_B_and_its_momentum():
 
 
 def test_figure_3_hides_what_is_behind_or_inside_the_box():
-    """Points of a disc about a box, by rays through the box itself."""
+    """Rays through the box show which points of a disc it hides."""
     view, half = View(32, 20), np.array([0.3, 0.2, 0.8])
     rim = _handout._rim(0.3 * (ph.e2 ^ ph.e3) + 0.8 * (ph.e1 ^ ph.e2), 1.4)
     inner, ours = _handout._leaving(view, rim, half)
@@ -493,7 +493,7 @@ def test_figure_3_hides_what_is_behind_or_inside_the_box():
         for point, front in zip(share * inner[::10], ours[::10], strict=True):
             on_ray = point + steps * view.toward
             hidden = (np.abs(on_ray) < half).all(axis=1).any()
-            # One in front is never hidden; one behind is drawn before the box, which hides it or not.
+            # A point in front is never hidden. One behind is drawn before the box and never hides it.
             assert not (front and hidden)
             before = point - steps * view.toward
             assert front or not (np.abs(before) < half).all(axis=1).any()
@@ -502,7 +502,7 @@ def test_figure_3_hides_what_is_behind_or_inside_the_box():
 # --- files and the command
 
 
-def test_files_are_of_their_form_and_the_same_each_time():
+def test_files_have_their_format_and_are_reproducible():
     figures = [lambda: free().plot("scene"), lambda: handout_figure(2), lambda: free().plot("phase")]
     for pixels, make in zip((1, 0, 0), figures, strict=True):
         svg, pdf, png = (encoded(make(), form) for form in ("svg", "pdf", "png"))

@@ -115,8 +115,8 @@ def test_a_frame_has_its_time_and_title(tmp_path, painted):
     moved.attributes["title"] = "A body"
     moved.film(tmp_path / "a.gif", seconds=0.4, fps=5, size=(32, 32))
     # First those from which the palette is made, then all.
-    told = [(when, options["note"], options["title"]) for when, options in painted[0].asked[-2:]]
-    assert told == [(0.0, "t = 0.00 s", "A body"), (5.0, "t = 5.00 s", "A body")]
+    captured = [(when, options["note"], options["title"]) for when, options in painted[0].asked[-2:]]
+    assert captured == [(0.0, "t = 0.00 s", "A body"), (5.0, "t = 5.00 s", "A body")]
     assert [options["played"] for _, options in painted[0].asked[-2:]] == [0.0, 0.2]
 
 
@@ -273,8 +273,13 @@ def test_the_command_films(tmp_path):
         "polhode: warning: the film is stroboscopic: the body turns by up to 0.399 turns"
     )
     assert done.stderr.count("\n") == 1
-    told = probe(target)
-    assert (told["width"], told["height"], told["nb_frames"], told["duration"]) == (96, 54, "4", "1.000000")
+    found = probe(target)
+    assert (found["width"], found["height"], found["nb_frames"], found["duration"]) == (
+        96,
+        54,
+        "4",
+        "1.000000",
+    )
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs /proc")
@@ -294,10 +299,10 @@ def test_ctrl_c_leaves_the_old_film(name, scene, tmp_path):
             time.sleep(0.05)
         begun = descendants(process.pid)
         # As a terminal does: to the whole group.
-        _, told = processes.interrupted(process, lambda: os.killpg(process.pid, signal.SIGINT))
-    assert process.returncode == 130, told
-    assert "interrupted; no file was changed" in told
-    assert "Traceback" not in told
+        _, printed = processes.interrupted(process, lambda: os.killpg(process.pid, signal.SIGINT))
+    assert process.returncode == 130, printed
+    assert "interrupted; no file was changed" in printed
+    assert "Traceback" not in printed
     assert target.read_bytes() == b"old"
     assert sorted(path.name for path in tmp_path.iterdir()) == [name, "small.toml"]
     # The last of them ends a little after the command.

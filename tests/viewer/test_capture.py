@@ -64,8 +64,8 @@ def test_the_state_is_that_of_the_motion_at_the_time(torque):
             studio.capture(float(time))
             found, state = shown(studio), moved.at(time)
             assert found["time"] == time
-            # The page computes an exact motion with other instructions, and interpolates at rows: a few units in
-            # the last place.
+            # An exact motion the page computes with other instructions; it interpolates a stepped one at its
+            # rows. Both differ by a few units in the last place.
             atol = 1e-14
             np.testing.assert_allclose(found["rotor"], state.rotor.components, rtol=0, atol=atol)
             np.testing.assert_allclose(found["omega_body"], state.omega_body.components, rtol=0, atol=atol)

@@ -78,10 +78,10 @@ def test_what_is_wrong_with_a_file_is_said_with_its_name(opened):
     for given, message in (
         ({"notes__txt": "a"}, "notes.txt: the page opens scenes (.toml), documents (.json) and meshes"),
         ({"run__nc": "a"}, "`polhode view` shows a netCDF file"),
-        ({"part__stl": "solid"}, "part.stl: wrong.toml does not name this file"),
+        ({"part__stl": "solid"}, "part.stl: wrong.toml does not refer to this file"),
         ({"a__json": "{"}, "a.json is not JSON"),
-        ({"b__json": "null"}, "b.json is not a document of this page"),
-        ({"b__json": "{}"}, "b.json is not a document of this page"),
+        ({"b__json": "null"}, "b.json is not a viewer document"),
+        ({"b__json": "{}"}, "b.json is not a viewer document"),
         ({"c__json": '{"format": 7}'}, "c.json: this page reads documents of format 1, not 7"),
         ({"d__toml": right, "e__toml": right}, "d.toml, e.toml: the page shows one scene at a time"),
     ):
@@ -111,7 +111,7 @@ def test_a_mesh_that_does_not_mend_its_scene(opened):
     drop(page, a__stl="solid")
     page.until("model.problem.value.startsWith('a.stl: was added')")
     assert (
-        "a.stl: was added to meshed.toml, in which something is still wrong:\nmeshed.toml:2:8: error"
+        "a.stl: was added to meshed.toml, which is still invalid:\nmeshed.toml:2:8: error"
         in told(page)
     )
 

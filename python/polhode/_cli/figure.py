@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from polhode._scene.scene import Scene
 
 Report = Callable[[int, float], object]
-# Shows the progress of a task of this name, on a terminal.
+# Progress bar of a name, on a terminal; a pass of 0 is not shown.
 Shown = Callable[[str], AbstractContextManager[Report | None]]
 
 _KINDS = ("motion", "polhode", "herpolhode", "locus", "drift", "phase", "scene")
@@ -120,7 +120,7 @@ def _film(options: argparse.Namespace, shown: Shown) -> int:
             fps=options.fps,
             size=options.size,
             view=options.view,
-            progress=None if report is None else lambda fraction: report(1, fraction),
+            progress=None if report is None else lambda fraction: report(0, fraction),
         )
     print(f"Written\n  {path}")
     return 0

@@ -188,7 +188,7 @@ def test_invalid_films_are_refused(options, error, message, tmp_path, monkeypatc
 def test_batches_and_motions_of_one_time_are_refused(tmp_path):
     inertia = ph.Inertia.from_principal_moments(1, 2, 3)
     one = ph.simulate(inertia, ph.State(ph.Rotor.identity(), [0, 0, 1.0]), [1.0])
-    with pytest.raises(ValueError, match="2 output times or more; this one has 1"):
+    with pytest.raises(ValueError, match="needs two different output times; this motion has one"):
         one.film(tmp_path / "a.gif")
     batch = ph.simulate(inertia, ph.State(ph.Rotor.identity(), [[0, 0, 1.0]]), [0.0, 1.0])
     with pytest.raises(ValueError, match="film is for one body"):

@@ -92,7 +92,7 @@ def frame_times(trajectory: Trajectory, plan: Plan) -> Array:
     """Return the time of the motion, in s, that each frame shows: equally spaced from the first one on."""
     first, span = float(trajectory.time[0]), float(np.ptp(trajectory.time))
     if not span > 0:
-        raise ValueError("a film needs a motion of 2 output times or more; this one has 1")
+        raise ValueError("a film needs two different output times; this motion has one")
     if plan.seconds is None and not 2 / plan.fps <= span <= _LONGEST:
         raise ValueError(
             f"the motion lasts {span:.6g} s, too {'long' if span > 1 else 'short'} for a film at true speed: "

@@ -153,6 +153,7 @@ export class Labels {
 
   /** Draws the labels at their last places, in CSS pixels. */
   draw(context: CanvasRenderingContext2D): void {
+    if (this.element.style.display === "none") return;
     for (const label of this.labels) label.draw(context, this.background);
   }
 

@@ -249,8 +249,9 @@ export class Stage {
     this.labels.draw(context);
     context.fillStyle = this.palette.peek().text;
     context.font = CAPTION;
-    context.fillText(title, MARGIN, MARGIN + 11);
-    context.fillText(note, MARGIN, size.y - MARGIN);
+    const room = size.x - 2 * MARGIN;
+    context.fillText(title, MARGIN, MARGIN + 11, room);
+    context.fillText(note, MARGIN, size.y - MARGIN, room);
     return canvas;
   }
 

@@ -148,7 +148,7 @@ def test_the_method_is_written(tmp_path):
         ({"torque": T.damping(1) + T.damping(2)}, "two"),
         ({"torque": T.formula("k Ω", k=1) + T.formula("k Ω", k=2, frame="space")}, "`k` has two values"),
         ({"torque": T.formula("F(Ω)", F=MOMENTS)}, "linear map"),
-        ({"times": [-2.0, 0.0]}, "no later time"),
+        ({"times": [-2.0, 0.0]}, "this one has none"),
         ({"tolerance": 2.0}, "tolerance"),
     ],
 )
@@ -362,7 +362,7 @@ def test_values_that_cannot_be_shown_are_refused():
     many = ph.simulate(MOMENTS, ph.State(START.rotor, np.ones((2, 3))), [0, 1])
     refused(ValueError, "one body", many)
     backwards = ph.simulate(MOMENTS, START, [-1, 0], T.viscous_damping(0.1))
-    refused(ValueError, "no later time", backwards)
+    refused(ValueError, "this one has none", backwards)
 
 
 def test_a_motion_without_an_end_is_shown_for_20_turns():

@@ -110,10 +110,7 @@ def test_a_mesh_that_does_not_mend_its_scene(opened):
     assert "a.stl" in told(page)
     drop(page, a__stl="solid")
     page.until("model.problem.value.startsWith('a.stl: was added')")
-    assert (
-        "a.stl: was added to meshed.toml, which is still invalid:\nmeshed.toml:2:8: error"
-        in told(page)
-    )
+    assert "a.stl: was added to meshed.toml, which is still invalid:\nmeshed.toml:2:8: error" in told(page)
 
 
 @pytest.mark.parametrize(

@@ -78,10 +78,10 @@ def test_file_errors_name_the_file(opened):
     for given, message in (
         ({"notes__txt": "a"}, "notes.txt: the page opens scenes (.toml), documents (.json) and meshes"),
         ({"run__nc": "a"}, "`polhode view` shows a netCDF file"),
-        ({"part__stl": "solid"}, "part.stl: wrong.toml does not name this file"),
+        ({"part__stl": "solid"}, "part.stl: wrong.toml does not refer to this file"),
         ({"a__json": "{"}, "a.json is not JSON"),
-        ({"b__json": "null"}, "b.json is not a document of this page"),
-        ({"b__json": "{}"}, "b.json is not a document of this page"),
+        ({"b__json": "null"}, "b.json is not a viewer document"),
+        ({"b__json": "{}"}, "b.json is not a viewer document"),
         ({"c__json": '{"format": 7}'}, "c.json: this page reads documents of format 1, not 7"),
         ({"d__toml": right, "e__toml": right}, "d.toml, e.toml: the page shows one scene at a time"),
     ):
@@ -110,10 +110,8 @@ def test_mesh_that_does_not_fix_its_scene(opened):
     assert "a.stl" in message_of(page)
     drop(page, a__stl="solid")
     page.until("model.problem.value.startsWith('a.stl: was added')")
-    assert (
-        "a.stl: was added to meshed.toml, in which something is still wrong:\nmeshed.toml:2:8: error"
-        in message_of(page)
-    )
+    expected = "a.stl: was added to meshed.toml, which is still invalid:\nmeshed.toml:2:8: error"
+    assert expected in message_of(page)
 
 
 @pytest.mark.parametrize(
@@ -175,7 +173,7 @@ def test_lost_graphics_context_is_restored(opened, follow):
             window.loss.loseContext();
         }"""
     )
-    message = page.page.get_by_role("status").get_by_text("let go of the picture")
+    message = page.page.get_by_role("status").get_by_text("graphics context was lost")
     message.wait_for()
     page.compare(follow("t-handle"))
     page.page.evaluate("window.loss.restoreContext()")

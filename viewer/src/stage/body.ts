@@ -38,7 +38,7 @@ export class Body implements Part {
   update(_: Instant, shown: Shown): void {
     this.inBody.visible = shown.body;
     for (const material of this.materials) {
-      // What is inside and behind shall be seen with Poinsot's construction.
+      // Transparent with Poinsot's construction, which is inside and behind it.
       if (material.transparent === shown.poinsot) continue;
       material.transparent = shown.poinsot;
       material.opacity = shown.poinsot ? 0.55 : 1;
@@ -60,7 +60,7 @@ export class Body implements Part {
   }
 }
 
-/** Edges lie in the faces: they are seen a little nearer, in the same place of the picture. */
+/** Edges lie in faces: they are drawn slightly nearer, at the same place in the picture. */
 function inkOfEdges(): LineBasicMaterial {
   const ink = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
   ink.onBeforeCompile = (shader) => {

@@ -4,13 +4,13 @@ import type { Motion } from "../core/wasm.ts";
 import { firstRow, span } from "../model/model.ts";
 import { AXES, vector } from "./rotor.ts";
 
-/** Length of the arrows f1, f2, f3, and radius of the sphere on which the tip of one of them draws its path. */
+/** Length of the arrows f1, f2, f3, and radius of the sphere with the path of one of their tips. */
 export const REACH = 1.25;
 
 /**
- * A motion as it is drawn. Lengths are in units of the body, the distance from the drawn origin to the farthest point
- * of its surface, so that a plate and an asteroid both fill the view. The drawn origin is the fixed point of a body
- * that is held, and the centre of mass of any other: the stage flies along with it.
+ * A motion in drawn units: lengths over the distance from the drawn origin to the farthest point of the surface, so
+ * that bodies of all sizes fill the view. The drawn origin is the fixed point of a held body, and the centre of mass of
+ * any other.
  */
 export interface Figure {
   motion: Motion;
@@ -23,7 +23,7 @@ export interface Figure {
   traced: Vector3;
   /** Drawn units of length for 1 rad/s: Poinsot's ellipsoid at the start reaches as far as the arrows f1, f2, f3. */
   rate: number;
-  /** |Ω| and |L| at the start, or the largest ones where there is none at the start. */
+  /** |Ω| and |L| at the start, or their largest values if the body starts at rest. */
   omega: number;
   momentum: number;
 }
@@ -49,7 +49,7 @@ export function figureOf(motion: Motion): Figure {
   };
 }
 
-/** From the fixed point to the centre of mass. Where the law of the weight alone is said, its direction counts. */
+/** From the fixed point to the centre of mass; if only the heavy law is known, its vector. */
 function armOf({ body, heavy }: About): Vector3 {
   const centre = vector(body.center_of_mass);
   return centre.length() > 0 || !heavy ? centre : vector(heavy);
@@ -77,7 +77,7 @@ function nearestAxis(omegaBody: Vector3): Vector3 {
   return AXES[sizes.indexOf(Math.max(...sizes)) as 0 | 1 | 2].clone();
 }
 
-/** A few states over the time for which the motion is known. */
+/** Some states over the duration of the motion. */
 function some(motion: Motion): Float64Array {
   const [first, last] = span(motion.about);
   const from = Math.max(first, motion.about.start.time);

@@ -172,6 +172,7 @@ fn acts(torque: &Torque) -> bool {
         Torque::ViscousDamping(gains) => !gains.is_zero(),
         Torque::TorsionSpring { stiffness, .. } => *stiffness != 0.0,
         Torque::Control { stiffness, damping, .. } => !(stiffness.is_zero() && damping.is_zero()),
+        Torque::Registered(law) => law.size != 0.0,
         Torque::Tabulated(_) | Torque::Formula(_) | Torque::Function(_) => true,
     }
 }
@@ -180,6 +181,7 @@ fn acts(torque: &Torque) -> bool {
 fn is_conservative(torque: &Torque, body: &Gyrostat) -> bool {
     match torque {
         Torque::Heavy(_) | Torque::Magnetic { .. } | Torque::TorsionSpring { .. } => true,
+        Torque::Registered(law) => law.potential.is_some(),
         Torque::Larmor(_) => body.wheel == Default::default() && (0..3).all(|k| is_symmetric(body, k)),
         _ => false,
     }
@@ -191,6 +193,7 @@ fn axis(torque: &Torque) -> Option<Vector> {
         Torque::Heavy(_) => Some(E3),
         Torque::Magnetic { field, .. } => Some(*field),
         Torque::Larmor(b) => Some(*b),
+        Torque::Registered(law) => law.axis,
         _ => None,
     }
 }

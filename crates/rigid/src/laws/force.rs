@@ -29,6 +29,21 @@ pub enum Force {
     Function(Function<Vector>),
 }
 
+/// A force, and the point of the body at which it acts, in body axes, in metres; the centre of mass by default.
+#[derive(Clone, Debug)]
+pub struct Push {
+    /// The force.
+    pub force: Force,
+    /// The point, of a thrust alone.
+    pub at: Option<Vector>,
+}
+
+impl From<Force> for Push {
+    fn from(force: Force) -> Push {
+        Push { force, at: None }
+    }
+}
+
 /// A mass in kg and what moves it.
 #[derive(Clone, Debug)]
 pub struct Translation {

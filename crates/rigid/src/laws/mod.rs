@@ -5,4 +5,5 @@ pub mod event;
 pub mod force;
 pub(crate) mod forcing;
 pub mod formula;
+pub mod registry;
 pub mod torque;

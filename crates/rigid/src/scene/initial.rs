@@ -6,6 +6,7 @@ use crate::state::center::Center;
 use crate::units::Quantity;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, MathError, Rotor, Vector};
+use std::borrow::Cow;
 use toml::de::DeValue;
 
 /// The axes in which a spin is given.
@@ -73,7 +74,7 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
 }
 
 /// An attitude in any of its forms, in a table of this title.
-pub fn attitude(reader: &mut Reader, value: &Value, title: &'static str) -> Option<Rotor> {
+pub fn attitude(reader: &mut Reader, value: &Value, title: impl Into<Cow<'static, str>>) -> Option<Rotor> {
     if let DeValue::String(_) = value.get_ref() {
         let components = formulas::components(reader, value, Grades::EVEN, "a rotor")?;
         return checked(reader, value, Rotor::from_components(components));

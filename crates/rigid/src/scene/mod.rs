@@ -85,9 +85,10 @@ pub use body::BodySpec;
 pub use build::MeshSource;
 pub use draws::{DrawError, Drawn};
 pub use ensemble::{Attitudes, Ensemble, Varied};
-pub use forces::Push;
+pub use crate::laws::force::Push;
+pub use crate::laws::registry::Limit;
 pub use initial::SpinFrame;
-pub use parameters::{Limit, Parameter};
+pub use parameters::Parameter;
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Bivector, Rotor, Vector};
 use reader::{Reader, Table, Value};
@@ -176,7 +177,7 @@ impl Scene {
         })?;
         // What is missing from the file as a whole is missing at its end.
         let end = text.trim_end().len();
-        let root = Table { title: "the file", span: end..end, fields: root.get_ref() };
+        let root = Table { title: "the file".into(), span: end..end, fields: root.get_ref() };
         let mut reader = Reader::default();
         let scene = read_scene(&mut reader, &root, path, text);
         let mut problems = reader.problems;

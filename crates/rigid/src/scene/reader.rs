@@ -3,6 +3,7 @@
 use super::definitions::Formulas;
 use crate::units::{self, Quantity};
 use polhode_ga::diagnostic::{alternatives, list, nearest, quote};
+use std::borrow::Cow;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -16,7 +17,7 @@ pub type Value<'t> = Spanned<DeValue<'t>>;
 /// A table in the file: `title` is what a message calls it.
 #[derive(Clone)]
 pub struct Table<'t> {
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     pub span: Range<usize>,
     pub fields: &'t DeTable<'t>,
 }
@@ -71,7 +72,12 @@ impl Reader {
         self.report(value.span(), format!("expected {expected}, found {found}"));
     }
 
-    pub fn table<'t>(&mut self, value: &'t Value<'t>, title: &'static str) -> Option<Table<'t>> {
+    pub fn table<'t>(
+        &mut self,
+        value: &'t Value<'t>,
+        title: impl Into<Cow<'static, str>>,
+    ) -> Option<Table<'t>> {
+        let title = title.into();
         match value.get_ref() {
             DeValue::Table(fields) => Some(Table { title, span: value.span(), fields }),
             _ => {

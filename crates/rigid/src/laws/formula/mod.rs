@@ -9,7 +9,8 @@ pub(crate) use side_by_side::Formulas;
 
 use super::torque::Axes;
 use crate::error::TorqueError;
-use crate::state::phase::Gyrostat;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::formula::{
     Error, Given, Input, Meaning, Names, Program, Runner, Space, Span, Type, compile, parse,
@@ -285,6 +286,14 @@ impl Formula {
 
     pub(crate) fn needs(&self, what: impl Fn(Motion) -> bool) -> bool {
         self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
+    }
+
+    /// The value of a formula of numbers that needs no motion.
+    pub(crate) fn constant(&self) -> Result<f64, TorqueError> {
+        let body = Gyrostat { moments: [1.0; 3], wheel: Bivector::default() };
+        let phase = Phase { rotor: Rotor::IDENTITY, momentum: Bivector::default(), time: 0.0 };
+        let at = Point { body: &body, mass: f64::NAN, phase: &phase, center: &Center::default() };
+        Ok(self.value(&at)?.components().first().copied().unwrap_or(f64::NAN))
     }
 
     /// Its value, finite, of the grades of its purpose.

@@ -3,20 +3,20 @@
 //! A law is a value: what it needs to know, its torque at a point of the motion, and what it conserves
 //! ([`super::conserved`]). Laws add up.
 
-mod call;
 mod formula;
 mod function;
 mod gains;
 pub(crate) mod lanes;
 mod orbit;
+mod registered;
 mod table;
 
 use crate::error::TorqueError;
-pub use call::Argument;
 pub use formula::{FormulaTorque, given_names};
 pub use function::FunctionTorque;
 pub use gains::Gains;
 pub use orbit::Orbit;
+pub use registered::FormulaLaw;
 pub use table::{Kind, Table};
 
 use crate::error::SimulateError;
@@ -82,6 +82,8 @@ pub enum Torque {
     Tabulated(Arc<Table>),
     /// A formula.
     Formula(FormulaTorque),
+    /// A law of the registry that is computed by its formula.
+    Registered(Box<FormulaLaw>),
     /// What a function of the caller's returns.
     Function(FunctionTorque),
 }
@@ -127,6 +129,7 @@ impl Torque {
                 Axes::Space => Torque::Tabulated(table),
             },
             Torque::Formula(law) => Torque::Formula(law.in_axes(frame)),
+            Torque::Registered(law) => Torque::Registered(law.in_axes(frame).into()),
             Torque::Function(law) => Torque::Function(law.in_axes(frame)),
             same @ (Torque::GravityGradient(_)
             | Torque::ConstantSpace(_)
@@ -155,6 +158,7 @@ impl Torque {
             | Torque::Larmor(_)
             | Torque::Function(_) => Dependence::Rate,
             Torque::Formula(law) => law.dependence(),
+            Torque::Registered(law) => law.torque.dependence(),
         }
     }
 
@@ -163,6 +167,7 @@ impl Torque {
         match self {
             Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Function(_) => false,
             Torque::Formula(law) => !law.needs_time(),
+            Torque::Registered(law) => !law.torque.needs_time(),
             _ => true,
         }
     }
@@ -204,6 +209,7 @@ impl Torque {
                 }
             }
             Torque::Formula(law) => law.value(body, state)?,
+            Torque::Registered(law) => law.torque.value(body, state)?,
             Torque::Function(law) => law.value(body, state)?,
         })
     }
@@ -226,6 +232,7 @@ impl Torque {
             Torque::TorsionSpring { stiffness, .. } => stiffness.abs() * std::f64::consts::PI,
             Torque::Control { stiffness, .. } => stiffness.bound() * std::f64::consts::PI,
             Torque::Tabulated(table) => table.largest(),
+            Torque::Registered(law) => law.size,
             Torque::Damping(_)
             | Torque::QuadraticDamping(_)
             | Torque::ViscousDamping(_)
@@ -243,7 +250,7 @@ impl Torque {
     }
 
     /// Its potential energy in J, if it has one that does not change with time and with the rate.
-    pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
+    pub fn potential(&self, body: &Gyrostat, state: &Phase) -> Option<f64> {
         let back = state.rotor.reverse();
         match self {
             Torque::Heavy(c) => Some(state.vertical().dot(*c)),
@@ -252,6 +259,7 @@ impl Torque {
                 Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())
             }
             Torque::Wheel(_) => Some(0.0),
+            Torque::Registered(law) => law.potential(body, state),
             _ => None,
         }
     }
@@ -264,6 +272,7 @@ impl Torque {
             Torque::TorsionSpring { stiffness, .. } => {
                 0.5 * stiffness.abs() * std::f64::consts::PI * std::f64::consts::PI
             }
+            Torque::Registered(law) if law.potential.is_some() => 2.0 * law.size,
             _ => 0.0,
         }
     }

@@ -19,7 +19,7 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import bivector_of, function_of, made_of_formula, number, shown, three
+from polhode._mechanics.laws import bivector_of, function_of, law_of_formula, number, shown, three
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,7 +97,7 @@ def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **value
     single multivectors, rotors, linear maps and numbers for other names. `direction` is 1 where the value
     rises; the rest as `angle`. A FormulaError tells what is no formula, or no scalar, and where.
     """
-    return made_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
+    return law_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
 
 
 def function(

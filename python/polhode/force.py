@@ -13,7 +13,8 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import function_of, made_of_formula, number, shown, three
+from polhode._mechanics.laws import function_of, law_of_formula, number, shown, three
+from polhode._mechanics.registry import FORCES
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,7 +41,7 @@ class Force:
 
 def constant(F: Any) -> Force:
     """Return a force constant in space, a vector or (3,) in N."""
-    return _force("constant", _point(F, "F"))
+    return _force("constant", F)
 
 
 def thrust(F: Any, at: Any = None) -> Force:
@@ -49,28 +50,27 @@ def thrust(F: Any, at: Any = None) -> Force:
     With `at`, the point of the body where it acts (in body axes, m), it exerts the torque ``(at − c)∧F``
     about the centre of mass c too; without, it acts at the centre of mass.
     """
-    place = () if at is None else (_point(at, "at"),)
-    return _force("thrust", _point(F, "F"), *place)
+    return _force("thrust", F) if at is None else _force("thrust", F, at)
 
 
 def drag(k: float) -> Force:
     """Return ``−k v``, k in N s/m."""
-    return _force("drag", number(k, "k"))
+    return _force("drag", k)
 
 
 def quadratic_drag(k: float) -> Force:
     """Return ``−k |v| v``, k in N s²/m²."""
-    return _force("quadratic_drag", number(k, "k"))
+    return _force("quadratic_drag", k)
 
 
 def spring(k: float, anchor: Any = 0) -> Force:
     """Return ``−k (x − anchor)``, k in N/m, the anchor a point in space in m."""
-    return _force("spring", number(k, "k"), _point(anchor, "anchor"))
+    return _force("spring", k, anchor)
 
 
 def central(mu: float) -> Force:
     """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M in m³/s²."""
-    return _force("central", number(mu, "mu"))
+    return _force("central", mu)
 
 
 def formula(text: str, /, **values: Any) -> Force:
@@ -99,7 +99,7 @@ def formula(text: str, /, **values: Any) -> Force:
         For a text that is no formula, or whose value is no vector; with the place. Where a run comes to a
         point at which the formula has no value, `simulate` tells which part of it.
     """
-    return made_of_formula(lambda given: _force("formula", text, given), text, values)
+    return law_of_formula(lambda given: _native_force("formula", text, given), text, values)
 
 
 def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Force:
@@ -110,10 +110,17 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
     raises, `simulate` raises. It is slower than a `formula`, and a force that is one pickles if its function
     does.
     """
-    return _force("function", function_of(f, "t, position, velocity and rotor"))
+    return _native_force("function", function_of(f, "t, position, velocity and rotor"))
 
 
-def _force(name: str, *arguments: Any) -> Force:
+def _force(name: str, *values: Any) -> Force:
+    """Return the force of the registry with these values for its arguments."""
+    arguments = zip(FORCES[name].arguments, values, strict=False)
+    convert = {"scalar": number, "vector": _point}
+    return _native_force(name, *(convert[x.shape](value, x.name) for x, value in arguments))
+
+
+def _native_force(name: str, *arguments: Any) -> Force:
     return Force((_native.Force(name, *arguments),))
 
 

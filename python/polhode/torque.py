@@ -22,10 +22,9 @@ from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
-from polhode._mechanics.laws import finite, function_of, made_of_formula, shown
+from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import (
     bivectors,
-    check_not_negative,
     common,
     gains,
     named_together,
@@ -35,6 +34,7 @@ from polhode._mechanics.parameters import (
     vectors,
 )
 from polhode._mechanics.pivot import HOLDING, about_pivot
+from polhode._mechanics.registry import TORQUES
 from polhode._support.arrays import Shape, as_float, as_floats
 
 if TYPE_CHECKING:
@@ -60,6 +60,13 @@ __all__ = [
     "viscous_damping",
 ]
 
+_CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
+    "scalar": numbers,
+    "vector": vectors,
+    "bivector": bivectors,
+    "gains": gains,
+    "rotor": rotors,
+}
 _FRAMES = ("body", "space")
 _KINDS = ("linear", "cubic")
 
@@ -151,7 +158,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
         raise TypeError("gravity needs a Body, which has a mass, got an Inertia; see ph.torque.heavy(c)")
     masses = np.array([one.mass for one in bodies.flat]).reshape(bodies.shape)
     centers = np.array([one._core.center_of_mass() for one in bodies.flat]).reshape(*bodies.shape, 3)
-    return _law(
+    return _native_law(
         "gravity",
         numbers(g, "g"),
         numbers(masses, "the mass"),
@@ -169,7 +176,7 @@ def heavy(c: Any) -> Torque:
     mass lies elsewhere than along c. `gravity` finds both from a body. A batch is one of vectors, or
     (..., 3).
     """
-    return _law("heavy", vectors(c, "c"))
+    return _law("heavy", c)
 
 
 def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
@@ -189,8 +196,7 @@ def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -
     mean_anomaly
         M0 in rad, that at time 0; the periapsis lies on e1.
     """
-    arguments = {"n": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
-    return _law("gravity_gradient", *(numbers(value, name) for name, value in arguments.items()))
+    return _law("gravity_gradient", n, eccentricity, mean_anomaly)
 
 
 def magnetic(dipole: Any, field: Any) -> Torque:
@@ -199,7 +205,7 @@ def magnetic(dipole: Any, field: Any) -> Torque:
     ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
     in body axes in A m², the field B one in space in T.
     """
-    return _law("magnetic", vectors(dipole, "the dipole"), vectors(field, "the field"))
+    return _law("magnetic", dipole, field)
 
 
 def larmor(b: Any) -> Torque:
@@ -207,7 +213,7 @@ def larmor(b: Any) -> Torque:
 
     L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
     """
-    return _law("larmor", vectors(b, "b"))
+    return _law("larmor", b)
 
 
 # --- springs, dampers, control
@@ -215,7 +221,7 @@ def larmor(b: Any) -> Torque:
 
 def damping(g: Any) -> Torque:
     """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): without another, spin dies away as ``exp(−g t)``."""
-    return _law("damping", numbers(g, "g"))
+    return _law("damping", g)
 
 
 def viscous_damping(d: Any) -> Torque:
@@ -223,13 +229,12 @@ def viscous_damping(d: Any) -> Torque:
 
     A batch is (..., 3), or (..., 1) of one number for each body.
     """
-    return _law("viscous_damping", gains(d, "d"))
+    return _law("viscous_damping", d)
 
 
 def quadratic_damping(k: Any) -> Torque:
     """Return the torque ``−k |Ω_B| Ω_B``, as of a fast turn in air; k in N m s², not negative."""
-    check_not_negative(as_floats(k, "k"), "k")
-    return _law("quadratic_damping", numbers(k, "k"))
+    return _law("quadratic_damping", k)
 
 
 def torsion_spring(k: Any, rest: Rotor | None = None) -> Torque:
@@ -246,7 +251,7 @@ def torsion_spring(k: Any, rest: Rotor | None = None) -> Torque:
     rest
         A rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("torsion_spring", numbers(k, "k"), rotors(rest, "rest"))
+    return _law("torsion_spring", k, rest)
 
 
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
@@ -261,7 +266,7 @@ def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
     target
         A rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("pd_control", gains(kp, "kp"), gains(kd, "kd"), rotors(target, "target"))
+    return _law("pd_control", kp, kd, target)
 
 
 def gyrostat(h: Any) -> Torque:
@@ -271,7 +276,7 @@ def gyrostat(h: Any) -> Torque:
     body is that with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the
     wheel resists being turned.
     """
-    return _law("gyrostat", bivectors(h, "h"))
+    return _law("gyrostat", h)
 
 
 # --- given torques
@@ -279,12 +284,12 @@ def gyrostat(h: Any) -> Torque:
 
 def constant_body(N: Any) -> Torque:
     """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
-    return _law("constant_body", bivectors(N, "N"))
+    return _law("constant_body", N)
 
 
 def constant_space(N: Any) -> Torque:
     """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
-    return _law("constant_space", bivectors(N, "N"))
+    return _law("constant_space", N)
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
@@ -310,7 +315,7 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
             f"times of shape (n,) need torques of shape (n, 3), got shapes {when.shape} and {rows.shape}"
         )
     table = tuple(when.tolist()), tuple(map(tuple, rows.tolist()))
-    return _law("tabulated", *table, _one_of(_FRAMES, frame, "frame"), _one_of(_KINDS, kind, "kind"))
+    return _native_law("tabulated", *table, _one_of(_FRAMES, frame, "frame"), _one_of(_KINDS, kind, "kind"))
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
@@ -348,9 +353,9 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     axes = _one_of(_FRAMES, frame, "frame")
 
     def law(given: tuple[tuple[str, Any], ...]) -> Torque:
-        return _law("formula", text, axes, named_together(given))
+        return _native_law("formula", text, axes, named_together(given))
 
-    return made_of_formula(law, text, values, batches=True)
+    return law_of_formula(law, text, values, batches=True)
 
 
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
@@ -361,7 +366,7 @@ def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
     `simulate` raises. It is some ten times slower than a `formula`, and a law that is one pickles if its
     function does.
     """
-    return _law("function", function_of(f, "t, rotor and omega_body"))
+    return _native_law("function", function_of(f, "t, rotor and omega_body"))
 
 
 def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:
@@ -375,7 +380,13 @@ def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:
 # --- what laws are given
 
 
-def _law(name: str, *arguments: Any) -> Torque:
+def _law(name: str, *values: Any) -> Torque:
+    """Return the law of the registry with these values for its arguments."""
+    arguments = zip(TORQUES[name].arguments, values, strict=True)
+    return _native_law(name, *(_CONVERSIONS[x.shape](value, x.name) for x, value in arguments))
+
+
+def _native_law(name: str, *arguments: Any) -> Torque:
     return Torque((_native.Law(name, *together(arguments, name)),))
 
 

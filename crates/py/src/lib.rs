@@ -28,9 +28,9 @@ mod _native {
     #[pymodule_export]
     use crate::mechanics::free::FreeMotion;
     #[pymodule_export]
-    use crate::mechanics::laws::{Event, Force};
+    use crate::mechanics::forces_and_events::{Event, Force, law_registry};
     #[pymodule_export]
-    use crate::mechanics::made::Made;
+    use crate::mechanics::law_value::LawValue;
     #[pymodule_export]
     use crate::mechanics::motion::symmetric_top;
     #[pymodule_export]

@@ -74,7 +74,7 @@ def narrowed(value: Any) -> Any:
     return value if held in (0, value._mask) else value._part(held)
 
 
-def made_of_formula(
+def law_of_formula(
     make: Callable[[tuple[tuple[str, Any], ...]], T],
     text: str,
     values: dict[str, Any],

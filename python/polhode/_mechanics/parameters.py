@@ -86,14 +86,13 @@ def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
 
 
 def gains(value: Any, name: str) -> tuple[float, ...] | Batch:
-    """Return three numbers, none negative, from a number or three, or a batch from (..., 3) or (..., 1)."""
+    """Return three finite numbers from a number or three, or a batch from (..., 3) or (..., 1)."""
     array = as_floats(value, name)
     if array.shape[-1:] not in ((), (3,)) and not (array.ndim > 1 and array.shape[-1] == 1):
         raise ValueError(
             f"{name} must be a number or three along the body axes, or a batch (..., 3) of them or (..., 1), "
             f"got shape {array.shape}"
         )
-    check_not_negative(array, name)
     return rows(np.broadcast_to(array, (*array.shape[:-1], 3)), name)
 
 
@@ -111,14 +110,6 @@ def check_finite(components: Array, what: str) -> None:
         row = components[index].tolist()
         value = row[0] if len(row) == 1 else row
         raise ValueError(f"{place(index)}{what} is {value}; it must be finite")
-
-
-def check_not_negative(values: Array, name: str) -> None:
-    """Raise a ValueError with the first value that is negative."""
-    if (values < 0).any():
-        index = _first(values < 0)
-        told = f"{place(index)}{name} is {values[tuple(index)]}"
-        raise ValueError(f"{told}; a damper takes energy away, so it must not be negative")
 
 
 def place(index: tuple[int, ...]) -> str:

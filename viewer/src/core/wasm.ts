@@ -1,6 +1,6 @@
 import packed from "virtual:polhode-core";
 import { unpacked } from "../packed.ts";
-import { type About, type Core, type Files, type Line, type Motion, Problem } from "./core.ts";
+import { type About, type Core, type Files, type LawEntry, type Line, type Motion, Problem } from "./core.ts";
 
 /** What the core exports: see crates/wasm/src/exports.rs. */
 interface Exports {
@@ -18,6 +18,7 @@ interface Exports {
   bodies(handle: number, time: number, count: number, budget: number): number;
   merge(): number;
   evaluate(): number;
+  law_registry(): number;
 }
 
 /** How long a motion may be followed if nobody says it, in s. */
@@ -32,7 +33,13 @@ export async function loadCore(): Promise<Core> {
 }
 
 class Compiled implements Core {
-  constructor(private readonly exports: Exports) {}
+  /** The torque laws of the registry. */
+  readonly laws: readonly LawEntry[];
+
+  constructor(private readonly exports: Exports) {
+    this.checked(() => exports.law_registry());
+    this.laws = JSON.parse(this.text()) as LawEntry[];
+  }
 
   open(scene: string, { name = "scene.toml", files = new Map(), budget = BUDGET }: OpenOptions = {}): Motion {
     this.putScene(scene, name, files);

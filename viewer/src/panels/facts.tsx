@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import type { About, Triple } from "../core/core.ts";
+import type { About, LawEntry, Triple } from "../core/core.ts";
 import type { Model } from "../model/model.ts";
 import { significant, small } from "./format.ts";
 import { DEGREE, duration } from "./units.ts";
@@ -24,7 +24,7 @@ export function Facts({ model }: { model: Model }) {
           </Fact>
         )}
         {about.laws.map((law) => (
-          <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
+          <Fact name={labelOf(law.name, model.core.laws)} key={law.name}>
             <code>
               {about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : shortened(law.text)}
             </code>
@@ -46,25 +46,15 @@ export function Facts({ model }: { model: Model }) {
   );
 }
 
-/** The laws by the names of the scene, as people call them. */
-export const LAWS: Record<string, string> = {
-  gravity: "Gravity",
-  heavy: "Gravity",
-  damping: "Damping",
-  viscous_damping: "Viscous damping",
-  quadratic_damping: "Quadratic damping",
-  gravity_gradient: "Gravity gradient",
-  magnetic: "Magnetic dipole",
-  torsion_spring: "Torsion spring",
-  pd_control: "PD control",
-  gyrostat: "Wheel",
-  larmor: "Larmor",
-  constant_body: "Constant in the body",
-  constant_space: "Constant in space",
-  tabulated: "Table",
-  torque_body: "Torque, in the body",
-  torque_space: "Torque, in space",
-};
+/** The label of a law by its name in the scene; `registry` has those of the torque laws with arguments. */
+export function labelOf(name: string, registry: readonly LawEntry[]): string {
+  const others: Record<string, string> = {
+    gravity: "Gravity",
+    torque_body: "Torque, in the body",
+    torque_space: "Torque, in space",
+  };
+  return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
+}
 
 const HEAVY = new Set(["gravity", "heavy"]);
 

@@ -1,5 +1,5 @@
 import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { type About, State, type Triple } from "../core/core.ts";
+import { type About, type LawEntry, State, type Triple } from "../core/core.ts";
 import { firstRow, type Model } from "../model/model.ts";
 import { type BodyChoice, bodyOf, bodyTable, spreadOf } from "./body.ts";
 import { type LawForm, type LawsChoice, lawsFor, lawTables, noLaws } from "./laws.ts";
@@ -23,16 +23,20 @@ export class Controls {
   /** The laws to choose from. */
   readonly forms: ReadonlySignal<LawForm[]>;
 
+  /** The torque laws of the core. */
+  readonly registry: readonly LawEntry[];
+
   private readonly touched = new Set<Group>();
   private frame = 0;
   private readonly forget: () => void;
   private momentum = 0;
 
   constructor(private readonly model: Model) {
+    this.registry = model.core.laws;
     this.about = computed(() => (model.scene.value === null ? null : model.opened.value));
     this.forms = computed(() => {
       const about = this.about.value;
-      return about ? lawsFor(about, this.momentum, sizeOf(about), this.byPivot.value) : [];
+      return about ? lawsFor(this.registry, about, this.momentum, sizeOf(about), this.byPivot.value) : [];
     });
     this.forget = effect(() => {
       const about = model.opened.value;

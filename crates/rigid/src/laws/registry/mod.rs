@@ -24,6 +24,9 @@ use crate::units::Quantity;
 pub use forces::FORCES;
 pub use torques::TORQUES;
 
+/// The name of the law that is given by rows at times.
+pub const TABLE: &str = "tabulated";
+
 /// A law as everyone knows it.
 #[derive(Debug)]
 pub struct Entry<T: 'static> {

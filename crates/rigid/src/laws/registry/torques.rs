@@ -1,7 +1,7 @@
 //! Every torque law that is made of arguments.
 
 use super::Shape::{Bivectors, Gains as Factors, Numbers, Scalar, Vector as Components, Word};
-use super::{Argument, Entry, Kernel, Limit, Shape, argument, three};
+use super::{Argument, Entry, Kernel, Limit, Shape, TABLE, argument, three};
 use crate::error::TorqueError;
 use crate::laws::torque::{Gains, Orbit, Torque};
 use crate::units::Quantity;
@@ -151,7 +151,7 @@ pub static TORQUES: [Entry<Torque>; 13] = [
         },
     },
     Entry {
-        name: "tabulated",
+        name: TABLE,
         label: "Table",
         formula: "",
         arguments: &[

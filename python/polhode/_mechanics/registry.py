@@ -20,8 +20,8 @@ class Argument:
     unit
         SI, ``"1"`` for pure numbers.
     shape
-        ``"scalar"``, ``"vector"``, ``"bivector"``, ``"gains"`` (a number or three along the body axes), ``"rotor"``,
-        ``"numbers"``, ``"bivectors"`` or ``"word"``.
+        ``"scalar"``, ``"vector"``, ``"bivector"``, ``"gains"`` (a number or three along the body axes),
+        ``"rotor"``, ``"numbers"``, ``"bivectors"`` or ``"word"``.
     default
         Its numbers where it is left out; None where it must be given.
     words

@@ -3,7 +3,7 @@
 //! Laws of one kind whose parameters add up become one. What all bodies share at a time, as an orbit or a table, is
 //! evaluated once for all, and not again while the time stays.
 
-use crate::laws::forcing::{Exert, Place};
+use crate::laws::forcing::{Forcing, Place};
 use crate::laws::formula::{Formula, Formulas};
 use crate::laws::torque::lanes::{Three, gradient, quadratic, seen, turn_from};
 use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Free bodies without wheels.
 pub(super) struct Nothing;
 
-impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
+impl<const W: usize, const F: bool> Forcing<W, F> for Nothing {
     const ACTS: bool = false;
 
     #[inline(always)]
@@ -34,7 +34,7 @@ impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
 /// Nothing but weights and damping, without wheels: what stays in registers.
 pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
 
-impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
@@ -56,7 +56,7 @@ pub(super) struct Gradient<const W: usize, const F: bool> {
     orbits: Orbits<W>,
 }
 
-impl<const W: usize, const F: bool> Exert<W, F> for Gradient<W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
@@ -437,7 +437,7 @@ fn term<const K: usize, const W: usize, const F: bool>(
     fastest(Term::<K, W, F> { law, moments, wheel, at })
 }
 
-impl<const W: usize, const F: bool> Exert<W, F> for Laws<'_, W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {

@@ -1,4 +1,4 @@
-//! What acts on a body, what a motion conserves and where it is interrupted.
+//! Torque laws, forces, conserved quantities and events.
 
 pub mod conserved;
 pub mod event;

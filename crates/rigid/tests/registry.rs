@@ -62,7 +62,10 @@ fn names_are_unique_and_arguments_are_named() {
 fn limits_name_the_argument() {
     let refused = |name: &str, numbers: &[f64]| torque(name).unwrap().check(numbers).unwrap_err().to_string();
     assert_eq!(refused("quadratic_damping", &[-1.0]), "k is -1.0; it must not be negative");
-    assert_eq!(refused("gravity_gradient", &[1.0, 1.5, 0.0]), "eccentricity is 1.5; it must be at least 0 and below 1");
+    assert_eq!(
+        refused("gravity_gradient", &[1.0, 1.5, 0.0]),
+        "eccentricity is 1.5; it must be at least 0 and below 1"
+    );
     assert_eq!(refused("damping", &[f64::NAN]), "g is NaN; it must be finite");
     assert_eq!(Limit::Positive.refuses(0.0), Some("must be more than 0"));
 }
@@ -106,8 +109,16 @@ fn every_formula_is_its_law() {
         for state in states() {
             let expected = formula.value(&body, &state).unwrap();
             let found = total(&body, std::slice::from_ref(&law), &state).unwrap();
-            assert!((found - expected).norm() <= 64.0 * f64::EPSILON, "{}: {found:?} {expected:?}", entry.name);
-            assert!(law.size(&rigid) == 0.0 || expected.norm() <= law.size(&rigid) * (1.0 + 1e-12), "{}", entry.name);
+            assert!(
+                (found - expected).norm() <= 64.0 * f64::EPSILON,
+                "{}: {found:?} {expected:?}",
+                entry.name
+            );
+            assert!(
+                law.size(&rigid) == 0.0 || expected.norm() <= law.size(&rigid) * (1.0 + 1e-12),
+                "{}",
+                entry.name
+            );
         }
     }
 }

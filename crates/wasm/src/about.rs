@@ -92,9 +92,7 @@ fn law(law: &Law) -> Json {
     };
     let text = match (&law.formula, law.torque.registered()) {
         (Some(formula), _) => formula.clone(),
-        (None, Some((entry, numbers))) => {
-            entry.split(&numbers).map(argument).collect::<Vec<_>>().join(", ")
-        }
+        (None, Some((entry, numbers))) => entry.split(&numbers).map(argument).collect::<Vec<_>>().join(", "),
         (None, None) => String::new(),
     };
     Json::Object(vec![("name", law.name.into()), ("text", text.into())])

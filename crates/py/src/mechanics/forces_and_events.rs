@@ -1,9 +1,10 @@
 //! Forces and events by name and arguments, and the registry of laws for Python.
 
-use super::law_value::{
-    Callback, Known, LawValue, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector, vector_of,
-};
 use super::columns::Arguments;
+use super::law_value::{
+    Callback, Known, LawValue, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector,
+    vector_of,
+};
 use crate::support::arrays::bad;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::laws::event::{self, Direction, Quantity};

@@ -210,7 +210,8 @@ pub(crate) fn number(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<f64
         Operand::Value(value, _) if value.grades() == Grades::SCALAR => Ok(value.components()[0]),
         Operand::Number(x) => Ok(x),
         _ => returned.extract().map_err(|_| {
-            let kind = returned.get_type().name().map_or_else(|_| "another type".into(), |name| name.to_string());
+            let kind =
+                returned.get_type().name().map_or_else(|_| "another type".into(), |name| name.to_string());
             PyTypeError::new_err(format!("{} must be a number, got {kind}", what()))
         }),
     }
@@ -231,7 +232,8 @@ fn three(returned: Bound<'_, PyAny>, what: What<'_>, grades: Grades, kind: &str)
     }
     // Any other value of three numbers, or an error that says what is wrong with it.
     static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    let module = MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
+    let module =
+        MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
     let rows = module.bind(py).call_method1(format!("as_{kind}s").as_str(), (returned, what()))?;
     let rows: Rows<'_> = rows.call_method0(intern!(py, "copy"))?.extract()?;
     one(&rows).map_err(|error| PyValueError::new_err(format!("{} must be a single {kind}: {error}", what())))

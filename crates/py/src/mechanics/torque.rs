@@ -6,8 +6,8 @@ use super::law_value::{
     Callback, Known, LawValue, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
-use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::Bivector;
+use polhode_ga::formula::{Given, Input, canonical};
 use polhode_rigid::body::weight_moment;
 use polhode_rigid::laws::registry::{Entry, Kernel, torque};
 use polhode_rigid::laws::torque::{

@@ -170,7 +170,10 @@ fn numbers(law: &Torque) -> Vec<f64> {
 }
 
 /// The lanes of N numbers, from the first on.
-fn lanes<const N: usize, const W: usize, const F: bool>(each: &[Vec<f64>; W], first: usize) -> [Lanes<W, F>; N] {
+fn lanes<const N: usize, const W: usize, const F: bool>(
+    each: &[Vec<f64>; W],
+    first: usize,
+) -> [Lanes<W, F>; N] {
     let mut lanes = [Lanes::ZERO; N];
     for (l, numbers) in each.iter().enumerate() {
         // A body without this law has it with zeros.

@@ -91,7 +91,9 @@ impl Force {
                 let force = law.value(at)?;
                 if !force.0.iter().all(|x| x.is_finite()) {
                     let Vector(force) = force;
-                    return Err(TorqueError(format!("the force that the function returned is {force:?}; it must be finite")));
+                    return Err(TorqueError(format!(
+                        "the force that the function returned is {force:?}; it must be finite"
+                    )));
                 }
                 force
             }

@@ -11,10 +11,10 @@
 
 use super::initial::Initial;
 use super::parameters::{PARAMETERS, Parameter};
-use crate::laws::registry::Limit;
 use super::reader::{Reader, Table, Value};
 use super::spread::{self, FORMS, Shape, Spread};
 use super::{Gravity, Law};
+use crate::laws::registry::Limit;
 use crate::units::Quantity;
 use std::f64::consts::PI;
 use toml::de::DeValue;

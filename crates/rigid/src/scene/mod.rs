@@ -78,14 +78,14 @@ mod spread;
 mod tests;
 mod torques;
 
+pub use crate::laws::force::Push;
+pub use crate::laws::registry::Limit;
 use crate::state::center::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;
 pub use draws::{DrawError, Drawn};
 pub use ensemble::{Attitudes, Ensemble, Varied};
-pub use crate::laws::force::Push;
-pub use crate::laws::registry::Limit;
 pub use initial::SpinFrame;
 pub use parameters::Parameter;
 use polhode_ga::diagnostic::Diagnostic;

@@ -46,8 +46,16 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         for argument in entry.arguments {
             let Argument { field, quantity, shape, limit, period, .. } = *argument;
             let is_one = matches!(shape, Shape::Scalar | Shape::Gains);
-            let own =
-                Parameter { law: entry.name, field, quantity, size: shape.size(), limit, at, is_one, is_period: false };
+            let own = Parameter {
+                law: entry.name,
+                field,
+                quantity,
+                size: shape.size(),
+                limit,
+                at,
+                is_one,
+                is_period: false,
+            };
             at += shape.size();
             if matches!(shape, Shape::Scalar | Shape::Vector | Shape::Bivector | Shape::Gains) {
                 let time = Some(Quantity::Time);

@@ -14,6 +14,7 @@ use crate::laws::registry::{Argument, Entry, Kernel, Shape, TORQUES};
 use crate::laws::torque::{self, Axes, Kind, Torque};
 use crate::units::Quantity;
 use polhode_ga::Bivector;
+use polhode_ga::product::Grades;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use toml::de::DeValue;
@@ -70,7 +71,7 @@ fn law(reader: &mut Reader, value: &Value, entry: &'static Entry<Torque>) -> Opt
         Kernel::Table => tabulated(reader, value, entry)?,
         _ => {
             let numbers = arguments(reader, value, entry)?;
-            placed(reader, value, entry.build(&numbers))?
+            placed(reader, value, entry.check(&numbers).and_then(|()| entry.build(&numbers)))?
         }
     };
     Some(Law { name: entry.name, torque, formula: None })
@@ -120,6 +121,12 @@ fn one(reader: &mut Reader, value: &Value, argument: &Argument) -> Option<Vec<f6
         Some(number)
     };
     match (argument.shape, argument.quantity) {
+        (Shape::Vector, None) => match value.get_ref() {
+            DeValue::String(_) => {
+                formulas::components(reader, value, Grades(0b0010), "a vector").map(|v: [f64; 3]| v.to_vec())
+            }
+            _ => reader.numbers(value).map(|v: [f64; 3]| v.to_vec()),
+        },
         (Shape::Vector, Some(quantity)) => formulas::vector(reader, value, quantity).map(|v| v.0.to_vec()),
         (Shape::Bivector, Some(quantity)) => {
             formulas::bivector(reader, value, quantity).map(|b| b.0.to_vec())
@@ -152,7 +159,8 @@ fn tabulated(reader: &mut Reader, value: &Value, entry: &Entry<Torque>) -> Optio
     let axes = if frame? == Some("space") { Axes::Space } else { Axes::Body };
     let kind = if kind? == Some("cubic") { Kind::Cubic } else { Kind::Linear };
     let rows: Vec<Bivector> = torques?;
-    placed(reader, value, torque::Table::new(times?, rows, axes, kind)).map(|table| Torque::Tabulated(Arc::new(table)))
+    placed(reader, value, torque::Table::new(times?, rows, axes, kind))
+        .map(|table| Torque::Tabulated(Arc::new(table)))
 }
 
 /// Reports an error at the place of a value.

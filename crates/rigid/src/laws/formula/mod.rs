@@ -299,9 +299,7 @@ impl Formula {
     pub(crate) fn value(&self, at: &Point) -> Result<Graded, TorqueError> {
         let Compiled { runner, result, .. } = &*self.compiled;
         if at.mass.is_nan() && self.needs(|motion| motion == Motion::Mass) {
-            return Err(TorqueError(
-                "`m` is not known: an Inertia has no mass; simulate a Body".into(),
-            ));
+            return Err(TorqueError("`m` is not known: an Inertia has no mass; simulate a Body".into()));
         }
         MEMORY.with_borrow_mut(|(inputs, values)| {
             inputs.clear();

@@ -119,13 +119,15 @@ pub enum Limit {
     Positive,
     /// Those of an ellipse.
     Eccentricity,
+    /// Not all 0: a direction.
+    NotZero,
 }
 
 impl Limit {
     /// What is wrong with this number, if anything is.
     pub fn refuses(self, number: f64) -> Option<&'static str> {
         let (allowed, why) = match self {
-            Limit::Finite => (true, ""),
+            Limit::Finite | Limit::NotZero => (true, ""),
             Limit::NotNegative => (number >= 0.0, "must not be negative"),
             Limit::Positive => (number > 0.0, "must be more than 0"),
             Limit::Eccentricity => ((0.0..1.0).contains(&number), "must be at least 0 and below 1"),
@@ -163,6 +165,9 @@ impl<T> Entry<T> {
         for (argument, own) in self.split(numbers) {
             if let Some((x, why)) = own.iter().find_map(|x| Some((x, argument.limit.refuses(*x)?))) {
                 return Err(TorqueError(format!("{} is {x:?}; it {why}", argument.name)));
+            }
+            if argument.limit == Limit::NotZero && own.iter().all(|x| *x == 0.0) {
+                return Err(TorqueError(format!("{} is {own:?}; it must not be zero", argument.name)));
             }
         }
         Ok(())
@@ -218,6 +223,12 @@ impl Entry<Push> {
 const fn argument(name: &'static str, field: &'static str, quantity: Quantity, shape: Shape) -> Argument {
     let (limit, default) = (Limit::Finite, None);
     Argument { name, field, quantity: Some(quantity), shape, limit, default, period: "" }
+}
+
+/// A direction of space; its size is ignored.
+const fn direction(name: &'static str) -> Argument {
+    let vector = argument(name, name, Quantity::Length, Shape::Vector);
+    Argument { quantity: None, limit: Limit::NotZero, ..vector }
 }
 
 impl Argument {

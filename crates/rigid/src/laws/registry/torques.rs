@@ -9,7 +9,8 @@ use polhode_ga::{Bivector, Rotor, Vector};
 
 /// An attitude, the identity by default.
 const fn attitude(name: &'static str) -> Argument {
-    Argument { quantity: None, ..argument(name, name, Quantity::Angle, Shape::Rotor) }.or(&[1.0, 0.0, 0.0, 0.0])
+    Argument { quantity: None, ..argument(name, name, Quantity::Angle, Shape::Rotor) }
+        .or(&[1.0, 0.0, 0.0, 0.0])
 }
 
 fn rotor(numbers: &[f64]) -> Result<Rotor, TorqueError> {

@@ -37,7 +37,9 @@ impl FunctionTorque {
         let torque = (self.call)(state.time, state.rotor * back, omega)?;
         if !torque.0.iter().all(|x| x.is_finite()) {
             let Bivector(torque) = torque;
-            return Err(TorqueError(format!("the torque that the function returned is {torque:?}; it must be finite")));
+            return Err(TorqueError(format!(
+                "the torque that the function returned is {torque:?}; it must be finite"
+            )));
         }
         Ok(back.apply_bivector(torque))
     }

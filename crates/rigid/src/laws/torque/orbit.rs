@@ -27,9 +27,7 @@ impl Orbit {
             )));
         }
         if let Some(value) = [rate, anomaly].into_iter().find(|x| !x.is_finite()) {
-            return Err(TorqueError(format!(
-                "mean motion or mean anomaly is {value}; both must be finite"
-            )));
+            return Err(TorqueError(format!("mean motion or mean anomaly is {value}; both must be finite")));
         }
         Ok(Orbit { rate, eccentricity, anomaly })
     }

@@ -39,10 +39,7 @@ impl Table {
             return wrong(format!("{} times for {} torques; give one for each", times.len(), torques.len()));
         }
         if times.len() < 2 {
-            return wrong(format!(
-                "a table of {} rows; it needs at least 2",
-                times.len()
-            ));
+            return wrong(format!("a table of {} rows; it needs at least 2", times.len()));
         }
         if let Some(i) = times.iter().position(|t| !t.is_finite()) {
             return wrong(format!("times[{i}] is {}; the times of a table must be finite", times[i]));

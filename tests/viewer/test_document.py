@@ -143,8 +143,8 @@ def test_the_method_is_written(tmp_path):
 @pytest.mark.parametrize(
     ("given", "why"),
     [
-        ({"torque": T.function(lambda t, R, W: -W)}, "function of Python's"),
-        ({"force": ph.force.function(lambda t, x, v, R: -x)}, "function of Python's"),
+        ({"torque": T.function(lambda t, R, W: -W)}, "Python callables cannot be written"),
+        ({"force": ph.force.function(lambda t, x, v, R: -x)}, "Python callables cannot be written"),
         ({"torque": T.damping(1) + T.damping(2)}, "two"),
         ({"torque": T.formula("k Ω", k=1) + T.formula("k Ω", k=2, frame="space")}, "`k` has two values"),
         ({"torque": T.formula("F(Ω)", F=MOMENTS)}, "linear map"),

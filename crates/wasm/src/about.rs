@@ -5,7 +5,7 @@ use crate::opened::Opened;
 use polhode_rigid::exact::free::FreeMotion;
 use polhode_rigid::exact::lagrange::{LagrangeDescription, LagrangeTop};
 use polhode_rigid::exact::regime::FreeDescription;
-use polhode_rigid::laws::torque::{Argument, Torque};
+use polhode_rigid::laws::torque::Torque;
 use polhode_rigid::scene::Law;
 use polhode_rigid::{Size, Solid};
 
@@ -84,18 +84,15 @@ pub fn solid(solid: Solid) -> Json {
     Json::Object([("kind", kind.into())].into_iter().chain(sizes.into_iter().map(size)).collect())
 }
 
-/// A law by its name and, in words, what it has: its formula as the scene says it, or its numbers.
+/// A law by its name, and its formula as in the scene or its numbers.
 fn law(law: &Law) -> Json {
-    let argument = |argument: &Argument| match argument {
-        Argument::One(x) => x.to_string(),
-        Argument::Row(row) => {
-            let row: Vec<String> = row.iter().map(f64::to_string).collect();
-            format!("({})", row.join(", "))
-        }
+    let argument = |(_, own): (_, &[f64])| match own {
+        [x] => x.to_string(),
+        own => format!("({})", own.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
     };
-    let text = match (&law.formula, law.torque.call()) {
+    let text = match (&law.formula, law.torque.registered()) {
         (Some(formula), _) => formula.clone(),
-        (None, Some((_, arguments))) => arguments.iter().map(argument).collect::<Vec<_>>().join(", "),
+        (None, Some((entry, numbers))) => entry.split(&numbers).map(argument).collect::<Vec<_>>().join(", "),
         (None, None) => String::new(),
     };
     Json::Object(vec![("name", law.name.into()), ("text", text.into())])

@@ -9,6 +9,7 @@
 
 use crate::about::{about, solid as solid_json};
 use crate::formulas;
+use crate::laws;
 use crate::merged::merged;
 use crate::opened::{self, Files, Opened};
 use crate::recorded::Recorded;
@@ -303,4 +304,10 @@ pub extern "C" fn evaluate() -> i32 {
         let lines = text(rooms.into_iter().next())?;
         Ok((0, formulas::evaluated(&lines).into_bytes()))
     })
+}
+
+/// The registry of laws, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn law_registry() -> i32 {
+    answered(|_, _| Ok((0, laws::laws().to_string().into_bytes())))
 }

@@ -127,3 +127,24 @@ export interface Line {
   /** An error and its place in the text, in UTF-16 units. */
   problem: { message: string; start: number; end: number } | null;
 }
+
+/** A torque law of the registry: see crates/rigid/src/laws/registry. */
+export interface LawEntry {
+  /** Its field in `[torque]` of a scene. */
+  name: string;
+  label: string;
+  formula: string;
+  arguments: LawArgument[];
+}
+
+export interface LawArgument {
+  name: string;
+  /** Its field in the table of the law; empty if the law is this value alone. */
+  field: string;
+  /** SI; empty for pure numbers. */
+  unit: string;
+  shape: "scalar" | "vector" | "bivector" | "gains" | "rotor" | "numbers" | "bivectors" | "word";
+  /** The field that gives 2π over a rate instead; empty if there is none. */
+  period: string;
+  optional: boolean;
+}

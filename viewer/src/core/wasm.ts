@@ -3,6 +3,7 @@ import { unpacked } from "../packed.ts";
 import {
   type About,
   type Files,
+  type LawEntry,
   type Line,
   Problem,
   type Quadruple,
@@ -32,6 +33,7 @@ interface Exports {
   inertia(): number;
   attitude(): number;
   plane_angle(): number;
+  law_registry(): number;
 }
 
 /** Default limit on the time to solve a scene, s. */
@@ -47,7 +49,13 @@ export async function loadCore(): Promise<Core> {
 
 /** The core. What a call takes is put into rooms first; its reply is read afterwards. */
 export class Core {
-  constructor(readonly exports: Exports) {}
+  /** The torque laws of the registry. */
+  readonly laws: readonly LawEntry[];
+
+  constructor(readonly exports: Exports) {
+    this.checked(() => exports.law_registry());
+    this.laws = JSON.parse(this.text()) as LawEntry[];
+  }
 
   /** Solves a scene. A Problem if the scene is wrong or takes longer than `budget` seconds. */
   open(

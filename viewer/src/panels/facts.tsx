@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import type { About, Triple } from "../core/core.ts";
+import type { About, LawEntry, Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
@@ -14,7 +14,7 @@ export function Facts({ model }: { model: Model }) {
   const facts: Fact[] = [
     ...about.laws.map(({ name, text }): Fact => {
       const shown = about.heavy && HEAVY.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
-      return [LAWS[name] ?? name, <code>{shown}</code>];
+      return [labelOf(name, model.core.laws), <code>{shown}</code>];
     }),
     ...(free ? freeFacts(free) : []),
     ...(top ? topFacts(top) : []),
@@ -51,25 +51,15 @@ export function Facts({ model }: { model: Model }) {
   );
 }
 
-/** Labels of the laws by their names in scenes. */
-export const LAWS: Record<string, string> = {
-  gravity: "Gravity",
-  heavy: "Gravity",
-  damping: "Damping",
-  viscous_damping: "Viscous damping",
-  quadratic_damping: "Quadratic damping",
-  gravity_gradient: "Gravity gradient",
-  magnetic: "Magnetic dipole",
-  torsion_spring: "Torsion spring",
-  pd_control: "PD control",
-  gyrostat: "Wheel",
-  larmor: "Larmor",
-  constant_body: "Constant in the body",
-  constant_space: "Constant in space",
-  tabulated: "Table",
-  torque_body: "Torque, in the body",
-  torque_space: "Torque, in space",
-};
+/** The label of a law by its name in the scene; `registry` has those of the torque laws with arguments. */
+export function labelOf(name: string, registry: readonly LawEntry[]): string {
+  const others: Record<string, string> = {
+    gravity: "Gravity",
+    torque_body: "Torque, in the body",
+    torque_space: "Torque, in space",
+  };
+  return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
+}
 
 const HEAVY = new Set(["gravity", "heavy"]);
 

@@ -2,15 +2,15 @@ import { PLANES } from "../format/numbers.ts";
 import { Select } from "../inputs/select.tsx";
 import { Slider } from "../inputs/slider.tsx";
 import type { Controls } from "../vary/controls.ts";
-import { AXIS, key, type LawForm, type LawName, type LawsChoice, type Parameter } from "../vary/laws.ts";
-import { LAWS } from "./facts.tsx";
+import { AXIS, key, type LawForm, type LawsChoice, type Parameter } from "../vary/laws.ts";
+import { labelOf } from "./facts.tsx";
 
 /** Controls of the torques: those of the scene, or a sum of laws chosen here. */
 export function LawsPanel({ controls }: { controls: Controls }) {
   const about = controls.about.value;
   const choice = controls.laws.value;
   if (!about) return null;
-  const own = about.laws.map(({ name }) => LAWS[name] ?? name).join(", ") || "none";
+  const own = about.laws.map(({ name }) => labelOf(name, controls.model.core.laws)).join(", ") || "none";
   return (
     <>
       <Select
@@ -34,7 +34,7 @@ export function LawsPanel({ controls }: { controls: Controls }) {
 function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; controls: Controls }) {
   const on = choice.on.has(law.name);
   const toggle = (): void => {
-    const names = new Set<LawName>(choice.on);
+    const names = new Set(choice.on);
     if (!names.delete(law.name)) names.add(law.name);
     controls.setLaws({ ...choice, on: names });
   };

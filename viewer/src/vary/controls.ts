@@ -23,6 +23,8 @@ export class Controls {
   /** The laws to choose from. */
   readonly forms: ReadonlySignal<LawForm[]>;
 
+  /** The torque laws of the core. */
+
   private readonly touched = new Set<Group>();
   private frame = 0;
   private readonly unsubscribe: () => void;
@@ -33,7 +35,7 @@ export class Controls {
     this.about = computed(() => (model.scene.value === null ? null : model.opened.value));
     this.forms = computed(() => {
       const about = this.about.value;
-      return about ? lawsFor(about, this.momentum, this.size, this.byPivot.value) : [];
+      return about ? lawsFor(model.core.laws, about, this.momentum, this.size, this.byPivot.value) : [];
     });
     this.unsubscribe = effect(() => {
       const about = model.opened.value;

@@ -23,8 +23,6 @@ export class Controls {
   /** The laws to choose from. */
   readonly forms: ReadonlySignal<LawForm[]>;
 
-  /** The torque laws of the core. */
-
   private readonly touched = new Set<Group>();
   private frame = 0;
   private readonly unsubscribe: () => void;

@@ -37,9 +37,9 @@ export function Facts({ model }: { model: Model }) {
           </div>
         )}
         {facts.map(
-          ([name, value]) =>
+          ([name, value], k) =>
             value && (
-              <div class="fact" key={name}>
+              <div class="fact" key={k}>
                 <dt>{name}</dt>
                 <dd>{value}</dd>
               </div>

@@ -24,7 +24,7 @@ __all__ = [
     "LagrangeTop",
     "LarmorSphere",
     "Law",
-    "Made",
+    "LawValue",
     "Motion",
     "Multivector",
     "Program",
@@ -39,6 +39,7 @@ __all__ = [
     "from_pauli",
     "function",
     "g3",
+    "law_registry",
     "marked",
     "methods",
     "near_unit",
@@ -255,7 +256,7 @@ class Body:
     def combine(self, other: Body) -> Body: ...
 
 @disjoint_base
-class Made:
+class LawValue:
     @property
     def name(self) -> str: ...
     @property
@@ -265,12 +266,16 @@ class Made:
     def __reduce__(self) -> tuple[type[Self], tuple[Any, ...]]: ...
 
 @final
-class Law(Made):
+class Law(LawValue):
     def __new__(cls, name: str, *arguments: Any) -> Law: ...
     def weight_moments(self) -> Array | None: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
 
+_Argument = tuple[str, str, str, str, list[float] | None, list[str]]
+_Entry = tuple[str, str, str, list[_Argument]]
+
+def law_registry() -> tuple[list[_Entry], list[_Entry]]: ...
 def orbit_directions(rate: float, eccentricity: float, anomaly: float, times: Array) -> Array: ...
 def torque_at(laws: list[Law], inertia: Inertia, rotor_row: Array, omega: Array, time: float) -> Array: ...
 
@@ -317,11 +322,11 @@ def free_flow(moments: Array, rotors: Array, omegas: Array, times: Array) -> Arr
 def free_flow_derivatives(moments: Array, rotors: Array, omegas: Array, times: Array) -> Array: ...
 
 @final
-class Force(Made):
+class Force(LawValue):
     def __new__(cls, name: str, *arguments: Any) -> Force: ...
 
 @final
-class Event(Made):
+class Event(LawValue):
     def __new__(cls, name: str, *arguments: Any) -> Event: ...
 
 @final

@@ -1,10 +1,10 @@
-"""Events for `polhode.simulate` to look for: moments at which a quantity of the motion passes zero.
+"""Events for `polhode.simulate`: times at which a quantity of the motion crosses zero.
 
-Each is found to rounding by root finding along the motion, which is looked at every 0.2 rad that the body
-turns, at every step and in its middle, and where the values hint at a short visit to the other side. A
-quantity that only touches zero does not pass it, and one that is zero at the start has not passed it there.
-What changes much faster than the body turns, as a formula may, can pass zero unseen: a shorter `step` sees
-it.
+The quantity is sampled at every step and its midpoint, every 0.2 rad of rotation, and where its values
+suggest a short excursion to the other sign; each crossing is then located to rounding by root finding. A
+quantity that only touches zero does not cross it, and a zero at the start is not a crossing. A quantity that
+changes much faster than the body turns, as a formula may, can cross zero twice between samples: use a shorter
+`step`.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import bivector_of, function_of, made_of_formula, number, shown, three
+from polhode._mechanics.laws import bivector_of, function_of, law_of_formula, number, shown, three
 
 
 @dataclass(frozen=True, repr=False)
 class Event:
-    """What to look for; made by the functions of this module.
+    """An event, returned by the functions of this module.
 
-    Events are values: equal where their arguments are, and pickled by them.
+    Events are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     law: _native.Event
 
     @property
     def name(self) -> str:
-        """What it looks for, without the direction."""
+        """Its quantity, without the direction."""
         return _shown(self.law.name, self.law.arguments[2:], {})
 
     def __repr__(self) -> str:
@@ -45,19 +45,19 @@ class Event:
 
 
 def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: bool = False) -> Event:
-    """Look for the angle between a direction of the body and one of space, in rad, to be reached.
+    """Return the event that the angle between a direction of the body and one of space is reached.
 
     Parameters
     ----------
     body, space
         Directions, vectors or (3,), in body axes and in space axes; their sizes are ignored.
     angle
-        From 0 to π. The angle of an axis that only touches it, as at 0 and π, does not pass it.
+        In rad, from 0 to π. An axis that only touches the angle, as at 0 and π, does not cross it.
     direction
-        1: only where the axis comes nearer to `space` (the cosine rises), −1: only where it goes away, 0:
-        both. Of a motion that is followed back in time from its start, as it is followed.
+        1 for crossings towards `space` (the cosine rises), −1 for crossings away from it, 0 for both. For a
+        motion computed backwards from its start, in the direction of the computation.
     terminal
-        Whether the motion ends there: later output times are left out.
+        Whether the motion ends there: later output times are omitted.
     """
     value = number(angle, "angle")
     if not 0 <= value <= np.pi:
@@ -66,38 +66,39 @@ def angle(body: Any, space: Any, angle: float, *, direction: int = 0, terminal: 
 
 
 def plane(body: Any, normal: Any, *, direction: int = 0, terminal: bool = False) -> Event:
-    """Look for a direction of the body to cross the plane of space through the origin with this normal.
+    """Return the event that a direction of the body crosses the plane of space with this normal.
 
-    `body` and `normal` are vectors or (3,); `direction` is 1 for crossings to the side of the normal; the
-    rest as `angle`.
+    The plane passes through the origin; `body` and `normal` are vectors or (3,). `direction` is 1 for
+    crossings to the side of the normal; the rest as for `angle`.
     """
     return _event("plane", direction, terminal, _direction(body, "body"), _direction(normal, "normal"))
 
 
 def spin(plane: Any, rate: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
-    """Look for the angular velocity in a plane of the body, a bivector or (3,), to pass a rate in rad/s.
+    """Return the event that the spin in a plane of the body, a bivector or (3,), crosses a rate in rad/s.
 
-    The component of ω along the plane's axis, so that ``spin(e3*e1)`` finds the flips of a T-handle about e2.
+    The spin is the component of ω along the axis of the plane: ``spin(e3*e1)`` finds the flips of a T-handle
+    about e2.
     """
     components = np.array(bivector_of(plane, "the plane"))
     return _event("spin", direction, terminal, _unit(components, "the plane"), number(rate, "rate"))
 
 
 def position(normal: Any, distance: float = 0.0, *, direction: int = 0, terminal: bool = False) -> Event:
-    """Look for the centre of mass to cross the plane ``x·n = distance`` of space, n the unit normal, in m."""
+    """Return the event that the centre of mass crosses ``x·n = distance`` (m), with n the unit normal."""
     along, level = _direction(normal, "normal"), number(distance, "distance")
     return _event("position", direction, terminal, along, level)
 
 
 def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **values: Any) -> Event:
-    """Look for a formula in the handout's notation to pass zero: ``formula("x·e3 - h", h=2)``.
+    """Return the event that a formula in the handout's notation crosses zero: ``formula("x·e3 - h", h=2)``.
 
-    The formula is read and checked at once: its value must be a scalar. The motion gives the names of
+    The formula is checked at once: its value must be a scalar. The motion defines the names of
     `polhode.force.formula`: ``R``, ``t``, ``x``, ``v``, ``Ω_B``, ``Ω_S``, ``m`` and others; `values` are
-    single multivectors, rotors, linear maps and numbers for other names. `direction` is 1 where the value
-    rises; the rest as `angle`. A FormulaError tells what is no formula, or no scalar, and where.
+    single multivectors, rotors, linear maps and numbers for other names. `direction` is 1 for rising values;
+    the rest as for `angle`. A FormulaError says what is not a formula or not a scalar, and where.
     """
-    return made_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
+    return law_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
 
 
 def function(
@@ -106,11 +107,11 @@ def function(
     direction: int = 0,
     terminal: bool = False,
 ) -> Event:
-    """Look for the value of a Python function to pass zero: ``f(t, rotor, omega_body, position, velocity)``.
+    """Return the event that a Python function ``f(t, rotor, omega_body, position, velocity)`` crosses zero.
 
-    It is called with the time in s, the rotor from body axes to space, the angular velocity in body axes, a
-    bivector, and the position and the velocity of the centre of mass, vectors in space, and returns a number.
-    What it raises, `simulate` raises. The rest as `angle`.
+    Its arguments are the time in s, the rotor from body axes to space, the angular velocity in body axes, a
+    bivector, and the position and the velocity of the centre of mass, vectors in space; it returns a number.
+    Its exceptions pass through `simulate`. The rest as for `angle`.
     """
     given = function_of(f, "t, rotor, omega_body, position and velocity")
     return _event("function", direction, terminal, given)

@@ -13,14 +13,15 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import function_of, made_of_formula, number, shown, three
+from polhode._mechanics.laws import function_of, law_of_formula, number, shown, three
+from polhode._mechanics.registry import FORCES
 
 
 @dataclass(frozen=True, repr=False)
 class Force:
-    """A sum of forces; made by the functions of this module.
+    """A sum of forces, returned by the functions of this module.
 
-    Forces are values: equal where their arguments are, and pickled by them.
+    Forces are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     laws: tuple[_native.Force, ...]
@@ -40,44 +41,42 @@ class Force:
 
 def constant(F: Any) -> Force:
     """Return a force constant in space, a vector or (3,) in N."""
-    return _force("constant", _point(F, "F"))
+    return _force("constant", F)
 
 
 def thrust(F: Any, at: Any = None) -> Force:
     """Return a force constant in body axes, a vector or (3,) in N, such as a thruster's.
 
-    With `at`, the point of the body where it acts (in body axes, m), it exerts the torque ``(at − c)∧F``
-    about the centre of mass c too; without, it acts at the centre of mass.
+    It acts at the point `at` of the body (in body axes, m) and so exerts the torque ``(at − c)∧F`` about the
+    centre of mass c; by default it acts at the centre of mass.
     """
-    place = () if at is None else (_point(at, "at"),)
-    return _force("thrust", _point(F, "F"), *place)
+    return _force("thrust", F) if at is None else _force("thrust", F, at)
 
 
 def drag(k: float) -> Force:
     """Return ``−k v``, k in N s/m."""
-    return _force("drag", number(k, "k"))
+    return _force("drag", k)
 
 
 def quadratic_drag(k: float) -> Force:
     """Return ``−k |v| v``, k in N s²/m²."""
-    return _force("quadratic_drag", number(k, "k"))
+    return _force("quadratic_drag", k)
 
 
 def spring(k: float, anchor: Any = 0) -> Force:
     """Return ``−k (x − anchor)``, k in N/m, the anchor a point in space in m."""
-    return _force("spring", number(k, "k"), _point(anchor, "anchor"))
+    return _force("spring", k, anchor)
 
 
 def central(mu: float) -> Force:
     """Return ``−μ m x/|x|³``: attraction by a centre at the origin of space, μ = G M in m³/s²."""
-    return _force("central", number(mu, "mu"))
+    return _force("central", mu)
 
 
 def formula(text: str, /, **values: Any) -> Force:
-    """Return the force that a formula in the handout's notation gives: ``formula("-k v", k=0.5)``.
+    """Return the force of a formula in the handout's notation: ``formula("-k v", k=0.5)``.
 
-    The formula is read and checked at once: its value must be a vector, the force in space in N. The motion
-    gives
+    The formula is checked at once: its value must be a vector, the force in space in N. The motion defines
 
     - ``x`` and ``v``, the position and the velocity of the centre of mass, vectors in space in m and m/s
       (a cross product is ``cross(a, b)``), and ``m``, the mass in kg,
@@ -91,29 +90,35 @@ def formula(text: str, /, **values: Any) -> Force:
     text
         The formula.
     values
-        What the other names stand for: single multivectors, rotors, linear maps, numbers.
+        Values of the other names: single multivectors, rotors, linear maps, numbers.
 
     Raises
     ------
     FormulaError
-        For a text that is no formula, or whose value is no vector; with the place. Where a run comes to a
-        point at which the formula has no value, `simulate` tells which part of it.
+        If the text is not a formula or its value is not a vector, with the place. If the formula has no
+        value at some point of a motion, `simulate` raises and names the part of the formula.
     """
-    return made_of_formula(lambda given: _force("formula", text, given), text, values)
+    return law_of_formula(lambda given: _native_force("formula", text, given), text, values)
 
 
 def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Force:
-    """Return the force that a Python function gives: ``f(t, position, velocity, rotor)``.
+    """Return the force of a Python function ``f(t, position, velocity, rotor)``.
 
-    It is called with the time in s, the position and the velocity of the centre of mass, vectors in space,
-    and the rotor from body axes to space, and returns the force in space in N, a vector or (3,). What it
-    raises, `simulate` raises. It is slower than a `formula`, and a force that is one pickles if its function
-    does.
+    Its arguments are the time in s, the position and the velocity of the centre of mass, vectors in space,
+    and the rotor from body axes to space; it returns the force in space in N, a vector or (3,). Its
+    exceptions pass through `simulate`. It is slower than a `formula`; the force can be pickled if f can.
     """
-    return _force("function", function_of(f, "t, position, velocity and rotor"))
+    return _native_force("function", function_of(f, "t, position, velocity and rotor"))
 
 
-def _force(name: str, *arguments: Any) -> Force:
+def _force(name: str, *values: Any) -> Force:
+    """Return the force of the registry with these values for its arguments."""
+    arguments = zip(FORCES[name].arguments, values, strict=False)
+    convert = {"scalar": number, "vector": _point}
+    return _native_force(name, *(convert[x.shape](value, x.name) for x, value in arguments))
+
+
+def _native_force(name: str, *arguments: Any) -> Force:
     return Force((_native.Force(name, *arguments),))
 
 

@@ -1,12 +1,12 @@
-"""Torque laws for `polhode.simulate`: values that say what turns the body.
+"""Torque laws for `polhode.simulate`.
 
-Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. Each is a bivector at every point of the motion,
-whose components ``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to
-space, ``Ω_B`` the angular velocity in body axes.
+Laws add up: ``ph.torque.heavy(c) + ph.torque.damping(g)``. The torque is a bivector, whose components
+``(e2e3, e3e1, e1e2)`` are those of the axial vector. R is the rotor from body axes to space, ``Ω_B`` the
+angular velocity in body axes.
 
-What a law is given may be a batch, of any shape: for each of many bodies, which `simulate` follows at once,
-its own. A batch of numbers is an array of its shape, one of vectors, bivectors or rotors a batch of these.
-Tables and Python functions are shared by all bodies.
+Arguments may be batches of any shape, with a value for each of many bodies that `simulate` moves at once: an
+array of numbers, or batched vectors, bivectors and rotors. Tables and Python functions are shared by all
+bodies.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
-from polhode._mechanics.laws import finite, function_of, made_of_formula, shown
+from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import (
     bivectors,
-    check_not_negative,
     common,
     gains,
     named_together,
@@ -35,6 +34,7 @@ from polhode._mechanics.parameters import (
     vectors,
 )
 from polhode._mechanics.pivot import HOLDING, about_pivot
+from polhode._mechanics.registry import TORQUES
 from polhode._support.arrays import Shape, as_float, as_floats
 
 if TYPE_CHECKING:
@@ -60,15 +60,22 @@ __all__ = [
     "viscous_damping",
 ]
 
+_CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
+    "scalar": numbers,
+    "vector": vectors,
+    "bivector": bivectors,
+    "gains": gains,
+    "rotor": rotors,
+}
 _FRAMES = ("body", "space")
 _KINDS = ("linear", "cubic")
 
 
 @dataclass(frozen=True, repr=False)
 class Torque:
-    """A sum of laws; made by the functions of this module.
+    """A sum of torque laws, returned by the functions of this module.
 
-    Laws are values: equal where their arguments are, and pickled by them.
+    Laws are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     laws: tuple[_native.Law, ...]
@@ -87,7 +94,7 @@ class Torque:
 
     @property
     def shape(self) -> Shape:
-        """Shape of the batch of bodies for which it was made; ``()`` where all share it."""
+        """Shape of the batch of bodies that the arguments describe; ``()`` for a single body."""
         return common({law.name: law.shape for law in self.laws}, "the laws")
 
     @property
@@ -98,9 +105,10 @@ class Torque:
     def at(self, inertia: Inertia | Body, state: State, t: float | None = None) -> Multivector:
         """Return the torque T in body axes at a single state and time: ``I(Ω_B') − Ω_B × I(Ω_B) = T``.
 
-        It is the right side of handout eq. (4.21), seen from the body, in N m: of a `gyrostat` what the
-        wheel does as it is turned. The inertia is that about the centre of mass, or the fixed point if a
-        law holds the body; a `Body` is taken so. The time t is in s, that of the state if it is left out.
+        This is the right side of handout eq. (4.21) in body axes, in N m; for a `gyrostat` it is the
+        reaction of the wheel to being turned. The inertia is about the centre of mass, or about the fixed
+        point if a law holds the body; from a `Body` the right one is taken. The time t is in s, by default
+        that of the state.
         """
         if self.shape:
             raise ValueError(f"the torque must be that of a single body, got batch shape {self.shape}")
@@ -127,9 +135,9 @@ def __dir__() -> list[str]:
 def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     """Uniform gravity along −e3 on a body held at a pivot.
 
-    ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes, ``c = m g (centre of mass − pivot)``. Under
-    it `simulate` moves the same body by its inertia about the pivot. The position of a state is that of the
-    pivot; the centre of mass is at ``position + R (centre of mass − pivot) ~R``.
+    ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes, ``c = m g (centre of mass − pivot)``.
+    `simulate` then uses the inertia about the pivot, and the position of a state is that of the pivot: the
+    centre of mass is at ``position + R (centre of mass − pivot) ~R``.
 
     Parameters
     ----------
@@ -138,8 +146,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
     g
         The acceleration in m/s², (...).
     pivot
-        The fixed point in body axes, a vector or (..., 3) in m; by default the origin of these axes. At the
-        centre of mass there is no torque.
+        The fixed point in body axes, a vector or (..., 3) in m; by default the origin of these axes.
 
     Raises
     ------
@@ -151,7 +158,7 @@ def gravity(body: Any, g: Any = 9.81, pivot: Any = (0.0, 0.0, 0.0)) -> Torque:
         raise TypeError("gravity needs a Body, which has a mass, got an Inertia; see ph.torque.heavy(c)")
     masses = np.array([one.mass for one in bodies.flat]).reshape(bodies.shape)
     centers = np.array([one._core.center_of_mass() for one in bodies.flat]).reshape(*bodies.shape, 3)
-    return _law(
+    return _native_law(
         "gravity",
         numbers(g, "g"),
         numbers(masses, "the mass"),
@@ -164,12 +171,11 @@ def heavy(c: Any) -> Torque:
     """Uniform gravity along −e3 on a body held at a fixed point, the origin of its axes.
 
     ``V = c·γ`` with ``γ = ~R e3 R``, torque ``γ∧c`` in body axes; ``c = m g (centre of mass)`` in body
-    axes, a vector or (3,) in N m. The inertia that counts is that about the fixed point: an `Inertia` is
-    taken as such, a `Body` is taken about the origin of its axes, and `simulate` refuses one whose centre of
-    mass lies elsewhere than along c. `gravity` finds both from a body. A batch is one of vectors, or
-    (..., 3).
+    axes, a vector, (3,) or (..., 3) in N m. The motion follows from the inertia about the fixed point: an
+    `Inertia` is used as it is, that of a `Body` is taken about the origin of its axes, and `simulate` raises
+    if its centre of mass does not lie along c. `gravity` finds both from a body.
     """
-    return _law("heavy", vectors(c, "c"))
+    return _law("heavy", c)
 
 
 def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
@@ -178,7 +184,7 @@ def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -
     With u the direction from planet to body, ``u = cos f e1 + sin f e2``, the axial vector of the torque is
     ``3n² (a/r)³ u x I(u)``, ``a/r = (1 + e cos f)/(1 − e²)``. The true anomaly f follows from the mean
     anomaly ``M = n t + M0`` by Kepler's equation ``M = E − e sin E``, solved to rounding; the product
-    ``n t`` keeps its digits after any number of turns.
+    ``n t`` is kept in double-double precision, so that no digits are lost after many orbits.
 
     Parameters
     ----------
@@ -189,8 +195,7 @@ def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -
     mean_anomaly
         M0 in rad, that at time 0; the periapsis lies on e1.
     """
-    arguments = {"n": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
-    return _law("gravity_gradient", *(numbers(value, name) for name, value in arguments.items()))
+    return _law("gravity_gradient", n, eccentricity, mean_anomaly)
 
 
 def magnetic(dipole: Any, field: Any) -> Torque:
@@ -199,7 +204,7 @@ def magnetic(dipole: Any, field: Any) -> Torque:
     ``V = −m·(~R B R)``, with the axial torque ``m x ~R B R`` in body axes. The dipole m is a vector or (3,)
     in body axes in A m², the field B one in space in T.
     """
-    return _law("magnetic", vectors(dipole, "the dipole"), vectors(field, "the field"))
+    return _law("magnetic", dipole, field)
 
 
 def larmor(b: Any) -> Torque:
@@ -207,102 +212,99 @@ def larmor(b: Any) -> Torque:
 
     L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
     """
-    return _law("larmor", vectors(b, "b"))
+    return _law("larmor", b)
 
 
 # --- springs, dampers, control
 
 
 def damping(g: Any) -> Torque:
-    """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): without another, spin dies away as ``exp(−g t)``."""
-    return _law("damping", numbers(g, "g"))
+    """Return the torque ``−g I(Ω_B)``, g in 1/s, (...): alone, it lets the spin decay as ``exp(−g t)``."""
+    return _law("damping", g)
 
 
 def viscous_damping(d: Any) -> Torque:
-    """Return the torque ``−d Ω_B``, d in N m s: a number, or three along the body axes; none negative.
+    """Return the torque ``−d Ω_B``, d >= 0 in N m s: a number, or three along the body axes.
 
     A batch is (..., 3), or (..., 1) of one number for each body.
     """
-    return _law("viscous_damping", gains(d, "d"))
+    return _law("viscous_damping", d)
 
 
 def quadratic_damping(k: Any) -> Torque:
-    """Return the torque ``−k |Ω_B| Ω_B``, as of a fast turn in air; k in N m s², not negative."""
-    check_not_negative(as_floats(k, "k"), "k")
-    return _law("quadratic_damping", numbers(k, "k"))
+    """Return the torque ``−k |Ω_B| Ω_B``, as for fast rotation in air; k >= 0 in N m s²."""
+    return _law("quadratic_damping", k)
 
 
 def torsion_spring(k: Any, rest: Rotor | None = None) -> Torque:
-    """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the turn from an attitude at rest.
+    """Return the torque ``−k Θ`` of ``V = ½ k |Θ|²``, with Θ the rotation from the rest attitude.
 
-    ``R = rest exp(−½Θ)``, ``|Θ| <= π``: of R and −R, which are one attitude, the one with the shorter turn
-    counts. Half a turn away both ways are equally short; there the torque jumps from one to the other,
-    while V has an edge only.
+    ``R = rest exp(−½Θ)``, ``|Θ| <= π``: R and −R are the same attitude, and the shorter rotation counts. At
+    ``|Θ| = π`` both directions are equally short: the torque is discontinuous there, V is continuous.
 
     Parameters
     ----------
     k
-        In N m per rad.
+        Stiffness in N m per rad.
     rest
-        A rotor from body axes to space, or a batch; None for the identity.
+        The attitude without torque, a rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("torsion_spring", numbers(k, "k"), rotors(rest, "rest"))
+    return _law("torsion_spring", k, rest)
 
 
 def pd_control(kp: Any, kd: Any, target: Rotor | None = None) -> Torque:
-    """Return the torque ``−kp Θ − kd Ω_B`` that brings a body to an attitude and to rest there.
+    """Return the torque ``−kp Θ − kd Ω_B`` of a controller that brings the body to rest at an attitude.
 
     ``R = target exp(−½Θ)``, ``|Θ| <= π``, as for `torsion_spring`.
 
     Parameters
     ----------
     kp, kd
-        In N m per rad and in N m s; numbers, or three along the body axes, none negative.
+        Gains >= 0 in N m per rad and in N m s: numbers, or three along the body axes.
     target
-        A rotor from body axes to space, or a batch; None for the identity.
+        The attitude to reach, a rotor from body axes to space, or a batch; None for the identity.
     """
-    return _law("pd_control", gains(kp, "kp"), gains(kd, "kd"), rotors(target, "target"))
+    return _law("pd_control", kp, kd, target)
 
 
 def gyrostat(h: Any) -> Torque:
-    """Return a wheel in the body that turns at a constant rate.
+    """Return a wheel in the body that spins at a constant rate.
 
     Its momentum h relative to the body is a bivector or (3,) in body axes in kg m²/s; the inertia of the
-    body is that with the wheel. The momentum is then ``L = R (I(Ω_B) + h) ~R``. No torque in space, but the
-    wheel resists being turned.
+    body includes the wheel. The total momentum is ``L = R (I(Ω_B) + h) ~R``. No external torque acts, but
+    the wheel resists being turned.
     """
-    return _law("gyrostat", bivectors(h, "h"))
+    return _law("gyrostat", h)
 
 
-# --- given torques
+# --- given values
 
 
 def constant_body(N: Any) -> Torque:
     """Return a torque bivector N constant in body axes; a bivector or (3,) in N m."""
-    return _law("constant_body", bivectors(N, "N"))
+    return _law("constant_body", N)
 
 
 def constant_space(N: Any) -> Torque:
     """Return a torque bivector N constant in space; a bivector or (3,) in N m."""
-    return _law("constant_space", bivectors(N, "N"))
+    return _law("constant_space", N)
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
-    """Return torques given at times, and interpolated between them.
+    """Return a torque interpolated in a table of times.
 
     Parameters
     ----------
     times
-        In s, (n,), rising, two at least. Outside the first and the last there is no torque, and a motion
-        that gets there is an error.
+        In s, (n,), increasing, at least two. A motion that leaves the range from the first to the last
+        raises.
     torques
         Bivectors of batch (n,), or (n, 3), in N m.
     frame
         The axes of their components, ``"body"`` or ``"space"``.
     kind
-        ``"linear"``; or ``"cubic"``, the spline whose second derivative has no jumps, with "not a knot"
-        ends (the third derivative has no jumps at the second and the last but one time). Of three rows it
-        is the parabola.
+        ``"linear"``, or ``"cubic"`` for the cubic spline with "not a knot" ends, which is a parabola for
+        three rows.
     """
     when, rows = as_floats(times, "times"), as_bivectors(torques, "torques")
     if when.ndim != 1 or rows.shape != (when.size, 3):
@@ -310,24 +312,24 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
             f"times of shape (n,) need torques of shape (n, 3), got shapes {when.shape} and {rows.shape}"
         )
     table = tuple(when.tolist()), tuple(map(tuple, rows.tolist()))
-    return _law("tabulated", *table, _one_of(_FRAMES, frame, "frame"), _one_of(_KINDS, kind, "kind"))
+    return _native_law("tabulated", *table, _one_of(_FRAMES, frame, "frame"), _one_of(_KINDS, kind, "kind"))
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
-    """Return the torque that a formula in the handout's notation gives: ``formula("-c ∧ (~R e3 R)", c=c)``.
+    """Return the torque of a formula in the handout's notation: ``formula("-c ∧ (~R e3 R)", c=c)``.
 
-    The formula is read and checked at once: its value must be a bivector. An axial vector v is the bivector
-    ``I v``. The motion gives
+    The formula is checked at once: its value must be a bivector. An axial vector v is the bivector ``I v``.
+    The motion defines
 
     - ``R``, the rotor from body axes to space, and ``t``, the time in s,
     - ``Ω_B`` and ``Ω_S`` (or ``Omega_B``, ``Omega_S``), the angular velocity in body axes and in space,
       bivectors in rad/s; ``Ω`` is that in the axes of `frame`,
     - ``L`` and ``L_B``, the angular momentum in space and in body axes, bivectors in kg m²/s, that of a
       `gyrostat` included,
-    - ``I(…)``, the inertia map of the body on bivectors in body axes, beside ``I`` the pseudoscalar: before
-      a bracket it is the map, so the bivector of a vector in brackets is ``(…) I``.
+    - ``I(…)``, the inertia map of the body on bivectors in body axes. Elsewhere ``I`` is the pseudoscalar;
+      write ``(…) I`` for the bivector of a vector in brackets.
 
-    A body held at a point moves by its inertia about that point: give `simulate` ``body.inertia_about(0)``.
+    For a body held at a point, give `simulate` its inertia about that point, ``body.inertia_about(0)``.
 
     Parameters
     ----------
@@ -336,46 +338,51 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     frame
         The axes of its value, ``"body"`` or ``"space"``.
     values
-        What the other names stand for: multivectors and rotors, single ones or batches, numbers, single
-        linear maps. A batch of numbers is one of scalars, `ph.scalar`.
+        Values of the other names: multivectors and rotors, single or batched, numbers, single linear maps.
+        Write a batch of numbers as `ph.scalar`.
 
     Raises
     ------
     FormulaError
-        For a text that is no formula, or whose value is no bivector; with the place. Where a run comes to a
-        point at which the formula has no value, `simulate` tells which part of it.
+        If the text is not a formula or its value is not a bivector, with the place. If the formula has no
+        value at some point of a motion, `simulate` raises and names the part of the formula.
     """
     axes = _one_of(_FRAMES, frame, "frame")
 
     def law(given: tuple[tuple[str, Any], ...]) -> Torque:
-        return _law("formula", text, axes, named_together(given))
+        return _native_law("formula", text, axes, named_together(given))
 
-    return made_of_formula(law, text, values, batches=True)
+    return law_of_formula(law, text, values, batches=True)
 
 
 def function(f: Callable[[float, Rotor, Multivector], Any]) -> Torque:
-    """Return the torque that a Python function gives: ``f(t, rotor, omega_body)``.
+    """Return the torque of a Python function ``f(t, rotor, omega_body)``.
 
-    It is called with the time in s, the rotor from body axes to space and the angular velocity in body
-    axes, a bivector, and returns the torque in body axes in N m, a bivector or (3,). What it raises,
-    `simulate` raises. It is some ten times slower than a `formula`, and a law that is one pickles if its
-    function does.
+    Its arguments are the time in s, the rotor from body axes to space, and the angular velocity in body
+    axes, a bivector; it returns the torque in body axes in N m, a bivector or (3,). Its exceptions pass
+    through `simulate`. It is about ten times slower than a `formula`; the law can be pickled if f can.
     """
-    return _law("function", function_of(f, "t, rotor and omega_body"))
+    return _native_law("function", function_of(f, "t, rotor and omega_body"))
 
 
 def settled(bodies: Any, torque: Torque | None) -> tuple[Any, Torque | None]:
-    """Return bodies whose fixed point, if there is one, is the origin of their axes, and their torque."""
+    """Return the bodies with a fixed point, if any, at the origin of their axes, and the torque."""
     if torque is None:
         return bodies, None
     bodies, laws = about_pivot(bodies, torque.laws)
     return bodies, Torque(laws)
 
 
-# --- what laws are given
+# --- arguments
 
 
-def _law(name: str, *arguments: Any) -> Torque:
+def _law(name: str, *values: Any) -> Torque:
+    """Return the law of the registry with these values for its arguments."""
+    arguments = zip(TORQUES[name].arguments, values, strict=True)
+    return _native_law(name, *(_CONVERSIONS[x.shape](value, x.name) for x, value in arguments))
+
+
+def _native_law(name: str, *arguments: Any) -> Torque:
     return Torque((_native.Law(name, *together(arguments, name)),))
 
 
@@ -385,7 +392,7 @@ def _one_of(words: tuple[str, ...], value: str, name: str) -> str:
     return value
 
 
-# --- how laws are shown
+# --- text
 
 
 def _shown(law: _native.Law) -> str:

@@ -1,4 +1,4 @@
-"""Figures: made without warnings, labelled with units, and the polhode where it belongs."""
+"""Plots: no warnings, units on all axes, and curves at their right places."""
 
 import io
 import warnings
@@ -70,13 +70,11 @@ def test_a_body_at_rest_is_drawn():
     drawn(polhode_figure(motion))
 
 
-def test_a_motion_of_no_times_is_drawn_or_refused():
+def test_a_motion_without_times_is_refused():
     motion = free((1, 2, 3), times=[])
     for draw in (motion_figure, polhode_figure):
-        try:
-            drawn(draw(motion))
-        except ValueError as error:
-            assert "time" in str(error)  # noqa: PT017
+        with pytest.raises(ValueError, match="no output times"):
+            draw(motion)
 
 
 def test_axes_are_labelled_with_units():
@@ -115,7 +113,7 @@ def test_the_lines_are_the_data():
 
 
 def halves(axes, colour):
-    """The two halves of a path, behind and in front, (n, 2) each; points on the outline are in both."""
+    """The parts of a path behind and in front, (n, 2) each; points on the outline are in both."""
     back, front = (
         np.array(line.get_data()).T
         for line in axes.lines
@@ -125,7 +123,7 @@ def halves(axes, colour):
 
 
 def is_on(points, back, front):
-    """Where each of the points (n, 2) is drawn: whether in the half behind, and whether in front."""
+    """For each of the points (n, 2), whether it is drawn behind, and whether in front."""
     found = [
         (np.abs(half[~np.isnan(half[:, 0])] - points[:, np.newaxis]).max(axis=2) < 1e-12).any(axis=1)
         for half in (back, front)
@@ -136,7 +134,7 @@ def is_on(points, back, front):
 
 @pytest.mark.parametrize("name", ["asymmetric", "long axis", "symmetric", "turned axes"])
 def test_the_drawn_polhode_is_on_the_ellipsoid(name):
-    """The picture is ω about the principal axes, whose Σ i_k ω_k² is 2E; the outline encloses it."""
+    """The curve is ω about the principal axes, with Σ i_k ω_k² = 2E, and inside the outline."""
     motion = FREE[name]()
     axes = polhode_figure(motion).axes[0]
     back, front = halves(axes, POLHODE)
@@ -145,7 +143,7 @@ def test_the_drawn_polhode_is_on_the_ellipsoid(name):
     np.testing.assert_allclose(omega**2 @ i, 2 * motion.energy, rtol=1e-9)
     view = View()
     behind, ahead = is_on(view.project(omega), back, front)
-    # From the picture's plane and the side it is drawn on, the point of the ellipsoid comes back.
+    # A point of the image and its side determine the point of the ellipsoid.
     a = view.toward**2 @ i
     for point, facing, hidden, w in zip(view.project(omega), ahead, behind, omega, strict=True):
         assert facing != hidden
@@ -156,8 +154,8 @@ def test_the_drawn_polhode_is_on_the_ellipsoid(name):
         np.testing.assert_allclose(base + depth * view.toward, w, rtol=0, atol=1e-5)
 
 
-def test_what_is_behind_is_drawn_behind():
-    """The point of a sphere towards us is in front, its opposite behind, the ends of the split meet."""
+def test_points_behind_are_drawn_as_hidden():
+    """The point of a sphere towards the viewer is in front, its opposite behind; both parts meet."""
     view = View()
     assert np.linalg.norm(view.toward) == pytest.approx(1)
     np.testing.assert_allclose(view.basis @ view.toward, 0, atol=1e-15)
@@ -171,7 +169,7 @@ def test_what_is_behind_is_drawn_behind():
     view.curve(axes, circle, circle, color="k")
     back, front = (np.array(line.get_data()).T for line in axes.lines)
     behind, ahead = ~np.isnan(back[:, 0]), ~np.isnan(front[:, 0])
-    # The halves meet on the outline: in two points more, in the middle of the chords that cross it.
+    # The parts meet on the outline, at two points on the chords that cross it.
     both = behind & ahead
     assert both.sum() == 2
     np.testing.assert_allclose(np.abs(back[both, 0]), np.cos(np.radians(1)), rtol=1e-12)
@@ -183,8 +181,8 @@ def test_what_is_behind_is_drawn_behind():
     assert not solid.is_dashed()
 
 
-def test_the_outline_is_that_of_the_ellipsoid():
-    """Its points are those of the surface farthest out in each direction of the picture."""
+def test_the_silhouette_encloses_the_ellipsoid():
+    """Its points are the farthest ones of the surface in each direction of the image."""
     view, semi_axes = View(), np.array([1.0, 2.0, 3.0])
     outline = view.silhouette(semi_axes)
     u = np.random.default_rng(0).normal(size=(20_000, 3))
@@ -208,7 +206,7 @@ def test_the_path_of_the_axis_is_the_turned_axis():
 
 @pytest.mark.parametrize(("rate", "label"), [(10.0, "attitude rotor"), (1000.0, "of principal axis 3")])
 def test_a_fast_spinner_shows_its_axis(rate, label):
-    """Sixteen turns are drawn as the rotor, sixteen hundred as the axis that they go about."""
+    """Sixteen turns are drawn as the rotor, sixteen hundred as the spin axis."""
     inertia = ph.Inertia.from_principal_moments(1, 1, 2)
     state = ph.State(ph.Rotor.from_plane_angle(ph.e2 ^ ph.e3, 0.3), [0.0, 0.01 * rate, rate])
     figure = ph.simulate(inertia, state, np.linspace(0, 10, 400)).plot()

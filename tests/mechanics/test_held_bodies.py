@@ -168,7 +168,7 @@ def test_scenes_that_contradict_themselves_are_refused_at_the_place(tmp_path):
 
 def test_gravity_is_for_the_body_it_was_made_for():
     law = ph.torque.gravity(TOP, pivot=PIVOT)
-    with pytest.raises(ValueError, match=r"made for a body of 0\.5 kg .* this one has 2\.0 kg"):
+    with pytest.raises(ValueError, match=r"made for a body of 0\.5 kg .* this body has 2\.0 kg"):
         ph.simulate(BENT, START, TIMES, law)
     with pytest.raises(
         ValueError, match=r"different points, \[0\.0, 0\.0, -0\.04.*\] and \[0\.0, 0\.0, 0\.0\]"

@@ -390,5 +390,7 @@ def test_a_motion_is_written_as_the_scene_that_starts_there(tmp_path):
     rows = np.frombuffer(unpacked(shown["recorded"]["rows"])).reshape(-1, 24)
     assert rows[[0, -1], 0].tolist() == [-1.5, 3.0]
     np.testing.assert_array_equal(rows[0, 1:5], R0.components)
-    with pytest.raises(ValueError, match=r"from their start on, here -1.5 s, and this one has no later time"):
+    with pytest.raises(
+        ValueError, match=r"needs an output time after the start of the motion, -1.5 s; this one has none"
+    ):
         document(ph.simulate(ASYMMETRIC, state, [-2.0], torque))

@@ -11,6 +11,7 @@ import pytest
 
 import polhode as ph
 import processes
+import studios
 from command_line import polhode
 from polhode._cli import main
 from viewers import needs_bundle
@@ -78,6 +79,7 @@ def test_the_commands_of_the_viewer_are_commands():
 
 def test_the_page_of_figures_runs(tmp_path):
     pytest.importorskip("matplotlib")
+    studios.require_browser()
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     blocks = blocks_of(ROOT / "docs/figures.md")
     asked = (

@@ -3,6 +3,7 @@
 import pytest
 
 import polhode as ph
+import studios
 from command_line import polhode
 
 BODY = ph.Inertia.from_principal_moments(1, 2, 3)
@@ -10,8 +11,10 @@ GRID = ph.simulate(BODY, ph.State(ph.Rotor.random((2, 3), rng=1), [0.1, 2, 0.1])
 
 
 @pytest.mark.parametrize("name", ["plot", "film"])
-def test_a_body_picked_from_a_batch_is_drawn(name, tmp_path):
+def test_a_body_picked_from_a_batch_is_drawn(name, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
+    pytest.importorskip("playwright")
+    studios.paint(monkeypatch)
     call = getattr(GRID, name)
     with pytest.raises(ValueError, match=rf"{name} .*\(2, 3\).*trajectory\[0, 0\]"):
         call(*([] if name == "plot" else [tmp_path / "a.gif"]))

@@ -120,7 +120,7 @@ def test_a_controller_reports_its_distance(tmp_path):
     assert result["motion"]["from_target"]["end"] < 1e-6
     page = polhode("run", scene.path).stdout
     assert "from the target   90° at the start" in page
-    assert "pd_control        kp = 4 N m; kd = 6 N m s; target 0.707107, 0, 0, -0.707107" in page
+    assert "pd_control        kp = 4 N m; kd = 6 N m s; target = 0.707107, 0, 0, -0.707107" in page
 
 
 def test_damping_reports_the_free_motion_and_its_pace(tmp_path):

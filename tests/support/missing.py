@@ -1,4 +1,4 @@
-"""What to do where something is missing that a test needs."""
+"""Skip or fail tests whose requirements are missing."""
 
 import os
 
@@ -6,5 +6,5 @@ import pytest
 
 
 def left_out(reason):
-    """Skip what needs something that is missing, unless every test must run."""
+    """Skip a test, or fail it if `POLHODE_EVERY_TEST` is set."""
     (pytest.fail if os.environ.get("POLHODE_EVERY_TEST") else pytest.skip)(reason)

@@ -1,4 +1,4 @@
-"""The core as the page has it, compiled to WebAssembly, asked through Node without a page."""
+"""The WebAssembly core of the page, run by Node without a page."""
 
 import base64
 import contextlib
@@ -11,7 +11,7 @@ import processes
 
 ROOT = Path(__file__).parents[2]
 
-# Where things are in a row of states: viewer/src/core/core.ts.
+# Offsets in a row of states, as in viewer/src/core/core.ts.
 ROW = 24
 PARTS = {
     "time": slice(0, 1),
@@ -27,19 +27,19 @@ PARTS = {
 
 
 class Problem(Exception):  # noqa: N818, as in core.ts
-    """What the core told of a scene or of a question."""
+    """An error reported by the core."""
 
 
 @contextlib.contextmanager
 def node_core(node):
-    """The core under Node, for as long as all tests may take."""
+    """The core in a Node process; the limit covers all tests."""
     command = [node, ROOT / "viewer/tests/core.mjs"]
     with processes.start(command, limit=3600, stdin=processes.PIPE) as process:
         yield NodeCore(process)
 
 
 class NodeCore:
-    """One process of Node, which answers questions in turn."""
+    """A Node process that answers one question at a time."""
 
     def __init__(self, process):
         self._process = process
@@ -60,13 +60,13 @@ class NodeCore:
         return answer["value"]
 
     def motion(self, scene, times, **options):
-        """Return what is known of a motion, and its states at the times by name."""
+        """Return the properties of a motion, and its states at the times by name."""
         answer = self.ask("motion", scene=scene, times=list(times), **options)
         return answer["about"], states(answer["rows"])
 
 
 def states(rows):
-    """Return numbers of states as arrays by name."""
+    """Return rows of states as arrays by name."""
     rows = np.array(rows, dtype=float).reshape(-1, ROW)
     return {
         name: rows[:, part].squeeze(-1) if name in ("time", "energy") else rows[:, part]
@@ -75,5 +75,5 @@ def states(rows):
 
 
 def packed(path):
-    """Return the bytes of a file as a question takes them."""
+    """Return the bytes of a file in base64."""
     return base64.b64encode(path.read_bytes()).decode()

@@ -1,4 +1,4 @@
-"""Scenes of every kind, and what Python computes of them."""
+"""Scenes of every kind, and their motions in Python."""
 
 import tomllib
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ spin = { plane = "e1e2", rate = "15 rad/s" }
 acceleration = "9.81 m/s^2"
 """
 
-# What turns a tumbling body; each of these is followed for five seconds.
+# Torques on a tumbling body, each for five seconds.
 TORQUES = {
     "damping": 'damping = "0.1 /s"',
     "viscous damping": "viscous_damping = [0.1, 0.2, 0.3]",
@@ -79,7 +79,7 @@ BY_METHOD = {
 
 @dataclass(frozen=True)
 class Followed:
-    """A scene with the files that it needs, and its motion as Python has it."""
+    """A scene with its files and its motion in Python."""
 
     path: Path
     text: str
@@ -88,7 +88,7 @@ class Followed:
 
     @property
     def mesh(self):
-        """The file of the body's surface; None without one."""
+        """The mesh file of the body; None if it has none."""
         name = tomllib.loads(self.text)["body"].get("mesh")
         return None if name is None else self.path.parent / name
 
@@ -105,7 +105,7 @@ class Followed:
         return motion.time[picked], states
 
     def between(self, count=5):
-        """Return times between the output times, in any order, and what `Trajectory.at` tells of them."""
+        """Return unsorted times between the output times, and the states of `Trajectory.at` by name."""
         first, last = self.motion.time[[0, -1]]
         times = np.random.default_rng(1).uniform(first, last, count)
         state = self.motion.at(times)
@@ -113,7 +113,7 @@ class Followed:
         return times, states | {"position": state.position.components, "velocity": state.velocity.components}
 
     def scale(self, quantity):
-        """The largest size of a quantity in the whole motion, which its errors are relative to."""
+        """Return the largest magnitude of a quantity in the motion, to which its errors are relative."""
         motion = self.motion
         name = {"omega_space": "omega_body", "momentum_body": "momentum_space"}.get(quantity, quantity)
         values = getattr(motion, name)
@@ -131,18 +131,18 @@ def quantities(rotor, omega_body, momentum_space=None):
 
 @cache
 def followed(name, folder):
-    """Return an example, a preset or one of `SCENES` by name, followed once."""
+    """Return the motion of an example, a preset or one of `SCENES` by name, computed once."""
     path = FILES.get(name) or PRESETS.get(name)
     return followed_at(path) if path else followed_text((SCENES | BY_METHOD)[name], folder / f"{name}.toml")
 
 
 def followed_at(path):
-    """Return the scene of a file, followed."""
+    """Return the motion of a scene file."""
     scene = ph.Scene.read(path).alone()
     return Followed(path, path.read_text(), scene, scene.run())
 
 
 def followed_text(text, path):
-    """Return the scene of a text, which is written to a path, followed."""
+    """Return the motion of a scene text, which is written to a path."""
     path.write_text(text)
     return followed_at(path)

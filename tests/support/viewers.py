@@ -6,10 +6,10 @@ import pytest
 
 import polhode
 
-_BUNDLE = Path(polhode.__file__).parent / "_viewer/viewer.js"
+BUNDLE = Path(polhode.__file__).parent / "_viewer/viewer.js"
 
 needs_bundle = pytest.mark.skipif(
-    not (_BUNDLE.is_file() and _BUNDLE.stat().st_size), reason="the viewer was not built: make viewer"
+    not (BUNDLE.is_file() and BUNDLE.stat().st_size), reason="the viewer was not built: make viewer"
 )
 
 # Stands for the bundle where only what goes around it is tested.

@@ -1,4 +1,4 @@
-"""What is needed to try the viewer. Where it is missing, tests are left out and say what; in CI they fail."""
+"""Fixtures of the viewer. Tests without their requirements are skipped with the reason; in CI they fail."""
 
 import shutil
 
@@ -9,14 +9,13 @@ from missing import left_out
 from node_core import node_core
 from polhode._viewer import document as _document
 from polhode._viewer import html
+from studios import require_browser
 from viewer_page import CHROMIUM, ViewerPage
 from viewer_scenes import ROOT, followed
 
-BUNDLE = ROOT / "python/polhode/_viewer/viewer.js"
-
 
 def pytest_terminal_summary(terminalreporter):
-    """Tell what was measured and not judged."""
+    """Report measured values."""
     for report in terminalreporter.getreports("passed"):
         for name, value in report.user_properties:
             terminalreporter.line(f"{name}: {value}")
@@ -43,7 +42,7 @@ def core(node):
 
 @pytest.fixture(scope="package")
 def follow(tmp_path_factory):
-    """The scene of a name, followed by Python."""
+    """A scene by its name, run by Python."""
     folder = tmp_path_factory.mktemp("scenes")
     return lambda name: followed(name, folder)
 
@@ -51,15 +50,9 @@ def follow(tmp_path_factory):
 @pytest.fixture(scope="package")
 def browser():
     """Chromium, one for all tests. Its driver must end with this directory: it holds an event loop."""
-    if not BUNDLE.exists():
-        left_out("the viewer was not built: make viewer")
-    try:
-        from playwright.sync_api import sync_playwright
-    except ImportError:
-        left_out("playwright was not found")
-    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if path is None:
-        left_out("Chromium was not found")
+    path = require_browser()
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=list(CHROMIUM), chromium_sandbox=False)
         yield browser
@@ -68,9 +61,9 @@ def browser():
 
 @pytest.fixture(scope="package")
 def pages(browser):
-    """What opens a page without a network, in a profile of its own; all are closed with the browser.
+    """Opens a page without a network, in a profile of its own; all are closed with the browser.
 
-    It asks for less motion, so that a page stays at its start until it is told to play.
+    It asks for reduced motion, so that a page stays at its start until it is set to play.
     """
 
     def opened(**options):
@@ -85,7 +78,7 @@ def pages(browser):
 
 @pytest.fixture
 def new_page(pages):
-    """Opens pages; whatever a test does there, no page asks the network for anything, nor complains."""
+    """Opens pages, none of which may make a request or log an error."""
     opened = []
 
     def new(**options):
@@ -102,7 +95,7 @@ def new_page(pages):
 
 @pytest.fixture
 def opened(new_page, follow, tmp_path):
-    """Opens the page of a document, or of the scene of a name, from disk."""
+    """Opens the page of a document, or of a scene by its name, from disk."""
 
     def opened(given, **options):
         document = given if isinstance(given, dict) else _document.of_scene(follow(given).scene)

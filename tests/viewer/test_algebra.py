@@ -1,4 +1,4 @@
-"""The page of algebra: its lines come to what Python says, and vectors are moved by hand."""
+"""The algebra page: its values equal those of Python, and vectors can be dragged."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def components(value):
 
 
 def lines_of(page):
-    """Return the lines of a page, each with what it came to: its components, or whether it holds."""
+    """Return text, components, whether it holds, and error of each line."""
     rows = page.page.locator("li.line").evaluate_all(
         "rows => rows.map(row => [row.querySelector('textarea').value, { ...row.dataset }])"
     )
@@ -25,7 +25,7 @@ def lines_of(page):
 
 
 def compare(page):
-    """Hold each line of a page to what Python makes of it; returns how many there are."""
+    """Compare each line of a page with Python; return the number of lines."""
     session = Session(only_finite=True)
     lines = lines_of(page)
     for text, shown, holds, problem in lines:
@@ -46,13 +46,13 @@ def compare(page):
 
 @pytest.fixture
 def algebra(opened):
-    """A page that shows its first figure."""
+    """An algebra page with the first preset."""
     page = opened({"format": 1, "page": "algebra"})
     page.page.locator("li.line").first.wait_for()
     return page
 
 
-def test_the_figures_come_to_what_python_says(algebra):
+def test_presets_have_the_values_of_python(algebra):
     figures = algebra.page.locator("#figure")
     names = figures.locator("option:not([disabled])").evaluate_all("options => options.map(o => o.value)")
     assert len(names) >= 9
@@ -61,7 +61,7 @@ def test_the_figures_come_to_what_python_says(algebra):
         assert compare(algebra) >= 5
 
 
-def test_vectors_are_dragged(algebra):
+def test_vectors_can_be_dragged(algebra):
     handle = algebra.page.locator("[data-handle=a]")
     before = lines_of(algebra)
     box = handle.bounding_box()
@@ -73,15 +73,15 @@ def test_vectors_are_dragged(algebra):
     after = lines_of(algebra)
     assert after[0][0] != before[0][0]
     assert [line[0] for line in after[1:]] == [line[0] for line in before[1:]]
-    # What follows from a has gone along.
+    # The values that depend on a have changed.
     assert after[3][1] != before[3][1]
     compare(algebra)
-    # The tip is under the pointer still, up to the hundredths in the text.
+    # The tip is still under the pointer, up to the two decimals of the text.
     box = handle.bounding_box()
     assert np.hypot(box["x"] + box["width"] / 2 - x - 40, box["y"] + box["height"] / 2 - y + 25) < 3
 
 
-def test_vectors_are_moved_by_keys(algebra):
+def test_vectors_can_be_moved_by_keys(algebra):
     handle = algebra.page.locator("[data-handle=a]")
     first = np.array(lines_of(algebra)[0][1].split(), dtype=float)
     handle.press("ArrowUp")
@@ -93,7 +93,7 @@ def test_vectors_are_moved_by_keys(algebra):
     compare(algebra)
 
 
-def test_lines_are_written(algebra):
+def test_lines_can_be_edited(algebra):
     algebra.page.get_by_label("Line 1", exact=True).fill("a = 2 e1 + 0.5 e3")
     compare(algebra)
     algebra.page.get_by_label("Line 2", exact=True).fill("b = a ∧∧ e2")
@@ -102,7 +102,7 @@ def test_lines_are_written(algebra):
     compare(algebra)
 
 
-def test_numbers_have_sliders(algebra):
+def test_sliders_change_numbers(algebra):
     algebra.page.locator("#figure").select_option("rotor")
     before = lines_of(algebra)
     algebra.page.locator("li.line input[type=range]").first.press("ArrowRight")

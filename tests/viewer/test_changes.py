@@ -1,4 +1,4 @@
-"""What is changed on a page changes its scene, and the motion is that of the scene as Python follows it."""
+"""Controls change the scene of a page, and its motion equals that of Python for the changed scene."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ samples = 401
 
 @pytest.fixture
 def box(opened):
-    """A page with a box that turns, its panels open."""
+    """A page with a rotating box and open panels."""
     page = opened({"format": 1, "scene": BOX, "name": "box.toml"})
     for panel in ("start", "body", "laws"):
         details = page.page.locator(f"#panel-{panel}")
@@ -49,7 +49,7 @@ CHANGES = {
     "the mass": lambda page: type_in(page, "mass", "2.5"),
     "the rate, typed": lambda page: type_in(page, "rate", "3"),
     "the rate, by keys": lambda page: page.page.locator("#rate").press("PageDown"),
-    "the spin's angle": lambda page: type_in(page, "off", "1"),
+    "the off-axis angle": lambda page: type_in(page, "off", "1"),
     "the attitude": lambda page: type_in(page, "tilt", "40"),
     "the duration": lambda page: type_in(page, "duration", "7"),
     "another form": lambda page: page.page.get_by_label("Form").select_option("cone"),
@@ -59,7 +59,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_the_motion_is_that_of_the_changed_scene(change, box, tmp_path):
+def test_motion_equals_that_of_the_changed_scene(change, box, tmp_path):
     CHANGES[change](box)
     box.until("model.scene.value !== before", before=BOX)
     assert box.viewer.get_attribute("data-state") == "ready"
@@ -68,7 +68,7 @@ def test_the_motion_is_that_of_the_changed_scene(change, box, tmp_path):
     box.compare(followed)
 
 
-def test_what_was_typed_is_in_the_scene(box, tmp_path):
+def test_typed_numbers_are_in_the_scene(box, tmp_path):
     type_in(box, "size-lengths-0", "30")
     type_in(box, "mass", "2.5")
     box.until("model.about.value.body.mass === 2.5")
@@ -80,14 +80,14 @@ def test_what_was_typed_is_in_the_scene(box, tmp_path):
     assert body.inertia.principal_moments == pytest.approx(expected.inertia.principal_moments, rel=1e-12)
 
 
-def test_time_goes_on_through_a_change(box):
+def test_changes_keep_the_time(box):
     box.seek(1.5)
     box.page.locator("#rate").press("ArrowRight")
     box.until("model.scene.value !== before", before=BOX)
     assert box.data("time") == 1.5
 
 
-def test_the_text_of_a_scene_can_be_edited(box, tmp_path):
+def test_scene_text_can_be_edited(box, tmp_path):
     box.page.locator("#panel-text summary").click()
     area = box.page.get_by_label("Scene, in TOML")
     area.fill(area.input_value().replace("5 cm", "6 cm"))
@@ -97,14 +97,14 @@ def test_the_text_of_a_scene_can_be_edited(box, tmp_path):
     box.compare(followed_text(BOX, tmp_path / "box.toml"))
 
 
-def test_a_scene_of_this_machine_is_opened(box, follow):
+def test_local_files_can_be_opened(box, follow):
     followed = follow("t-handle")
     box.page.locator("#file").set_input_files([followed.path, followed.mesh])
     box.page.get_by_role("heading", name="T-handle in free flight").wait_for()
     box.compare(followed)
 
 
-def test_presets_are_opened(opened):
+def test_presets_can_be_opened(opened):
     page = opened("asymmetric")
     select = page.page.get_by_label("Scene", exact=True)
     names = select.locator("option:not([disabled])").evaluate_all("options => options.map(o => o.value)")
@@ -114,7 +114,7 @@ def test_presets_are_opened(opened):
         path = FILES.get(Path(name).stem) or PRESETS[Path(name).stem]
         page.until("model.scene.value === text", text=path.read_text())
         assert page.viewer.get_attribute("data-state") == "ready"
-        # None of them needs steps.
+        # All presets have exact motions.
         assert page.page.locator("#method").inner_text() == "exact"
         if name == "sleeping.toml":
             assert page.viewer.get_attribute("data-regime") == "sleeping, nearly upright"

@@ -1,4 +1,4 @@
-"""What the viewer is given: scenes written from numbers are the same motion, recordings what was computed."""
+"""Documents for the viewer: written scenes give the same motion, recordings have the computed states."""
 
 import json
 import re
@@ -52,7 +52,7 @@ def test_a_body_is_read_back_to_the_last_bit(body, tmp_path):
         assert found == body
     else:
         assert found.inertia == body
-    # Moments that were turned with a body are found again from its matrix, to the rounding of its entries.
+    # Moments of a turned body are recovered from its matrix, to the rounding of its entries.
     moments = np.sort((body.inertia if isinstance(body, ph.Body) else body).principal_moments)
     rounding = 8 * np.finfo(float).eps * moments[2]
     np.testing.assert_allclose(np.sort(found.inertia.principal_moments), moments, rtol=0, atol=rounding)
@@ -100,7 +100,7 @@ def test_forces_are_read_back_as_the_same_values(tmp_path):
         assert found.force == force
 
 
-def test_formulas_are_read_back_with_what_their_names_stand_for(tmp_path):
+def test_formulas_are_read_back_with_the_values_of_their_names(tmp_path):
     values = {
         "c": 0.3e-7 * ph.e1 + 2 * ph.e3,
         "k": 0.5e-9,
@@ -112,9 +112,9 @@ def test_formulas_are_read_back_with_what_their_names_stand_for(tmp_path):
     body = T.formula("-c ∧ (~R e3 R) + k Ω + s Ω_0 + quote ⟨M Ω⟩_2", **values)
     space = T.formula("-k L", frame="space", k=0.5e-9)
     found = read_back(problem(torque=body + space), tmp_path).torque
-    # The laws differ in how names are spelled; the torque does not, in any bit.
+    # The spelling of names may differ; the torque is equal in every bit.
     assert found.at(MOMENTS, START, 0.7) == (body + space).at(MOMENTS, START, 0.7)
-    # A rotor comes back as the even multivector that it is, whose products are rounded in another order.
+    # A rotor is read back as an even multivector, whose products are rounded in another order.
     turn = T.formula("~S Ω S", S=ATTITUDE)
     found = read_back(problem(torque=turn), tmp_path).torque
     apart = found.at(MOMENTS, START) - turn.at(MOMENTS, START)
@@ -143,16 +143,16 @@ def test_the_method_is_written(tmp_path):
 @pytest.mark.parametrize(
     ("given", "why"),
     [
-        ({"torque": T.function(lambda t, R, W: -W)}, "function of Python's"),
-        ({"force": ph.force.function(lambda t, x, v, R: -x)}, "function of Python's"),
+        ({"torque": T.function(lambda t, R, W: -W)}, "Python callables cannot be written"),
+        ({"force": ph.force.function(lambda t, x, v, R: -x)}, "Python callables cannot be written"),
         ({"torque": T.damping(1) + T.damping(2)}, "two"),
         ({"torque": T.formula("k Ω", k=1) + T.formula("k Ω", k=2, frame="space")}, "`k` has two values"),
         ({"torque": T.formula("F(Ω)", F=MOMENTS)}, "linear map"),
-        ({"times": [-2.0, 0.0]}, "no later time"),
+        ({"times": [-2.0, 0.0]}, "this one has none"),
         ({"tolerance": 2.0}, "tolerance"),
     ],
 )
-def test_what_no_scene_can_say_is_refused(given, why):
+def test_problems_that_no_scene_describes_are_refused(given, why):
     body = ph.Body.sphere(1, mass=1)
     with pytest.raises(UnwritableError, match=why):
         problem(body, **given).scene()
@@ -161,7 +161,7 @@ def test_what_no_scene_can_say_is_refused(given, why):
 # --- documents
 
 
-def test_what_is_exact_is_a_scene_alone():
+def test_an_exact_motion_is_a_scene_alone():
     scene = ph.Scene.read(EXAMPLES / "toutatis.toml")
     expected = {"format": 1, "scene": scene.text, "name": "toutatis.toml"}
     assert document.document(scene) == expected
@@ -171,7 +171,7 @@ def test_what_is_exact_is_a_scene_alone():
     assert set(document.document(free)) == {"format", "scene", "name"}
 
 
-def test_what_was_stepped_is_recorded_too():
+def test_a_stepped_motion_is_recorded_too():
     trajectory = ph.simulate(MOMENTS, START, np.linspace(0, 5, 101), T.heavy([0.1, 0.2, 0.3]))
     shown = document.document(trajectory)
     rows = rows_of(shown)
@@ -189,7 +189,7 @@ def test_what_was_stepped_is_recorded_too():
         trajectory.velocity.components,
     ]
     assert np.array_equal(rows, np.concatenate(columns, axis=1))
-    # Momenta in the body are those of the inertia map, to the rounding of a turn there and back.
+    # Momenta in the body are those of the inertia map, to the rounding of two rotations.
     np.testing.assert_allclose(rows[:, 11:14], rows[:, 5:8] * [1, 2, 2.5], rtol=0, atol=1e-14)
     about = json.loads(shown["recorded"]["about"])
     assert about["held"]
@@ -204,7 +204,7 @@ def rows_of(shown):
 
 
 def interface(name):
-    """The names of the fields of an interface in TypeScript, those inside others too."""
+    """The names of the fields of an interface in TypeScript, nested ones included."""
     text = (ROOT / "viewer/src/core/core.ts").read_text()
     body = re.search(rf"export interface {name} {{\n(.*?)\n}}", text, flags=re.DOTALL)[1]
     return re.findall(r"^  (\w+):", body, flags=re.MULTILINE), {
@@ -213,7 +213,7 @@ def interface(name):
     }
 
 
-def test_the_form_is_that_of_the_viewer():
+def test_the_format_is_that_of_the_viewer():
     scene = ph.Scene.read(EXAMPLES / "kovalevskaya.toml")
     about = json.loads(document.document(scene.run())["recorded"]["about"])
     fields, inner = interface("About")
@@ -243,7 +243,7 @@ def test_rows_are_close_where_a_body_turns_fast():
     assert rows[0, 0] == 0
     assert rows[-1, 0] == 2
     turns = 2 * np.arccos(np.abs(np.einsum("ij,ij->i", rows[1:, 1:5], rows[:-1, 1:5])).clip(max=1))
-    # Damping alone lets nothing turn faster than at the start.
+    # Under damping alone the rate is largest at the start.
     assert turns.max() <= recording._TURN
     assert rows[:, 1:5] == pytest.approx(trajectory.at(rows[:, 0]).rotor.components, abs=1e-12)
 
@@ -255,7 +255,7 @@ def test_a_long_motion_is_thinned():
     assert len(rows) == 20_000
     assert (rows[0, 0], rows[-1, 0]) == (0, 100)
     assert np.isin(rows[:, 0], times).all()
-    # Evenly: no two are more than an output time further apart than others.
+    # Evenly: intervals differ by one output time at most.
     assert set(np.diff(np.searchsorted(times, rows[:, 0]))) == {2, 3}
 
 
@@ -269,20 +269,20 @@ def test_a_motion_that_an_event_ended_is_shown_to_its_end():
     assert len(scene.times) == len(trajectory.time)
 
 
-def test_times_that_stand_twice_are_kept_once():
+def test_equal_times_are_kept_once():
     trajectory = ph.simulate(MOMENTS, START, [0, 1, 1, 2], T.viscous_damping(0.1))
     trajectory = ph.Trajectory(**{**vars(trajectory), "_motion": None})
     assert rows_of(document.document(trajectory))[:, 0].tolist() == [0, 1, 2]
 
 
-def test_a_function_of_python_is_recorded_alone():
+def test_a_motion_under_a_python_function_is_recorded_alone():
     shown = document.document(MOMENTS, START, lambda t, R, W: -0.1 * W, duration=3)
     assert "scene" not in shown
     assert rows_of(shown)[-1, 0] == 3
     assert json.loads(shown["recorded"]["about"])["laws"] == [{"name": "function", "text": ""}]
 
 
-def test_the_mesh_of_a_scene_comes_with_it(tmp_path):
+def test_the_document_has_the_mesh_of_the_scene(tmp_path):
     path = EXAMPLES / "t-handle.toml"
     shown = document.document(path)
     assert {name: unpacked(x) for name, x in shown["files"].items()} == {
@@ -290,7 +290,7 @@ def test_the_mesh_of_a_scene_comes_with_it(tmp_path):
     }
     scene = ph.Scene.read(path)
     assert document.scene_of(shown).body == scene.body
-    # Above the scene, and by its whole path.
+    # In a parent folder, and by an absolute path.
     (tmp_path / "scenes/own").mkdir(parents=True)
     shutil.copy(EXAMPLES / "t-handle.stl", tmp_path)
     for name in ("../../t-handle.stl", str(tmp_path / "t-handle.stl")):
@@ -301,7 +301,7 @@ def test_the_mesh_of_a_scene_comes_with_it(tmp_path):
         assert document.scene_of(shown).body == scene.body
 
 
-def test_a_mesh_that_was_stepped_is_drawn_as_one(tmp_path):
+def test_a_stepped_mesh_body_is_drawn_as_its_mesh(tmp_path):
     shutil.copy(EXAMPLES / "t-handle.stl", tmp_path)
     path = tmp_path / "a.toml"
     text = (EXAMPLES / "t-handle.toml").read_text()
@@ -322,20 +322,20 @@ def test_a_mesh_that_was_stepped_is_drawn_as_one(tmp_path):
         ),
     ],
 )
-def test_solids_are_told_with_their_sizes(body, solid, at, tmp_path):
+def test_solids_have_their_sizes(body, solid, at, tmp_path):
     path = tmp_path / "a.toml"
     weight = '[gravity]\nacceleration = 9.81\npivot = [0, 0, "-5 cm"]\n[run]'
     text = SCENE.replace("moments = [1, 2, 3]", f"{body}\nmass = 2").replace("[run]", weight)
     path.write_text(text + 'method = "rk4"\nstep = "10 ms"\n')
     about = json.loads(document.document(ph.Scene.read(path).run())["recorded"]["about"])
-    told = dict(about["body"]["solid"])
-    assert told.pop("kind") in body
-    assert told == solid
-    # The origin of the solid stands 5 cm above the fixed point.
+    found = dict(about["body"]["solid"])
+    assert found.pop("kind") in body
+    assert found == solid
+    # The origin of the solid is 5 cm above the fixed point.
     assert about["body"]["solid_at"] == pytest.approx([0, 0, 0.05], abs=1e-17)
 
 
-def test_a_scene_with_mistakes_is_given_as_it_is(tmp_path):
+def test_an_invalid_scene_is_given_unchanged(tmp_path):
     for text in ("what is this", '[body]\nmesh = "absent.stl"', "body = 3", '[body]\nmesh = "a\\u0000b"'):
         shown = document.of_text(text, tmp_path / "bad.toml")
         assert shown == {"format": 1, "scene": text, "name": "bad.toml"}
@@ -343,14 +343,14 @@ def test_a_scene_with_mistakes_is_given_as_it_is(tmp_path):
             document.scene_of(shown)
 
 
-def test_what_cannot_be_shown_is_said():
+def test_values_that_cannot_be_shown_are_refused():
     def refused(kind, match, *arguments, **named):
         with pytest.raises(kind, match=match):
             document.document(*arguments, **named)
 
     scene = ph.Scene.read(EXAMPLES / "toutatis.toml")
-    refused(TypeError, "cannot show what is of type int", 3)
-    refused(TypeError, "give its state", MOMENTS)
+    refused(TypeError, "cannot show a value of type int", 3)
+    refused(TypeError, "give state", MOMENTS)
     refused(TypeError, "torque cannot be given for a Scene", scene, torque=T.damping(1))
     refused(TypeError, "duration cannot be given for a Scene, which has its own", scene, duration=3)
     refused(TypeError, "state and torque cannot be given for 'a.toml'", "a.toml", START, T.damping(1))
@@ -362,7 +362,7 @@ def test_what_cannot_be_shown_is_said():
     many = ph.simulate(MOMENTS, ph.State(START.rotor, np.ones((2, 3))), [0, 1])
     refused(ValueError, "one body", many)
     backwards = ph.simulate(MOMENTS, START, [-1, 0], T.viscous_damping(0.1))
-    refused(ValueError, "no later time", backwards)
+    refused(ValueError, "this one has none", backwards)
 
 
 def test_a_motion_without_an_end_is_shown_for_20_turns():
@@ -386,17 +386,17 @@ def test_a_motion_without_an_end_is_shown_for_20_turns():
         ),
     ],
 )
-def test_closed_forms_are_shown_by_the_scene_they_solve(motion, law):
+def test_closed_forms_are_shown_as_the_scene_they_solve(motion, law):
     scene = document.scene_of(document.document(motion, duration=2))
     assert [one.name for one in scene.torque.laws] == [law]
     trajectory = scene.run()
     assert trajectory.certificate.method == "exact"
     at = motion.at(2.0)
-    # Both are exact to rounding, of a turn by some 10 rad.
+    # Both are exact to the rounding of an angle of about 10 rad.
     assert (trajectory.rotor[-1] - at.rotor).norm() < 1e-14
 
 
-def test_text_comes_back():
+def test_packed_text_is_unpacked():
     content = RNG.bytes(1000)
     assert unpacked(packed(content)) == content
     assert packed(content) == packed(content)
@@ -441,7 +441,7 @@ def test_a_file_without_a_scene_is_recorded_alone(saved):
     assert document.title_of(shown) == "Saved"
 
 
-def test_a_file_of_a_scene_brings_it(tmp_path):
+def test_a_file_contains_its_scene(tmp_path):
     pytest.importorskip("h5netcdf")
     for name, expected in (("kovalevskaya", {"recorded"}), ("toutatis", set())):
         scene = ph.Scene.read(EXAMPLES / f"{name}.toml")
@@ -449,24 +449,24 @@ def test_a_file_of_a_scene_brings_it(tmp_path):
         shown = document.document(tmp_path / "a.nc")
         assert shown["scene"] == scene.text
         assert set(shown) - {"format", "name", "scene"} == expected
-    # Its mesh is beside it or nowhere.
+    # Its mesh is found only beside it.
     ph.Scene.read(EXAMPLES / "t-handle.toml").run().save(tmp_path / "a.nc")
     assert "scene" not in document.document(tmp_path / "a.nc")
     shutil.copy(EXAMPLES / "t-handle.stl", tmp_path)
     assert "t-handle.stl" in document.document(tmp_path / "a.nc")["files"]
 
 
-def test_a_motion_of_other_than_finite_numbers_is_refused(saved):
+def test_a_motion_that_is_not_finite_is_refused(saved):
     h5py = pytest.importorskip("h5py")
     trajectory, path = saved
     with h5py.File(path, "r+") as file:
         file["energy"][3] = np.nan
-    told = f"this motion has others at t = {trajectory.time[3]:g} s"
-    with pytest.raises(ValueError, match=told):
+    message = f"this motion has others at t = {trajectory.time[3]:g} s"
+    with pytest.raises(ValueError, match=message):
         document.document(path)
 
 
-def test_files_that_are_cut_off_are_refused(saved):
+def test_truncated_files_are_refused(saved):
     _, path = saved
     content = path.read_bytes()
     for length in (0, 100, len(content) // 2, len(content) - 1):
@@ -499,7 +499,7 @@ def test_other_files_are_refused(tmp_path):
         ph.Trajectory.read(tmp_path / "many.nc")
 
 
-def test_what_was_asked_for_is_not_pickled():
+def test_the_problem_is_not_pickled():
     import pickle
 
     trajectory = ph.simulate(MOMENTS, START, [0, 1], lambda t, R, W: -0.1 * W)

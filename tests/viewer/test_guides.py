@@ -1,4 +1,4 @@
-"""The pages that `make docs` builds, read from disk."""
+"""The pages built by `make docs`, opened from disk."""
 
 import pytest
 
@@ -9,7 +9,7 @@ PAGES = ROOT / "build/docs"
 
 
 @pytest.mark.parametrize("name", ["index", "live/free", "live/tops", "live/satellites"])
-def test_the_viewer_is_in_the_guides(name, new_page):
+def test_guides_contain_viewers(name, new_page):
     path = PAGES / f"{name}.html"
     if not (PAGES / "_static/polhode-viewer.js").exists():
         left_out("build/docs is missing, or has no viewer: make docs")
@@ -22,7 +22,7 @@ def test_the_viewer_is_in_the_guides(name, new_page):
         assert viewer.get_attribute("data-time") == "0"
 
 
-def test_the_guides_are_all_there():
+def test_every_guide_has_a_page():
     if not (PAGES / "index.html").exists():
         left_out("build/docs is missing: make docs")
     for guide in (ROOT / "docs").glob("*.md"):

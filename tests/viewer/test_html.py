@@ -1,4 +1,4 @@
-"""Pages of one file: nothing from outside, no early end of a script, and how the command writes them."""
+"""Self-contained pages: no external content, escaped scripts, and how the command writes them."""
 
 import json
 import re
@@ -39,7 +39,7 @@ class Page(HTMLParser):
 
 @pytest.mark.usefixtures("bundle")
 @pytest.mark.parametrize("text", [f'title = "a"\n# {NASTY}\n', NASTY, "", "é" * 10])
-def test_what_is_shown_comes_back_and_stays_data(text):
+def test_the_document_is_embedded_as_data(text):
     shown = {"format": 1, "scene": text, "name": NASTY}
     page = Page(_html.page(shown))
     assert json.loads(page.texts["application/json"]) == shown
@@ -49,17 +49,17 @@ def test_what_is_shown_comes_back_and_stays_data(text):
 
 
 @pytest.mark.usefixtures("bundle")
-def test_a_title_is_text():
+def test_a_title_is_escaped():
     shown = {"format": 1, "scene": f"title = {json.dumps(NASTY)}"}
     page = Page(_html.page(shown))
     assert page.texts["title"].strip() == NASTY
     assert len(page.all("script")) == 2
-    # A file may have a name that is no text.
+    # A file name may be invalid UTF-8.
     assert "<title>caf?</title>" in _html.page({"format": 1, "scene": "", "name": "caf\udce9.toml"})
 
 
 @pytest.mark.usefixtures("bundle")
-def test_nothing_comes_from_outside():
+def test_a_page_loads_nothing():
     text = _html.page(document.document(EXAMPLES / "t-handle.toml"))
     page = Page(text)
     assert text.startswith("<!doctype html>\n<html lang=")
@@ -71,21 +71,21 @@ def test_nothing_comes_from_outside():
     assert not re.search(r"https?:|\*|'self'", policy)
     addresses = [one.get(name) for _, one in page.elements for name in ("src", "href") if one.get(name)]
     assert addresses == ["data:,"]
-    # The policy stands before whatever it rules.
+    # The policy precedes what it applies to.
     assert text.index("Content-Security-Policy") < text.index("<style")
 
 
-def test_a_bundle_that_cannot_stand_in_a_page_is_refused(bundle):
+def test_a_bundle_that_cannot_be_embedded_is_refused(bundle):
     bundle.write_text('"<!-- <script>"')
     with pytest.raises(ValueError, match="<!--"):
         _html.page({"format": 1})
 
 
-def test_a_missing_bundle_is_told_with_the_remedy(tmp_path, monkeypatch, capsys):
+def test_a_missing_bundle_is_reported_with_the_remedy(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(_html, "_BUNDLE", tmp_path / "viewer.js")
     with pytest.raises(FileNotFoundError, match="make viewer"):
         _html.page({"format": 1})
-    # Before the work.
+    # Before the run.
     assert main.main(["run", str(EXAMPLES / "toutatis.toml"), "--html", str(tmp_path / "a.html")]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
@@ -113,7 +113,7 @@ def test_run_writes_a_page(scene, capsys):
 
 
 @pytest.mark.usefixtures("bundle")
-def test_a_stepped_run_brings_what_was_computed(scene, capsys):
+def test_the_page_of_a_stepped_run_has_its_states(scene, capsys):
     scene.write_text(SCENE + 'method = "rk4"\nstep = "10 ms"\n')
     assert main.main(["run", str(scene), "--json", "--html", str(scene.with_name("a.html"))]) == 0
     summary = json.loads(capsys.readouterr().out)
@@ -133,8 +133,8 @@ def test_data_figures_and_page_are_written_together(many, scene, capsys):
     assert main.main(["run", str(scene), "-o", str(output), "--html", str(target)]) == 0
     figures = ("ensemble", "directions") if many else ("motion", "polhode")
     names = ["a.nc", *(f"a-{figure}.png" for figure in figures), "a.html"]
-    told = capsys.readouterr().out.partition("Written\n")[2].split()
-    assert told == [str(scene.with_name(name)) for name in names]
+    listed = capsys.readouterr().out.partition("Written\n")[2].split()
+    assert listed == [str(scene.with_name(name)) for name in names]
     assert sorted(path.name for path in scene.parent.iterdir()) == sorted([*names, "small.toml"])
 
 

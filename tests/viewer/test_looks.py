@@ -1,4 +1,4 @@
-"""How a page looks: pictures by what is in them, themes, small screens, and what a frame takes."""
+"""The look of a page: pictures, themes, small screens, and the time per frame."""
 
 import io
 
@@ -24,7 +24,7 @@ def colours(theme):
 
 
 def picture(page):
-    """Return what the canvas and its labels look like, (height, width, 3)."""
+    """Return the picture with its labels as pixels (height, width, 3)."""
     image = pytest.importorskip("PIL.Image")
     page.drawn()
     shot = page.page.locator("polhode-viewer .picture").screenshot(animations="disabled")
@@ -32,7 +32,7 @@ def picture(page):
 
 
 def near(pixels, colour, distance=12):
-    """How many pixels have a colour, up to the smoothing of edges."""
+    """Return how many pixels have a colour, up to antialiasing."""
     return int((np.abs(pixels - colour).max(axis=-1) <= distance).sum())
 
 
@@ -43,7 +43,7 @@ def test_pictures_show_the_motion(name, opened):
     page = opened(name, color_scheme="light")
     first = picture(page)
     light = colours("LIGHT")
-    # Most is background; the rims of the discs of Ω and L are there in their own colours.
+    # Most pixels are background; the discs of Ω and L have rims in their own colours.
     assert 0.3 * first[..., 0].size < near(first, light["background"]) < 0.98 * first[..., 0].size
     assert near(first, light["omega"], 40) > 100
     assert near(first, light["momentum"], 40) > 100
@@ -51,7 +51,7 @@ def test_pictures_show_the_motion(name, opened):
     assert np.abs(picture(page) - first).max() > 50
 
 
-def test_the_same_state_looks_the_same(opened):
+def test_same_state_looks_the_same(opened):
     page = opened("t-handle")
     page.seek(1.0)
     first = picture(page)
@@ -59,7 +59,7 @@ def test_the_same_state_looks_the_same(opened):
     other = picture(page)
     page.seek(1.0)
     again = picture(page)
-    # Labels may be placed a pixel beside; another state differs in far more.
+    # Labels may move by a pixel; another state differs in far more pixels.
     changed = (np.abs(again - first).max(axis=-1) > 32).mean()
     assert changed < 0.002
     assert (np.abs(other - first).max(axis=-1) > 32).mean() > 10 * max(changed, 0.001)
@@ -73,8 +73,8 @@ ALONE = {
 
 @pytest.mark.parametrize("still", ["reduce", "no-preference"])
 @pytest.mark.parametrize("chosen", [True, False], ids=["chosen", "given"])
-def test_with_the_body_it_stands_still(still, chosen, opened, follow):
-    """The camera turns with the body from the first picture on, also while nothing moves."""
+def test_body_stands_still_for_its_camera(still, chosen, opened, follow):
+    """The camera turns with the body from the first frame on, even while the motion is paused."""
     view = {"time": 1.0, "playing": False, "shown": ALONE}
     document = _document.of_scene(follow("t-handle").scene)
     camera = {} if chosen else {"camera": "with the body"}
@@ -87,17 +87,17 @@ def test_with_the_body_it_stands_still(still, chosen, opened, follow):
     first = picture(page)
     for time in (2.37, 5.0):
         page.seek(time)
-        # The body turns by many turns meanwhile.
+        # The body makes many turns between these times.
         assert differ(first, picture(page)) < 1e-4
 
 
 def differ(one, other):
-    """Return the part of the pixels that are not alike."""
+    """Return the fraction of pixels that differ."""
     return (np.abs(one - other).max(axis=-1) > 32).mean()
 
 
 def settle(page):
-    """Wait until no more pictures are drawn: a camera takes its time."""
+    """Wait until no more frames are drawn: cameras move smoothly."""
     stage = page.page.locator("polhode-viewer .stage")
     drawn = None
     while drawn != (drawn := stage.get_attribute("data-drawn")):
@@ -105,14 +105,14 @@ def settle(page):
 
 
 @pytest.mark.parametrize("theme", ["LIGHT", "DARK"])
-def test_themes_follow_the_machine(theme, opened):
+def test_themes_follow_the_system(theme, opened):
     page = opened("t-handle", color_scheme=theme.lower())
     pixels = picture(page)
     assert near(pixels, colours(theme)["background"], 3) > 0.3 * pixels[..., 0].size
     assert near(pixels, colours(theme)["omega"]) > 100
 
 
-def test_a_theme_is_chosen(opened):
+def test_theme_can_be_chosen(opened):
     page = opened("t-handle", color_scheme="light")
     page.page.locator("#panel-view summary").click()
     page.page.get_by_label("Colours").select_option("dark")
@@ -121,13 +121,13 @@ def test_a_theme_is_chosen(opened):
 
 
 @pytest.mark.parametrize("shown", ["t-handle", {"format": 1, "page": "algebra"}], ids=["motion", "algebra"])
-def test_a_phone_shows_all_without_sideways_scrolling(shown, opened):
+def test_phone_needs_no_sideways_scrolling(shown, opened):
     page = opened(shown, viewport={"width": 360, "height": 740}, is_mobile=True, has_touch=True)
     page.drawn()
     wide = page.page.evaluate(
         f"""() => [document.documentElement, ...{VIEWER}.shadowRoot.querySelectorAll("*")]
             .filter((element) => element.clientWidth > 200 && element.scrollWidth > element.clientWidth + 1)
-            // What is cut off at the edge of a picture cannot be scrolled to.
+            // Clipped content cannot be scrolled to.
             .filter((element) => !["hidden", "clip"].includes(getComputedStyle(element).overflowX))
             .map((element) => `${{element.localName}}.${{element.className}}`)"""
     )
@@ -140,8 +140,8 @@ def test_a_phone_shows_all_without_sideways_scrolling(shown, opened):
     assert outside == []
 
 
-def test_a_picture_that_is_stroboscopic_says_so(opened):
-    """At sixty pictures in a second, a hundred turns are seen as they turn at up to a tenth of the speed."""
+def test_stroboscopic_picture_has_a_warning(opened):
+    """At 60 frames per second, 100 turns per second are visible at up to a tenth of the true speed."""
     page = opened("gyroscope")
     note = page.page.get_by_text("Stroboscopic")
     for speed, playing, shown in (
@@ -159,8 +159,8 @@ def test_a_picture_that_is_stroboscopic_says_so(opened):
             assert "up to 0.1×" in note.inner_text()
 
 
-def test_frames_of_a_long_trace(opened, record_property):
-    """What a frame takes with ten thousand points of a path is told in the report, not judged."""
+def test_time_per_frame_of_a_long_trace(opened, record_property):
+    """The time per frame with ten thousand points of a path is reported, not asserted."""
     scene = TUMBLING + '[run]\nduration = "10 min"\nsamples = 10001\n'
     page = opened({"format": 1, "scene": scene, "view": {"speed": 20, "playing": True}})
     stage = page.page.locator("polhode-viewer .stage")

@@ -1,4 +1,4 @@
-"""The widget in JupyterLab: Python and the page follow each other."""
+"""The widget in JupyterLab: Python and the page are synchronised."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from missing import left_out
 
 CELLS = (
     "import polhode as ph\nviewer = ph.view('box.toml')\nviewer",
-    "print('told', viewer.state is not None)",
+    "print('reported', viewer.state is not None)",
     "viewer.time = 1.25",
     "print('shown', viewer.time, viewer.state.omega_body.components.tolist())",
 )
@@ -30,7 +30,7 @@ duration = "5 s"
 
 @pytest.fixture
 def notebook(tmp_path):
-    """Where JupyterLab shows a notebook with the cells."""
+    """The address of a notebook with the cells in JupyterLab."""
     try:
         import ipykernel  # noqa: F401
         import jupyterlab  # noqa: F401
@@ -61,17 +61,17 @@ def notebook(tmp_path):
     folders = {"JUPYTER_CONFIG_DIR": str(tmp_path / "config"), "JUPYTER_DATA_DIR": str(tmp_path / "data")}
     with processes.start(command, stdout=None, env={**os.environ, **folders}) as server:
         address = next(found[0] for line in server.stderr if (found := re.search(ADDRESS, line)))
-        # What it tells from now on nobody reads, but it must be taken.
+        # Drain its output, which nothing reads from now on.
         reader = threading.Thread(target=server.stderr.read)
         reader.start()
         yield f"{address}/lab?reset&token=secret"
-        # It ends its kernels, too.
+        # It also ends its kernels.
         server.terminate()
         server.wait()
         reader.join()
 
 
-def test_python_and_the_page_follow_each_other(notebook, pages):
+def test_python_and_the_page_are_synchronised(notebook, pages):
     page = pages()
     lab, viewer = page.page, page.viewer
     lab.context.set_offline(False)
@@ -97,7 +97,7 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
         )
 
     def run_until(cell, text):
-        """Run a cell until it prints a text; returns that. The page tells Python a little later."""
+        """Run a cell until it prints a text, and return it. The page reports to Python with a delay."""
         output = lab.locator(".jp-OutputArea-output", has_text=text)
         for _ in range(200):
             run(cell)
@@ -108,16 +108,16 @@ def test_python_and_the_page_follow_each_other(notebook, pages):
     run(0)
     viewer.wait_for(timeout=60_000)
     page.settled()
-    run_until(1, "told True")
+    run_until(1, "reported True")
     run(2)
     page.until("model.time.value === 1.25")
-    # Now by hand, in the page.
+    # Now in the page.
     lab.get_by_label("Time, s").fill("3.5")
     lab.get_by_label("Time, s").press("Enter")
     page.until("model.time.value === 3.5")
     rates = page.data("omega-body").tolist()
-    told = run_until(3, "shown 3.5")
-    assert json.loads(told.partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)
+    printed = run_until(3, "shown 3.5")
+    assert json.loads(printed.partition("3.5 ")[2]) == pytest.approx(rates, abs=1e-15)
     asked = {re.match(r"\w+://[^/]*", address)[0] for address in page.requests}
     assert {re.sub(r":\d+$", "", address) for address in asked} <= {"http://127.0.0.1", "ws://127.0.0.1"}
     lab.context.close()

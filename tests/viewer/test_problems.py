@@ -1,4 +1,4 @@
-"""What a page says when something is wrong."""
+"""Error messages of a page."""
 
 import pytest
 
@@ -8,37 +8,37 @@ from viewer_scenes import RUN, TUMBLING
 WRONG = (TUMBLING + RUN).replace("duration", "durration")
 
 
-def told(page):
-    """Return the message that the page gives as an alert."""
+def message_of(page):
+    """Return the alert of the page."""
     alert = page.page.get_by_role("alert")
     alert.wait_for()
     return alert.inner_text()
 
 
-def as_python_tells(text, path):
+def message_of_python(text, path):
     path.write_text(text)
     with pytest.raises(ph.SceneError) as error:
         ph.Scene.read(path)
     return str(error.value).replace(str(path), path.name)
 
 
-def test_a_wrong_scene_is_told_with_its_place(opened, tmp_path):
+def test_scene_error_has_its_place(opened, tmp_path):
     page = opened({"format": 1, "scene": WRONG, "name": "wrong.toml"})
-    expected = as_python_tells(WRONG, tmp_path / "wrong.toml")
+    expected = message_of_python(WRONG, tmp_path / "wrong.toml")
     assert "wrong.toml:6:1: error" in expected
     assert "^^^^" in expected
-    assert expected in told(page)
+    assert expected in message_of(page)
     assert page.viewer.get_attribute("data-state") == "problem"
 
 
-def test_a_wrong_file_leaves_the_motion_and_a_right_one_ends_the_message(opened, tmp_path):
+def test_wrong_file_keeps_the_motion_and_right_file_ends_the_message(opened, tmp_path):
     page = opened("asymmetric")
     page.seek(2.0)
     before = page.state()
-    # Written before the page is given the file: a browser refuses a file that changes while it is read.
-    expected = as_python_tells(WRONG, tmp_path / "wrong.toml")
+    # Written before the page opens the file, because a browser refuses a file that changes while it is read.
+    expected = message_of_python(WRONG, tmp_path / "wrong.toml")
     page.page.locator("#file").set_input_files(tmp_path / "wrong.toml")
-    assert expected in told(page)
+    assert expected in message_of(page)
     after = page.state()
     assert all((before[name] == after[name]).all() for name in ("rotor", "omega_body"))
     (tmp_path / "right.toml").write_text(TUMBLING + RUN)
@@ -48,7 +48,7 @@ def test_a_wrong_file_leaves_the_motion_and_a_right_one_ends_the_message(opened,
 
 
 def drop(page, **given):
-    """Drop files, by name with a dot for each double underscore, and wait for what is said of them."""
+    """Drop files, whose names have `__` for a dot, and wait for two frames."""
     page.page.evaluate(
         """given => {
             const files = new DataTransfer();
@@ -63,57 +63,55 @@ def drop(page, **given):
     page.drawn()
 
 
-def test_files_are_dropped(opened):
+def test_files_can_be_dropped(opened):
     page = opened("asymmetric")
     drop(page, dropped__toml=WRONG)
-    assert "dropped.toml:6:1: error" in told(page)
+    assert "dropped.toml:6:1: error" in message_of(page)
 
 
-def test_what_is_wrong_with_a_file_is_said_with_its_name(opened):
-    """Whatever was wrong before is not said again in its place."""
+def test_file_errors_name_the_file(opened):
+    """The message replaces that of the previous error."""
     page = opened("asymmetric")
     drop(page, wrong__toml=WRONG)
-    assert "wrong.toml:6:1: error" in told(page)
+    assert "wrong.toml:6:1: error" in message_of(page)
     right = TUMBLING + RUN
     for given, message in (
         ({"notes__txt": "a"}, "notes.txt: the page opens scenes (.toml), documents (.json) and meshes"),
         ({"run__nc": "a"}, "`polhode view` shows a netCDF file"),
-        ({"part__stl": "solid"}, "part.stl: wrong.toml does not name this file"),
+        ({"part__stl": "solid"}, "part.stl: wrong.toml does not refer to this file"),
         ({"a__json": "{"}, "a.json is not JSON"),
-        ({"b__json": "null"}, "b.json is not a document of this page"),
-        ({"b__json": "{}"}, "b.json is not a document of this page"),
+        ({"b__json": "null"}, "b.json is not a viewer document"),
+        ({"b__json": "{}"}, "b.json is not a viewer document"),
         ({"c__json": '{"format": 7}'}, "c.json: this page reads documents of format 1, not 7"),
         ({"d__toml": right, "e__toml": right}, "d.toml, e.toml: the page shows one scene at a time"),
     ):
         drop(page, **given)
         page.until("model.problem.value.includes(message)", message=message)
-        assert message in told(page)
-        assert "wrong.toml:6" not in told(page)
+        assert message in message_of(page)
+        assert "wrong.toml:6" not in message_of(page)
     drop(page, right__toml=right)
     page.page.get_by_role("alert").wait_for(state="detached")
 
 
-def test_a_message_about_a_file_is_closed(opened):
+def test_file_error_can_be_closed(opened):
     page = opened("asymmetric")
     page.seek(2.0)
     drop(page, notes__txt="a")
-    assert "notes.txt" in told(page)
+    assert "notes.txt" in message_of(page)
     page.page.get_by_role("button", name="Close").click()
     page.page.get_by_role("alert").wait_for(state="detached")
     assert page.data("time") == 2.0
 
 
-def test_a_mesh_that_does_not_mend_its_scene(opened):
+def test_mesh_that_does_not_fix_its_scene(opened):
     page = opened("asymmetric")
     scene = (TUMBLING + RUN).replace("moments = [1, 2, 3]", 'mesh = "a.stl"\ndensity = 1')
     drop(page, meshed__toml=scene)
-    assert "a.stl" in told(page)
+    assert "a.stl" in message_of(page)
     drop(page, a__stl="solid")
     page.until("model.problem.value.startsWith('a.stl: was added')")
-    assert (
-        "a.stl: was added to meshed.toml, in which something is still wrong:\nmeshed.toml:2:8: error"
-        in told(page)
-    )
+    expected = "a.stl: was added to meshed.toml, which is still invalid:\nmeshed.toml:2:8: error"
+    assert expected in message_of(page)
 
 
 @pytest.mark.parametrize(
@@ -131,30 +129,30 @@ def test_a_mesh_that_does_not_mend_its_scene(opened):
     ],
     ids=["format", "mesh", "toml"],
 )
-def test_documents_that_cannot_be_shown(document, message, opened):
-    assert message in told(opened(document))
+def test_invalid_documents_are_errors(document, message, opened):
+    assert message in message_of(opened(document))
 
 
-def test_text_that_is_no_document(new_page, opened, tmp_path):
+def test_text_that_is_not_a_document(new_page, opened, tmp_path):
     opened("asymmetric")
     path = next(tmp_path.glob("*.html"))
     head, _, tail = path.read_text().partition('{"format"')
     path.write_text(head + '{"formt' + tail)
     page = new_page()
     page.open(path)
-    assert "not JSON" in told(page)
+    assert "not JSON" in message_of(page)
 
 
-def test_a_motion_that_takes_too_long_is_given_up(opened):
+def test_motion_that_takes_too_long_is_an_error(opened):
     slow = (
         TUMBLING
         + '[torque]\nquadratic_damping = 0.1\n[run]\nduration = "9 d"\n[method]\nname = "rk4"\nstep = "1 ms"'
     )
     page = opened({"format": 1, "scene": slow})
-    assert "takes too long" in told(page)
+    assert "takes too long" in message_of(page)
 
 
-def test_without_webgl_the_numbers_are_there(new_page, opened, follow, tmp_path):
+def test_without_webgl_values_are_shown(new_page, opened, follow, tmp_path):
     opened("t-handle")
     page = new_page()
     page.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
@@ -165,7 +163,7 @@ def test_without_webgl_the_numbers_are_there(new_page, opened, follow, tmp_path)
     page.until("model.time.value !== time", time=page.data("time"))
 
 
-def test_a_picture_that_was_lost_comes_back(opened, follow):
+def test_lost_graphics_context_is_restored(opened, follow):
     page = opened("t-handle")
     page.allowed = ("THREE.WebGLRenderer: Context",)
     page.page.evaluate(
@@ -175,7 +173,7 @@ def test_a_picture_that_was_lost_comes_back(opened, follow):
             window.loss.loseContext();
         }"""
     )
-    message = page.page.get_by_role("status").get_by_text("let go of the picture")
+    message = page.page.get_by_role("status").get_by_text("graphics context was lost")
     message.wait_for()
     page.compare(follow("t-handle"))
     page.page.evaluate("window.loss.restoreContext()")

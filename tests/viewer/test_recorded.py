@@ -1,4 +1,4 @@
-"""What Python tells of a motion that it followed is what the core in the browser tells of it."""
+"""Recordings written by Python have the properties that the WebAssembly core finds."""
 
 import json
 import re
@@ -19,35 +19,36 @@ SCENES = {
     "magnetic = { dipole = [1e-5, 0, 0], field = [0, 3, 0] }\n"
     f'torque_space = "-1e-7 Ω"\n{RUN}',
 }
-# Told in words of their own, or rounding alone.
+# Worded differently, or only rounding errors.
 OWN = {"method", "exact", "horizon", "laws", "conserved", "norm_drift", "error_estimate"}
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_same_is_told(name, core, tmp_path):
+def test_properties_are_the_same(name, core, tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(SCENES[name], encoding="utf-8")
     trajectory = ph.Scene.read(path).run()
-    told = json.loads(document.document(trajectory)["recorded"]["about"])
+    found = json.loads(document.document(trajectory)["recorded"]["about"])
     expected, _ = core.motion(SCENES[name], [0.0], name="a.toml")
-    assert set(told) == set(expected)
+    assert set(found) == set(expected)
     for key in expected.keys() - OWN:
-        assert told[key] == close(expected[key]), key
-    assert list(map(law, told["laws"])) == list(map(law, expected["laws"]))
-    for ours, theirs in zip(told["conserved"], expected["conserved"], strict=True):
+        assert found[key] == close(expected[key]), key
+    assert list(map(law, found["laws"])) == list(map(law, expected["laws"]))
+    for ours, theirs in zip(found["conserved"], expected["conserved"], strict=True):
         assert ours["name"] == theirs["name"]
         assert ours["value"] == close(theirs["value"])
 
 
-def law(told):
-    """The name of a law, and its formula or its numbers, which are written in several ways."""
-    if told["name"].startswith("torque_"):
-        return told
-    return told["name"], told["text"].count("("), [float(x) for x in re.findall(r"[\d.e+-]+", told["text"])]
+def law(entry):
+    """Return the name of a law with its formula or its numbers, which may be formatted differently."""
+    if entry["name"].startswith("torque_"):
+        return entry
+    numbers = [float(x) for x in re.findall(r"[\d.e+-]+", entry["text"])]
+    return entry["name"], entry["text"].count("("), numbers
 
 
 def close(value):
-    """What is equal to a value but for the rounding of its numbers."""
+    """Return a value that compares equal up to rounding errors."""
     if isinstance(value, dict):
         return {name: close(x) for name, x in value.items()}
     if isinstance(value, list):

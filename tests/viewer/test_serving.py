@@ -1,4 +1,4 @@
-"""`polhode view` in a browser: what it serves is a page of its own, which asks nobody else."""
+"""`polhode view` in a browser: the page makes no requests to other servers."""
 
 import re
 
@@ -10,13 +10,13 @@ from command_line import EXAMPLES, POLHODE
 
 @pytest.fixture
 def served():
-    """Where the T-handle is served."""
+    """The address of a server for the T-handle."""
     command = [POLHODE, "view", EXAMPLES / "t-handle.toml", "--no-browser"]
     with processes.start(command, stderr=None) as process:
         yield re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
 
 
-def test_the_page_that_is_served(served, pages, follow):
+def test_served_page(served, pages, follow):
     page = pages()
     page.page.context.set_offline(False)
     page.page.goto(served)

@@ -1,4 +1,4 @@
-"""What a page tells of a motion is what Python computes."""
+"""The states shown by a page equal those of Python."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ EVERY = [*FILES, *PRESETS, *SCENES]
 
 @pytest.fixture(scope="module")
 def shared(pages, tmp_path_factory, follow):
-    """One page, which is shown one scene after the other."""
+    """One page for all scenes."""
     page = pages()
     path = tmp_path_factory.mktemp("page") / "page.html"
     path.write_text(_html.page(document.of_scene(follow("asymmetric").scene)))
@@ -24,7 +24,7 @@ def shared(pages, tmp_path_factory, follow):
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_scenes_are_followed_as_by_python(name, shared, follow):
+def test_scenes_have_the_states_of_python(name, shared, follow):
     followed = follow(name)
     shared.show(document.of_scene(followed.scene))
     assert shared.viewer.get_attribute("data-method") == followed.motion.certificate.method
@@ -40,7 +40,7 @@ def test_scenes_are_followed_as_by_python(name, shared, follow):
         ("gyrostat", True, True),
     ],
 )
-def test_only_what_is_conserved_drifts(name, momentum, energy, shared, follow):
+def test_drift_is_shown_for_conserved_quantities(name, momentum, energy, shared, follow):
     followed = follow(name)
     shared.show(document.of_scene(followed.scene))
     shared.seek(0.3 * followed.motion.time[-1])
@@ -48,30 +48,30 @@ def test_only_what_is_conserved_drifts(name, momentum, energy, shared, follow):
     values = dict(zip(("|L|", "E"), shared.page.locator(".readout.pair dd").all_inner_texts(), strict=True))
     for quantity, conserved in (("|L|", momentum), ("E", energy)):
         assert ("drift" in values[quantity]) is conserved
-        assert ("since t = 0" in values[quantity]) is not conserved
+        assert ("since the start" in values[quantity]) is not conserved
     kept = {"angular_momentum": momentum, "energy": energy}
     assert {name for name, yes in kept.items() if yes} <= set(followed.motion.certificate.conserved)
 
 
 def written_page(followed, page, folder):
-    """Open the page that `polhode run --html` writes of a scene."""
+    """Open the page that `polhode run --html` writes for a scene."""
     path = folder / "written.html"
     done = polhode("run", followed.path, "--html", path)
     assert (done.returncode, done.stderr) == (0, "")
-    # Without the motion a page is the viewer and little else.
+    # Without a recorded motion a page contains little but the viewer.
     assert path.stat().st_size < 1.5e6 or "recorded" in path.read_text()
     page.open(path)
     return page
 
 
 @pytest.mark.parametrize("name", ["t-handle", "nutating-top", "gravity-gradient", "dual-spin"])
-def test_pages_that_run_writes(name, new_page, follow, tmp_path):
+def test_pages_written_by_run(name, new_page, follow, tmp_path):
     followed = follow(name)
     written_page(followed, new_page(), tmp_path).compare(followed)
 
 
-def test_a_long_run_is_kept_thinner_than_it_turns(new_page, follow, tmp_path):
-    """Rows are 0.2 rad apart at most, and between them all is interpolated: off by 0.2²/8 at most."""
+def test_long_run_is_thinned(new_page, follow, tmp_path):
+    """Rows are at most 0.2 rad apart, and interpolation between them is off by at most 0.2²/8."""
     followed = follow("detumbling")
     page = written_page(followed, new_page(), tmp_path)
     page.compare(followed, 0.2**2 / 8)

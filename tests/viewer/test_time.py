@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 
-def test_a_page_begins_at_the_start_and_stands_still(opened, follow):
+def test_page_opens_paused_at_the_start(opened, follow):
     page = opened("t-handle")
     assert page.data("time") == 0
     expected = follow("t-handle").scene.state.omega_body.components
@@ -12,7 +12,7 @@ def test_a_page_begins_at_the_start_and_stands_still(opened, follow):
     assert page.page.get_by_role("button", name="Play").is_visible()
 
 
-def test_the_number_field_goes_to_a_time(opened):
+def test_number_field_seeks(opened):
     page = opened("t-handle")
     field = page.page.get_by_label("Time, s")
     field.fill("3.25")
@@ -22,11 +22,11 @@ def test_the_number_field_goes_to_a_time(opened):
 
 
 @pytest.mark.parametrize(("name", "last"), [("gyroscope", None), ("magnetic", 5)])
-def test_the_number_field_shows_the_time_that_is_shown(name, last, opened):
-    """A time beyond what is known of the motion, and text that is not a time, do not stay in the field."""
+def test_number_field_shows_the_current_time(name, last, opened):
+    """Entries that are not a time, or lie beyond the known motion, are replaced."""
     page = opened(name)
     field = page.page.get_by_label("Time, s")
-    # Twice: the second leaves the time as it is.
+    # Twice, because the second entry does not change the time.
     for entry in ("1e300", "1e300", "", "2", "", "1e300"):
         field.fill(entry)
         field.press("Enter")
@@ -39,7 +39,7 @@ def test_the_number_field_shows_the_time_that_is_shown(name, last, opened):
         )
 
 
-def test_other_fields_show_their_number_again(opened):
+def test_empty_field_shows_its_number_again(opened):
     page = opened("gyroscope")
     field = page.page.locator("#rate-number")
     before = field.input_value()
@@ -49,7 +49,7 @@ def test_other_fields_show_their_number_again(opened):
     assert field.input_value() == before
 
 
-def test_the_slider_covers_the_motion(opened):
+def test_slider_covers_the_motion(opened):
     page = opened("t-handle")
     slider = page.page.get_by_role("slider", name="Time", exact=True)
     assert (slider.get_attribute("min"), slider.get_attribute("max")) == ("0", "12")
@@ -57,11 +57,11 @@ def test_the_slider_covers_the_motion(opened):
     assert page.data("time") == 7.5
     box = slider.bounding_box()
     page.page.mouse.click(box["x"] + box["width"] / 3, box["y"] + box["height"] / 2)
-    # A third of twelve seconds, up to the half width of the handle.
+    # A third of twelve seconds, up to half the width of the handle.
     assert abs(page.data("time") - 4) < 0.5
 
 
-def test_exact_motions_go_on_after_their_end_and_others_stop_there(opened):
+def test_exact_motions_continue_after_their_end(opened):
     page = opened("t-handle")
     page.seek(1e6)
     assert page.data("time") == 1e6
@@ -93,10 +93,10 @@ def test_space_plays_and_arrows_step(opened):
     assert page.data("time") == 0
 
 
-def test_it_plays_at_the_speed_it_says(opened, new_page, tmp_path):
+def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
     opened("t-handle")
     page = new_page()
-    # A clock that stands still but for what it is told to run.
+    # A clock that advances only when the test says so.
     page.page.clock.install()
     page.open(next(tmp_path.glob("*.html")))
     page.page.get_by_role("button", name="Faster").click()
@@ -106,12 +106,12 @@ def test_it_plays_at_the_speed_it_says(opened, new_page, tmp_path):
     page.page.clock.pause_at(page.page.evaluate("Date.now() + 1000"))
     before = page.data("time")
     page.page.clock.run_for(1000)
-    # Up to the frame in which it began, and that in which it ended.
+    # Up to the first frame and the last one.
     assert page.data("time") - before == pytest.approx(speed, abs=2 * speed / 60)
 
 
-def test_a_page_that_is_ready_has_its_picture(new_page, opened, tmp_path):
-    """On a machine that is busy frames come late, and with them what is made after the first one."""
+def test_ready_page_has_its_picture(new_page, opened, tmp_path):
+    """On a busy machine, frames come late, and so does what is created after the first one."""
     opened("t-handle")
     page = new_page()
     page.page.add_init_script(
@@ -124,7 +124,7 @@ def test_a_page_that_is_ready_has_its_picture(new_page, opened, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["t-handle", "magnetic"])
-def test_the_controls_are_reached_by_tab_alone(name, opened):
+def test_tab_reaches_all_controls(name, opened):
     page = opened(name)
     page.page.evaluate("document.activeElement.blur()")
     controls = page.page.evaluate(CONTROLS)
@@ -137,7 +137,7 @@ def test_the_controls_are_reached_by_tab_alone(name, opened):
     assert reached == controls
 
 
-# The element with the focus, through shadow roots: its tag and id, and whether it is marked.
+# The focused element, through shadow roots: tag, id, and whether the focus is visible.
 FOCUSED = """() => {
     let element = document.activeElement;
     while (element.shadowRoot?.activeElement) element = element.shadowRoot.activeElement;

@@ -1,4 +1,4 @@
-"""``polhode view``: what it serves, to whom, and how it ends."""
+"""``polhode view``: what it serves, to which hosts, and how it ends."""
 
 import http.client
 import json
@@ -36,7 +36,7 @@ def serving(source):
 
 
 def answer(server, path, method="GET", host=None):
-    """Status, headers and content of what the server answers."""
+    """Status, headers and content of an answer of the server."""
     connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=10)
     hosts = [f"127.0.0.1:{server.port}"] if host is None else host
     connection.putrequest(method, path, skip_host=True)
@@ -80,12 +80,12 @@ def test_nothing_else_is_served(path, served):
     assert b"moments" not in content
 
 
-def test_only_this_machine_is_answered(served):
+def test_only_this_machine_is_served(served):
     assert served.server_address[0] == "127.0.0.1"
     port = served.port
     for host in (f"127.0.0.1:{port}", f"localhost:{port}"):
         assert answer(served, "/", host=[host])[0] == 200
-    # As by a page elsewhere whose name was made to lead here.
+    # As from a remote page whose name resolves to this machine.
     others = [
         ["polhode.example"],
         [f"polhode.example:{port}"],
@@ -99,11 +99,11 @@ def test_only_this_machine_is_answered(served):
     for host in others:
         for path in ("/", "/viewer.js", "/document.json"):
             status, _, content = answer(served, path, host=host)
-            assert (status, content) == (403, b"this is no name of this server\n")
+            assert (status, content) == (403, b"not a host name of this server\n")
     assert not served.verify_request(None, ("192.0.2.1", 5))
 
 
-def test_nothing_is_kept_and_nothing_may_come_from_elsewhere(served):
+def test_headers_forbid_caching_and_foreign_content(served):
     for path in ("/", "/viewer.js", "/document.json", "/absent"):
         _, headers, _ = answer(served, path)
         assert headers["Cache-Control"] == "no-store"
@@ -120,7 +120,7 @@ def test_other_requests(served):
         assert answer(served, "/document.json", method=method)[0] == 501
 
 
-def test_noise_does_not_end_the_server(served, capsys):
+def test_invalid_requests_do_not_end_the_server(served, capsys):
     for noise in (b"\x16\x03\x01 noise\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n"):
         with socket.create_connection(("127.0.0.1", served.port), timeout=10) as connection:
             connection.sendall(noise)
@@ -136,13 +136,13 @@ def test_the_scene_is_read_again(served, scene):
         assert shown["scene"] == text
         assert ("recorded" in shown) == (text == STEPPED)
     scene.unlink()
-    status, _, told = answer(served, "/document.json")
-    assert (status, told) == (404, f"{scene}: error: no such file\n".encode())
+    status, _, content = answer(served, "/document.json")
+    assert (status, content) == (404, f"{scene}: error: no such file\n".encode())
     scene.write_bytes(b'title = "caf\xe9"')
     assert json.loads(answer(served, "/document.json")[2])["scene"] == 'title = "caf\ufffd"'
 
 
-def test_a_scene_is_followed_once(scene, monkeypatch):
+def test_a_scene_is_run_once(scene, monkeypatch):
     scene.write_text(STEPPED)
     source, runs = _view.Source(scene), []
     run = ph.Scene.run
@@ -155,7 +155,7 @@ def test_a_scene_is_followed_once(scene, monkeypatch):
     assert len(runs) == 2
 
 
-def test_a_motion_that_cannot_be_followed_is_left_to_the_page(scene):
+def test_the_page_reports_a_motion_that_fails(scene):
     text = STEPPED.replace("10 ms", "1e-15 s")
     scene.write_text(text)
     source = _view.Source(scene)
@@ -164,7 +164,7 @@ def test_a_motion_that_cannot_be_followed_is_left_to_the_page(scene):
     assert source.shown() == {"format": 1, "scene": text, "name": "small.toml"}
 
 
-def test_an_ensemble_is_left_to_the_page(scene):
+def test_the_page_runs_an_ensemble(scene):
     text = SCENE.replace("[run]", '[ensemble]\nnumber = 3\nattitude = "uniform"\n[run]')
     scene.write_text(text)
     assert _view.Source(scene).document()["scene"] == text
@@ -199,7 +199,7 @@ def test_a_file_of_a_run_is_shown(tmp_path):
 
 
 @pytest.mark.usefixtures("bundle")
-def test_what_cannot_be_shown_is_a_bad_file(tmp_path, capsys):
+def test_files_that_cannot_be_shown_are_bad_input(tmp_path, capsys):
     (tmp_path / "bad.toml").write_text(SCENE.replace("duration", "durration"))
     (tmp_path / "bad.nc").write_bytes(b"noise")
     for name, part in (
@@ -230,25 +230,25 @@ def test_a_port_is_a_number(port, scene, capsys):
     assert "expected a port" in capsys.readouterr().err
 
 
-def test_a_missing_bundle_is_told(scene, tmp_path, monkeypatch, capsys):
+def test_a_missing_bundle_is_reported(scene, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("polhode._viewer.html._BUNDLE", tmp_path / "absent.js")
     assert main.main(["view", str(scene)]) == 1
     assert "make viewer" in capsys.readouterr().err
 
 
-def test_the_browser_is_opened_where_the_page_is(scene, bundle, monkeypatch, capsys):
+def test_the_browser_is_opened_at_the_page(scene, bundle, monkeypatch, capsys):
     opened = threading.Event()
-    told = []
+    addresses = []
 
     def serve_forever(server, poll_interval=0.5):
         assert opened.wait(10)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("webbrowser.open", lambda url: (told.append(url), opened.set()))
+    monkeypatch.setattr("webbrowser.open", lambda url: (addresses.append(url), opened.set()))
     monkeypatch.setattr(_view.Server, "serve_forever", serve_forever)
     assert main.main(["view", str(scene)]) == 130
     captured = capsys.readouterr()
-    assert captured.out.startswith(f"{scene} is shown at {told[0]}\n")
+    assert captured.out.startswith(f"{scene} is shown at {addresses[0]}\n")
     assert captured.err == "the viewer was closed\n"
 
 

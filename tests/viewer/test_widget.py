@@ -1,4 +1,4 @@
-"""The widget: what Python sets the page gets, and the other way round."""
+"""The widget: values set by Python are sent to the page, and the reverse."""
 
 import json
 import re
@@ -20,12 +20,12 @@ START = ph.State(ph.Rotor.identity(), [0.01, 1, 0.01])
 
 @pytest.fixture
 def line(bundle, monkeypatch):
-    """Gives the line of a widget to its page."""
+    """The connection of a widget to its page."""
     monkeypatch.setattr("comm.create_comm", Comm)
     return lambda viewer: viewer.comm
 
 
-def test_a_page_is_given_the_document_and_the_bundle(line, bundle):
+def test_the_page_gets_the_document_and_the_bundle(line, bundle):
     viewer = ph.view(EXAMPLES / "toutatis.toml")
     given = line(viewer).opened["state"]
     assert given["document"] == _document.document(EXAMPLES / "toutatis.toml")
@@ -36,7 +36,7 @@ def test_a_page_is_given_the_document_and_the_bundle(line, bundle):
     assert given["shown"] == {}
 
 
-def test_what_python_sets_the_page_gets(line):
+def test_the_page_gets_what_python_sets(line):
     viewer = ph.view(INERTIA, START)
     values = {
         "time": 1.25,
@@ -54,7 +54,7 @@ def test_what_python_sets_the_page_gets(line):
     assert line(viewer).told["time"] == 3
 
 
-def test_what_the_page_says_python_gets(line):
+def test_python_gets_what_the_page_sends(line):
     viewer = ph.view(INERTIA, START)
     heard = []
     viewer.observe(lambda change: heard.append((change["name"], change["new"])), ["time", "scene", "problem"])
@@ -70,11 +70,11 @@ def test_what_the_page_says_python_gets(line):
         ("problem", "scene.toml:1:1: error"),
         ("problem", None),
     ]
-    # It is not told what it said, but for the echo that the protocol asks of us.
+    # Its values are not sent back, except for the echo that the protocol requires.
     assert all(message["method"] == "echo_update" for message in page.sent)
 
 
-def test_the_state_of_the_page_is_a_state_here(line):
+def test_the_state_of_the_page_is_a_state(line):
     viewer = ph.view(INERTIA, START)
     state = ph.FreeMotion(INERTIA, START.rotor, START.omega_body).at(0.7)
     line(viewer).says(
@@ -103,7 +103,7 @@ def agree(state, expected, tolerance=0.0):
 
 
 def test_the_state_is_that_of_the_time_that_was_set(line):
-    """The page answers between cells; within one the state is computed here."""
+    """The page answers between cells; within a cell the state is computed here."""
     motion = ph.FreeMotion(INERTIA, START.rotor, START.omega_body)
     viewer = ph.view(INERTIA, START, duration=2)
     assert viewer.state is None
@@ -111,20 +111,20 @@ def test_the_state_is_that_of_the_time_that_was_set(line):
     at_start = {"time": 0.0, "rotor": [1, 0, 0, 0], "omega_body": [0.01, 1, 0.01]}
     page.says(time=0.0, state={**at_start, "position": [0, 0, 0], "velocity": [0, 0, 0]})
     agree(viewer.state, START)
-    # A motion in closed form is known beyond its duration, and before it.
+    # A closed form is known before its start and after its end.
     for time in (0.7, 1.9, 12.5, -3.0):
         viewer.time = time
         agree(viewer.state, motion.at(time), 1e-15)
     viewer.scene = viewer.scene.replace("1.0, 2.0, 3.0", "1.0, 2.0, 2.5")
     other = ph.FreeMotion(ph.Inertia.from_principal_moments(1, 2, 2.5), START.rotor, START.omega_body)
     agree(viewer.state, other.at(-3.0), 1e-15)
-    # What the page says of another time does not pass for the state of this one.
+    # A report of another time is not taken for the state of this one.
     page.says(camera="along e1")
     agree(viewer.state, other.at(-3.0), 1e-15)
     viewer.scene = viewer.scene.replace("duration", "durration")
     with pytest.raises(ph.SceneError, match="missing field `duration`"):
         viewer.state  # noqa: B018
-    # A page that is loaded again asks for all; it knows its state.
+    # A reloaded page asks for all values but the state, which it knows.
     page.sent.clear()
     viewer.send_state()
     assert page.told["state"] is None
@@ -137,7 +137,7 @@ def test_the_state_of_a_motion_in_steps():
     motion = ph.simulate(INERTIA, START, [0.0, 0.5, 1.0], ph.torque.viscous_damping(0.1))
     viewer = motion.view()
     assert "recorded" in viewer.document
-    # Its rows: 0.2 rad apart at most, and between them interpolated.
+    # Rows are at most 0.2 rad apart, and interpolated.
     for time, expected, bound in (
         (0.5, 0.5, 1e-15),
         (0.7, 0.7, 0.2**2 / 8),
@@ -162,7 +162,7 @@ def test_the_state_of_a_recording():
 
 
 @pytest.mark.usefixtures("line")
-def test_what_makes_no_sense_is_refused():
+def test_invalid_values_are_refused():
     import traitlets
 
     viewer = ph.view(INERTIA, START)
@@ -200,7 +200,7 @@ def test_the_scene_of_the_page_runs_here():
 def test_a_recording_cannot_be_run():
     viewer = ph.view(INERTIA, START, lambda t, R, W: -0.1 * W, duration=1)
     assert viewer.scene is None
-    with pytest.raises(ValueError, match="no scene says it"):
+    with pytest.raises(ValueError, match="is a recording without a scene"):
         viewer.run()
 
 
@@ -209,7 +209,7 @@ def shown_in(text):
 
 
 @pytest.mark.usefixtures("line")
-def test_a_page_shows_what_the_widget_shows(tmp_path):
+def test_a_saved_page_shows_what_the_widget_shows(tmp_path):
     trajectory = ph.simulate(INERTIA, START, [0, 1], ph.torque.viscous_damping(0.1))
     viewer = trajectory.view()
     assert shown_in(viewer.html()) == {**viewer.document, "view": {}}
@@ -218,20 +218,20 @@ def test_a_page_shows_what_the_widget_shows(tmp_path):
     shown = shown_in((tmp_path / "a.html").read_text())
     assert shown["view"] == {"time": 0.0, "playing": False, "camera": "along L"}
     assert "recorded" in shown
-    # What was recorded is no longer so when the scene is another.
+    # With another scene there is no recording.
     viewer.scene = viewer.scene.replace("0.1", "0.2")
     shown = shown_in(viewer.html())
     assert shown["scene"] == viewer.scene
     assert "recorded" not in shown
 
 
-def test_something_else_is_shown_from_its_start(line):
+def test_another_motion_is_shown_from_its_start(line):
     viewer = ph.view(INERTIA, START)
     viewer.time, viewer.camera = 3, "along e1"
     page = line(viewer)
     page.sent.clear()
     viewer.show(EXAMPLES / "toutatis.toml")
-    # In one message, so that the page does not see half of it.
+    # In one message, so that the page never has half of it.
     (message,) = page.sent
     assert message["state"]["document"] == viewer.document
     assert message["state"]["scene"] == viewer.scene
@@ -240,7 +240,7 @@ def test_something_else_is_shown_from_its_start(line):
 
 
 @pytest.mark.usefixtures("line")
-def test_what_has_a_motion_has_a_view():
+def test_motions_have_the_method_view():
     scene = ph.Scene.read(EXAMPLES / "toutatis.toml")
     top = ph.LagrangeTop(ph.Inertia.from_principal_moments(1, 1, 0.5), START.rotor, [1, 2, 3], [0, 0, 2])
     free = ph.FreeMotion(INERTIA, START.rotor, START.omega_body)
@@ -263,13 +263,13 @@ def test_the_names_are_those_of_the_page(line):
     view = re.search(r"interface ViewState {(.*?)\n}", text, flags=re.DOTALL)[1]
     assert tuple(re.findall(r"^  (\w+):", view, flags=re.MULTILINE)) == _widget._VIEW
     drawn = re.search(r"interface Shown {(.*?)\n}", text, flags=re.DOTALL)[1]
-    told = re.search(r"What is drawn, by name: (.*?)\.", _widget.Viewer.__doc__, flags=re.DOTALL)[1]
+    listed = re.search(r"Visibility by name: (.*?)\.", _widget.Viewer.__doc__, flags=re.DOTALL)[1]
     names = re.findall(r"^  (\w+):", drawn, flags=re.MULTILINE)
-    assert re.split(r",\s+", told) == names == list(_widget.DRAWN)
-    # What the page tells is taken, and what it hears is sent.
+    assert re.split(r",\s+", listed) == names == list(_widget.DRAWN)
+    # What the page sends is synchronised, and no other trait is.
     widget = (ROOT / "viewer/src/widget.ts").read_text()
-    says = re.search(r"function told\(.*?return {(.*?)\n  };", widget, flags=re.DOTALL)[1]
-    names = re.findall(r"^    (\w+):", says, flags=re.MULTILINE)
+    sent = re.search(r"function reported\(.*?return {(.*?)\n  };", widget, flags=re.DOTALL)[1]
+    names = re.findall(r"^    (\w+):", sent, flags=re.MULTILINE)
     synced = {name for name, trait in _widget.Viewer.class_own_traits().items() if trait.metadata.get("sync")}
     assert set(names) | {"document"} == synced
 

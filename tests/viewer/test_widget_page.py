@@ -1,4 +1,4 @@
-"""The widget and its page, with a line between them: what one changes, the other has."""
+"""The widget connected to its page: both have the same values."""
 
 import json
 
@@ -15,7 +15,7 @@ pytest.importorskip("anywidget")
 INERTIA = ph.Inertia.from_principal_moments(1, 2, 3)
 START = ph.State(ph.Rotor.identity(), [0.01, 1, 0.01])
 
-# As anywidget does it: the module comes from a text, the model keeps values and tells of their changes.
+# As in anywidget: the module is loaded from a text, the model keeps values and reports changes.
 PAGE = """<!doctype html>
 <meta charset="utf-8">
 <link rel="icon" href="data:,">
@@ -29,7 +29,7 @@ const heard = new Map();
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const changed = (name) => heard.get(name)?.forEach((hear) => hear());
 const unsaved = new Set();
-window.told = [];
+window.sent = [];
 const model = {{
   get: (name) => values[name],
   set(name, value) {{
@@ -41,7 +41,7 @@ const model = {{
   on(name, hear) {{ heard.set(name, [...(heard.get(name) ?? []), hear]); }},
   off(name, hear) {{ heard.set(name, heard.get(name).filter((other) => other !== hear)); }},
   save_changes() {{
-    if (unsaved.size) told.push(Object.fromEntries([...unsaved].map((name) => [name, values[name]])));
+    if (unsaved.size) sent.push(Object.fromEntries([...unsaved].map((name) => [name, values[name]])));
     unsaved.clear();
   }},
 }};
@@ -59,7 +59,7 @@ window.end = await widget.render({{ model, el: document.getElementById("cell") }
 
 
 class Notebook:
-    """A widget and the page that shows it; what each says waits until it is passed on."""
+    """A widget and the page that shows it; messages wait until they are passed on."""
 
     def __init__(self, viewer, page, path):
         self.viewer, self.page, self.line = viewer, page, viewer.comm
@@ -71,30 +71,30 @@ class Notebook:
         self.quiet()
 
     def ask(self, script, argument=None):
-        """Return what a function of the page's model comes to."""
+        """Return the value of a function of the page's model."""
         call = f"async x => ({script})(await {VIEWER}.ready, x)"
         return self.page.page.evaluate(call, argument)
 
     def pass_on(self):
-        """Hand over what was said since."""
+        """Pass on the waiting messages."""
         sent, self.line.sent = self.line.sent, []
         for message in sent:
             if message["method"] == "update":
                 self.page.page.evaluate("state => hears(state)", message["state"])
-        for state in self.page.page.evaluate("() => told.splice(0)"):
+        for state in self.page.page.evaluate("() => sent.splice(0)"):
             self.line.says(**state)
 
     def quiet(self):
-        """Pass on what is said until nobody says anything for longer than the page waits with it."""
+        """Pass on messages until there are none for longer than the interval of the page."""
         silent = 0
         while silent < 4:
-            waiting = self.page.page.evaluate("() => told.length") or self.line.sent
+            waiting = self.page.page.evaluate("() => sent.length") or self.line.sent
             self.pass_on()
             silent = 0 if waiting else silent + 1
             self.page.page.wait_for_timeout(60)
 
     def agree(self):
-        """Nothing is waiting, and both have the same."""
+        """Assert that no message is waiting and both sides are equal."""
         self.quiet()
         for name in ("scene", "problem", "time", "playing", "speed", "camera", "theme", "shown"):
             assert getattr(self.viewer, name) == self.ask(f"model => model.{name}.value"), name
@@ -107,7 +107,7 @@ def shown(browser, new_page, monkeypatch, tmp_path):
     return lambda *given, **named: Notebook(ph.view(*given, **named), new_page(), tmp_path / "notebook.html")
 
 
-def test_the_page_has_what_python_sets(shown):
+def test_the_page_gets_what_python_sets(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     notebook.agree()
@@ -125,7 +125,7 @@ def test_the_page_has_what_python_sets(shown):
     assert (viewer.state.omega_body - free.omega_body).norm() < 1e-14
 
 
-def test_python_has_what_is_done_in_the_page(shown):
+def test_python_gets_what_changes_in_the_page(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     before = viewer.shown["polhode"]
@@ -138,7 +138,7 @@ def test_python_has_what_is_done_in_the_page(shown):
     assert viewer.time == 1.5
 
 
-def test_the_state_is_the_same_before_the_page_answers_and_after(shown):
+def test_the_state_is_the_same_before_and_after_the_page_answers(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     viewer.time = 0.7
@@ -152,7 +152,7 @@ def test_the_state_is_the_same_before_the_page_answers_and_after(shown):
         np.testing.assert_allclose(*values, rtol=0, atol=1e-15)
 
 
-def test_a_motion_that_plays_is_told_now_and_then_and_where_it_stops(shown):
+def test_a_playing_motion_is_reported_at_intervals_and_when_it_stops(shown):
     notebook = shown(INERTIA, START, duration=60)
     notebook.viewer.playing = True
     notebook.pass_on()
@@ -162,17 +162,17 @@ def test_a_motion_that_plays_is_told_now_and_then_and_where_it_stops(shown):
             const start = performance.now();
             await new Promise((done) => setTimeout(done, 1000));
             model.playing.value = false;
-            return [performance.now() - start, told.length];
+            return [performance.now() - start, sent.length];
         }}"""
     )
-    # Every 100 ms at most, and once more for the end.
+    # At most every 100 ms, and once at the end.
     assert 1 <= calls <= spent / 100 + 2
     notebook.agree()
     assert notebook.viewer.playing is False
     assert notebook.viewer.time > 0
 
 
-def test_the_scene_of_python_goes_on_in_time(shown):
+def test_a_scene_set_by_python_keeps_the_time(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     first = viewer.scene
@@ -182,7 +182,7 @@ def test_the_scene_of_python_goes_on_in_time(shown):
     notebook.agree()
     assert (viewer.time, viewer.speed) == (3, 0.3)
     assert notebook.ask("model => model.about.value.body.moments") == [1, 2, 2.5]
-    # One that is wrong is not taken.
+    # An invalid scene is not accepted.
     for wrong in ("this is none", first.replace("3.0]", "30.0]")):
         viewer.scene = wrong
         notebook.agree()
@@ -194,7 +194,7 @@ def test_the_scene_of_python_goes_on_in_time(shown):
     assert notebook.ask("model => model.about.value.body.moments") == [1, 2, 3]
 
 
-def test_something_else_is_shown(shown):
+def test_another_motion_is_shown(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     viewer.time = 3
@@ -207,7 +207,7 @@ def test_something_else_is_shown(shown):
     np.testing.assert_array_equal(viewer.state.omega_body.components, START.omega_body.components)
 
 
-def test_a_cell_that_is_scrolled_away_comes_back_as_it_was(shown):
+def test_a_cell_that_is_scrolled_away_is_restored(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer, page = notebook.viewer, notebook.page.page
     listeners = page.evaluate("() => listeners()")
@@ -225,7 +225,7 @@ def test_a_cell_that_is_scrolled_away_comes_back_as_it_was(shown):
     assert (viewer.time, viewer.camera) == (4, "along e1")
     assert viewer.scene is not None
     assert "2.5]" in viewer.scene
-    # What is only moved goes on, and is heard once.
+    # A moved element continues, and is subscribed once.
     page.evaluate("() => document.body.append(document.createElement('p'), cell)")
     notebook.agree()
     assert page.evaluate("() => listeners()") == listeners

@@ -1,26 +1,26 @@
 import { Problem } from "./core/core.ts";
 
-/** What a page is given to show. Python writes it (`python/polhode/_viewer/document.py`), the page reads it. */
+/** A document for the page to show, written by `python/polhode/_viewer/document.py`. */
 export interface PageDocument {
-  /** The version of this form. */
+  /** The version of this format. */
   format: 1;
-  /** A scene in TOML; absent where a recorded motion alone is shown. */
+  /** A scene in TOML; absent for a recorded motion alone. */
   scene?: string;
-  /** What the scene is called in messages, `t-handle.toml`. */
+  /** The name of the scene in messages, such as `t-handle.toml`. */
   name?: string;
-  /** Files that the scene names, gzip in base64. */
+  /** Files that the scene refers to, gzip in base64. */
   files?: Record<string, string>;
-  /** A motion that was followed by Python. */
+  /** A motion computed by Python. */
   recorded?: Recorded;
-  /** What to show first; else the motion. */
+  /** The page to show first; by default the motion. */
   page?: "motion" | "algebra";
-  /** Lines of the page of algebra. */
+  /** Lines of the algebra page. */
   lines?: string;
-  /** The state of the page where it is not the usual one. */
+  /** Differences from the default view. */
   view?: Partial<ViewState>;
 }
 
-/** The document that a text says; `where` it stands is named in what is wrong with it. */
+/** Parses a document; errors begin with `where` it comes from. */
 export function parsed(text: string, where: string): PageDocument {
   let found: unknown;
   try {
@@ -32,7 +32,7 @@ export function parsed(text: string, where: string): PageDocument {
   if (format === 1) return found as PageDocument;
   throw new Problem(
     format === undefined
-      ? `${where} is not a document of this page: it has no format`
+      ? `${where} is not a viewer document: it has no format`
       : `${where}: this page reads documents of format 1, not ${String(format)}`,
   );
 }
@@ -44,11 +44,11 @@ export interface Recorded {
   rows: string;
 }
 
-/** What Python and the page tell each other in both directions, beside the scene. */
+/** The view, synchronised between Python and the page. */
 export interface ViewState {
   time: number;
   playing: boolean;
-  /** Seconds of motion in a second of the clock. */
+  /** Seconds of motion per second. */
   speed: number;
   camera: CameraName;
   theme: "auto" | "light" | "dark";
@@ -58,7 +58,7 @@ export interface ViewState {
 export const CAMERAS = ["oblique", "along e1", "along e2", "along e3", "along L", "with the body"] as const;
 export type CameraName = (typeof CAMERAS)[number];
 
-/** What is drawn. */
+/** Visibility of the parts of the picture. */
 export interface Shown {
   body: boolean;
   /** f1, f2, f3, which turn with the body. */
@@ -69,15 +69,15 @@ export interface Shown {
   omega: boolean;
   /** L as an oriented disc. */
   momentum: boolean;
-  /** The axial vectors of Ω and L as arrows, for those who are used to them. */
+  /** The axial vectors of Ω and L as arrows. */
   axial: boolean;
   /** Poinsot's construction: the inertia ellipsoid on the invariable plane. */
   poinsot: boolean;
   polhode: boolean;
   herpolhode: boolean;
-  /** The path of `traced` in space. */
+  /** The path of a body axis in space. */
   trace: boolean;
-  /** Pivot, weight and the sphere of the locus, of tops. */
+  /** Pivot, weight and the sphere of the locus, for tops. */
   gravity: boolean;
   labels: boolean;
 }

@@ -1,45 +1,56 @@
-import { effect, type ReadonlySignal } from "@preact/signals";
+import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { render } from "preact";
 import { Problem, State } from "./core/core.ts";
 import { loadCore } from "./core/wasm.ts";
 import { type PageDocument, parsed, type ViewState } from "./document.ts";
 import { Model, words } from "./model/model.ts";
 import { paletteOf, variables } from "./model/theme.ts";
-import type { Palette } from "./palette.ts";
+import { LIGHT, type Palette } from "./palette.ts";
 import { App } from "./panels/app.tsx";
 import { regimeOf } from "./panels/facts.tsx";
-import { bindKeys, takeAtEnter } from "./panels/keys.ts";
-import { mayMove, openPreset, PRESETS } from "./presets/index.ts";
+import { bindKeys, commitOnEnter } from "./panels/keys.ts";
+import { mayAutoplay, openPreset, PRESETS } from "./presets/index.ts";
+import { type PictureOptions, Stage } from "./stage/stage.ts";
 import styles from "./theme.css?inline";
 
-/** From this width on, in px, panels stand beside the picture: the same as in theme.css. */
+/** Panels are beside the picture from this width on, in px; the same as in theme.css. */
 const WIDE = 900;
 
+/** For captured pictures. */
+const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
+
 /**
- * `<polhode-viewer>`: a motion, its read-outs and its controls. It shows the document that it is given by its property
- * `document`, by a child `<script type="application/json">` or by the address in `src`; else the first preset.
+ * `<polhode-viewer>`: a motion, its read-outs and its controls. It shows the document in its property `document`, in a
+ * child `<script type="application/json">` or at the address in `src`; without one, the first preset.
  *
- * Attributes: `theme` is auto, light or dark; `compact` leaves out what a small place has no room for. What is shown
- * can be read off the attributes `data-…`, with all digits.
+ * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `bare` draws nothing
+ * but what `capture` returns. The attributes `data-…` have the state that is shown, with all digits.
  */
 export class PolhodeViewer extends HTMLElement {
   static readonly observedAttributes = ["theme", "compact", "src"];
 
-  /** The state of the page, once the core is there. */
+  /** The state of the page, once the core is loaded. */
   ready: Promise<Model>;
 
   private resolve!: (model: Model) => void;
+  /** Rejected if the viewer cannot start. */
+  private readonly failure: Promise<never>;
+  private fail!: (error: unknown) => void;
   private given: PageDocument | null = null;
   private model: Model | null = null;
   private palette: ReadonlySignal<Palette> | null = null;
   private leave: (() => void)[] = [];
+  /** The stage of `capture`. */
+  private studio: Stage | null = null;
   private readonly place: HTMLElement;
-  /** Not in the attribute `style`, which is the embedding page's. */
+  /** Not in the attribute `style`, which belongs to the embedding page. */
   private readonly colours = document.createElement("style");
 
   constructor() {
     super();
     this.ready = new Promise((resolve) => (this.resolve = resolve));
+    this.failure = new Promise<never>((_, reject) => (this.fail = reject));
+    this.failure.catch(() => {});
     const root = this.attachShadow({ mode: "open" });
     const style = document.createElement("style");
     style.textContent = styles;
@@ -58,7 +69,7 @@ export class PolhodeViewer extends HTMLElement {
   }
 
   connectedCallback(): void {
-    // A property that was set before the element was defined hides the accessor.
+    // A property set before the element was defined hides the accessor.
     if (Object.hasOwn(this, "document")) {
       const early = (this as { document: PageDocument | null }).document;
       Reflect.deleteProperty(this, "document");
@@ -71,7 +82,7 @@ export class PolhodeViewer extends HTMLElement {
   }
 
   disconnectedCallback(): void {
-    // Notebooks move what they show: an element that is back by then was only moved.
+    // Notebooks move elements: one that is connected again by then was only moved.
     queueMicrotask(() => {
       if (!this.isConnected) this.stop();
     });
@@ -81,7 +92,7 @@ export class PolhodeViewer extends HTMLElement {
     if (!this.model) return;
     if (name === "theme") this.model.look({ theme: themeOf(value) });
     else if (name === "src")
-      void this.source().then((given) => given && this.show(this.model!, given), this.tell);
+      void this.source().then((given) => given && this.show(this.model!, given), this.report);
     else this.draw(this.model);
   }
 
@@ -92,17 +103,17 @@ export class PolhodeViewer extends HTMLElement {
       this.model = model;
       if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
       await this.first(model);
-      // Meanwhile it may have been taken out of the page.
+      // The element may have been removed in the meantime.
       if (this.model !== model) return;
       this.watch(model);
       this.draw(model);
       this.resolve(model);
     } catch (error) {
-      this.tell(error);
+      this.report(error);
     }
   }
 
-  /** Shows what the element was given, playing if nothing else is said; what is wrong with it is told by the page. */
+  /** Shows the given document, by default playing; the page reports its errors. */
   private async first(model: Model): Promise<void> {
     try {
       const given = this.given ?? (await this.child()) ?? (await this.source());
@@ -110,7 +121,7 @@ export class PolhodeViewer extends HTMLElement {
       if (given) await model.show(given);
       if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
       else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
-        model.look({ playing: mayMove() });
+        model.look({ playing: mayAutoplay() });
     } catch (error) {
       model.problem.value = words(error);
     }
@@ -124,7 +135,7 @@ export class PolhodeViewer extends HTMLElement {
     }
   }
 
-  /** The document inside the element, once the parser has passed it. */
+  /** The document inside the element, after it was parsed. */
   private async child(): Promise<PageDocument | null> {
     if (this.ownerDocument.readyState === "loading") {
       await new Promise((done) =>
@@ -140,19 +151,20 @@ export class PolhodeViewer extends HTMLElement {
     if (address === null) return null;
     const url = new URL(address, this.ownerDocument.baseURI);
     if (url.origin !== new URL(this.ownerDocument.baseURI).origin) {
-      throw new Problem(`${address} is on another server; src must name a document beside the page`);
+      throw new Problem(`${address} is on another server; src must be on the server of the page`);
     }
     const answer = await fetch(url);
     if (!answer.ok) throw new Problem(`${address} cannot be read: ${answer.status} ${answer.statusText}`);
     return parsed(await answer.text(), address);
   }
 
-  /** Before there is a page: a message in its place. */
-  private readonly tell = (error: unknown): void => {
+  /** Shows an error; before the page is drawn, in its place. */
+  private readonly report = (error: unknown): void => {
     if (this.model) {
       this.model.problem.value = words(error);
       return;
     }
+    this.fail(error);
     this.dataset["state"] = "problem";
     render(
       <div class="notice" role="alert">
@@ -163,14 +175,28 @@ export class PolhodeViewer extends HTMLElement {
     );
   };
 
+  /**
+   * Draws the state at a time on white, without the page around it, and returns a PNG in base64. For films and
+   * figures: no clock runs, and equal times give equal pictures.
+   */
+  async capture(time: number, options: PictureOptions): Promise<string> {
+    const model = await Promise.race([this.ready, this.failure]);
+    if (model.problem.value !== null) throw new Problem(model.problem.value);
+    this.studio ??= new Stage(document.createElement("div"), model, signal(PAPER));
+    model.playing.value = false;
+    model.seek(time);
+    if (model.time.value !== time) throw new Problem(`the motion is not known at t = ${time} s`);
+    return this.studio.picture(options).toDataURL("image/png").replace(/^.*,/, "");
+  }
+
   private draw(model: Model): void {
-    if (!this.palette) return;
+    if (!this.palette || this.hasAttribute("bare")) return;
     const compact = this.hasAttribute("compact");
     const wide = this.clientWidth >= WIDE;
     render(<App model={model} palette={this.palette} compact={compact} wide={wide} />, this.place);
   }
 
-  /** Lets time pass, and keeps colours and `data-…` as the state is. */
+  /** Keeps colours and `data-…` up to date, and binds the keys. */
   private watch(model: Model): void {
     const { palette, dispose } = paletteOf(model);
     this.palette = palette;
@@ -182,7 +208,7 @@ export class PolhodeViewer extends HTMLElement {
       }),
       effect(() => this.publish(model)),
       bindKeys(this, model),
-      takeAtEnter(this),
+      commitOnEnter(this),
     ];
   }
 
@@ -206,6 +232,8 @@ export class PolhodeViewer extends HTMLElement {
   private stop(): void {
     for (const leave of this.leave) leave();
     this.leave = [];
+    this.studio?.dispose();
+    this.studio = null;
     render(null, this.place);
     this.model?.dispose();
     if (this.model) this.ready = new Promise((resolve) => (this.resolve = resolve));

@@ -1,4 +1,4 @@
-/** The bytes of gzip in base64. */
+/** Decodes base64 and gzip. */
 export async function unpacked(text: string): Promise<Uint8Array<ArrayBuffer>> {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));

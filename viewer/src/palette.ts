@@ -1,6 +1,6 @@
 /**
- * Colours of the page, in light and in dark. Okabe and Ito's, told apart by colour-blind people too; each thing also
- * has a label or a form of its own, so that no colour is needed to tell it. The figures for paper use the same.
+ * Colours of the page, light and dark: Okabe and Ito's palette, safe for colour-blind readers. Each part also has a label
+ * or a shape of its own. The figures of `python/polhode/_figures` use the same colours.
  */
 export interface Palette {
   background: string;

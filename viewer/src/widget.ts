@@ -1,13 +1,13 @@
 /**
- * The viewer in a notebook, as anywidget wants it. The traits of `python/polhode/_viewer/widget.py` and the signals of the
- * page follow each other.
+ * The notebook widget, for anywidget: synchronises the traits of `python/polhode/_viewer/widget.py` with the signals of
+ * the page.
  */
 import { effect } from "@preact/signals";
 import { State } from "./core/core.ts";
 import type { PageDocument, ViewState } from "./document.ts";
 import type { Model } from "./model/model.ts";
 
-/** The side of Python, as anywidget gives it. */
+/** Python's traits, from anywidget. */
 export interface Traits {
   get(name: string): unknown;
   set(name: string, value: unknown): void;
@@ -24,10 +24,10 @@ interface Viewer extends HTMLElement {
 const VIEW = ["time", "playing", "speed", "camera", "theme", "shown"] as const;
 const HEARD = ["document", "scene", ...VIEW] as const;
 
-/** Python is told of changes this often, in ms: a motion that plays changes with each frame. */
+/** Interval in ms at which changes are sent to Python: while a motion plays, each frame changes. */
 const PAUSE = 100;
 
-/** Tells when it comes into a page and when it leaves: notebooks take out what is scrolled away, and put it back. */
+/** Reports when it is connected and disconnected: notebooks remove cells that are scrolled away, and restore them. */
 class Anchor extends HTMLElement {
   entered = () => {};
   left = () => {};
@@ -41,7 +41,7 @@ class Anchor extends HTMLElement {
   }
 }
 
-/** Shows the widget in a place of the notebook, until what it returns is called. */
+/** Shows the widget in an element of the notebook; returns the function that removes it. */
 export function render({ model: traits, el }: { model: Traits; el: HTMLElement }): () => void {
   if (!customElements.get("polhode-anchor")) customElements.define("polhode-anchor", Anchor);
   const viewer = document.createElement("polhode-viewer") as Viewer;
@@ -55,7 +55,7 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
   };
   let away = false;
   anchor.entered = () => {
-    // The viewer begins anew, with what Python says by now.
+    // The viewer starts again, with the current traits.
     if (away) viewer.document = present(traits);
     away = false;
     const { ready } = viewer;
@@ -67,7 +67,7 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
   };
   anchor.left = () => {
     disconnect();
-    // What is back by then was only moved, and goes on.
+    // An element that is connected again by then was only moved.
     queueMicrotask(() => {
       away = !viewer.isConnected;
     });
@@ -81,18 +81,18 @@ export function render({ model: traits, el }: { model: Traits; el: HTMLElement }
   };
 }
 
-/** The document that shows what the traits say. */
+/** The document of the current traits. */
 export function present(traits: Traits): PageDocument {
   const given = traits.get("document") as PageDocument;
   const scene = traits.get("scene") as string | null;
-  // A notebook has many of them: none plays before it is asked to.
+  // A notebook has many widgets: none plays by default.
   const view = { playing: false, ...known(traits, VIEW) };
   if (scene === null || scene === given.scene) return { ...given, view };
   const { recorded: _, ...others } = given;
   return { ...others, scene, view };
 }
 
-/** What the traits say of the view; what nobody has chosen is for the page to choose. */
+/** The traits of the view that were set; the page chooses the others. */
 function known(traits: Traits, names: readonly string[]): Partial<ViewState> {
   const chosen = names.filter((name) => (VIEW as readonly string[]).includes(name));
   return Object.fromEntries(
@@ -100,37 +100,37 @@ function known(traits: Traits, names: readonly string[]): Partial<ViewState> {
   );
 }
 
-/** Lets traits and signals follow each other, until what it returns is called. */
+/** Synchronises traits and signals; returns the function that stops it. */
 export function connected(
   viewer: { document: PageDocument | null },
   model: Model,
   traits: Traits,
 ): () => void {
-  let telling = false;
+  let sending = false;
   let timer: ReturnType<typeof setTimeout> | undefined;
 
-  const tellSoon = () => {
-    timer ??= setTimeout(tell, PAUSE);
+  const sendSoon = () => {
+    timer ??= setTimeout(send, PAUSE);
   };
-  const tell = () => {
+  const send = () => {
     clearTimeout(timer);
     timer = undefined;
-    telling = true;
-    for (const [name, value] of Object.entries(told(model))) traits.set(name, value);
-    telling = false;
+    sending = true;
+    for (const [name, value] of Object.entries(reported(model))) traits.set(name, value);
+    sending = false;
     traits.save_changes();
   };
 
   let played = false;
   const stop = effect(() => {
-    told(model); // so that any change of it is heard
+    reported(model); // subscribes to its signals
     const stopped = played && !model.playing.value;
     played = model.playing.value;
-    if (stopped) tell();
-    else tellSoon();
+    if (stopped) send();
+    else sendSoon();
   });
 
-  // What Python changes together is heard one by one, and taken over together.
+  // Python sends changes one by one; they are applied together.
   const changed = new Set<string>();
   const take = () => {
     const names = [...changed];
@@ -141,11 +141,11 @@ export function connected(
     }
     if (names.includes("scene")) open(model, traits.get("scene") as string | null);
     model.look(known(traits, names));
-    tellSoon(); // what was not taken
+    sendSoon(); // values that were not accepted
   };
   const heard = HEARD.map((name) => {
     const hear = () => {
-      if (telling) return;
+      if (sending) return;
       if (changed.size === 0) queueMicrotask(take);
       changed.add(name);
     };
@@ -161,7 +161,7 @@ export function connected(
   };
 }
 
-/** Shows another scene; time and speed go on. */
+/** Shows another scene with the same time and speed. */
 function open(model: Model, scene: string | null): void {
   if (scene === null || scene === model.scene.value) return;
   const { time, speed } = model;
@@ -170,8 +170,8 @@ function open(model: Model, scene: string | null): void {
   model.look(before);
 }
 
-/** What Python is told. */
-function told(model: Model): Record<string, unknown> {
+/** The values that are sent to Python. */
+function reported(model: Model): Record<string, unknown> {
   return {
     scene: model.scene.value,
     problem: model.problem.value,
@@ -185,7 +185,7 @@ function told(model: Model): Record<string, unknown> {
   };
 }
 
-/** The state shown, with its time: Python knows by it whether it is that of the time that it set. */
+/** The state shown. By its time Python knows whether it is that of the time that was set. */
 function state(row: Float64Array | null): Record<string, number | number[]> | null {
   if (!row) return null;
   const part = (first: number, count: number) => Array.from(row.subarray(first, first + count));

@@ -1,6 +1,6 @@
 /**
- * The compiled core under Node, without a page. Answers questions of tests/viewer/node_core.py, one line of JSON each:
- * { "question": name, … } gets { "value": … }, or { "problem": message } where the core raised a Problem.
+ * The compiled core under Node, without a page. Answers questions of tests/support/node_core.py, one line of JSON each:
+ * { "question": name, … } gets { "value": … }, or { "problem": message } if the core raised a Problem.
  */
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
@@ -20,8 +20,8 @@ const { Problem } = await vite.ssrLoadModule("/src/core/core.ts");
 performance.now = () => process.cpuUsage().user / 1000;
 const core = await loadCore();
 
-/** Opens a motion, asks it, and lets it go. */
-function asked({ scene, files = {}, ...options }, ask) {
+/** Opens a motion, calls a function with it, and closes it. */
+function withMotion({ scene, files = {}, ...options }, ask) {
   const bytes = Object.entries(files).map(([name, base64]) => [name, Buffer.from(base64, "base64")]);
   const motion = core.open(scene, { ...options, files: new Map(bytes) });
   try {
@@ -33,13 +33,19 @@ function asked({ scene, files = {}, ...options }, ask) {
 
 const answers = {
   motion: ({ times, ...scene }) =>
-    asked(scene, (motion) => ({ about: motion.about, rows: Array.from(motion.states(times)) })),
-  surface: (scene) =>
-    asked(scene, (motion) => {
-      const surface = motion.surface();
-      return surface && { vertices: Array.from(surface.vertices), faces: Array.from(surface.faces) };
+    withMotion(scene, (motion) => ({ about: motion.about, rows: Array.from(motion.states(times)) })),
+  surface: ({ arm = [0, 0, 0], ...scene }) =>
+    withMotion(scene, (motion) => {
+      const { vertices, faces, tints } = motion.surface(arm);
+      return {
+        vertices: Array.from(vertices),
+        faces: Array.from(faces),
+        tints: Array.from(tints),
+        extents: motion.extents(),
+      };
     }),
-  bodies: ({ time, count, ...scene }) => asked(scene, (motion) => Array.from(motion.bodies(time, count))),
+  bodies: ({ time, count, ...scene }) =>
+    withMotion(scene, (motion) => Array.from(motion.bodies(time, count))),
   recorded: ({ about, rows, times }) => {
     const motion = core.recorded(about, Float64Array.from(rows));
     try {
@@ -50,6 +56,7 @@ const answers = {
   },
   merged: ({ scene, change }) => core.merged(scene, change),
   evaluated: ({ lines }) => core.evaluated(lines),
+  called: ({ name, given }) => core[name](...given),
 };
 
 for await (const line of createInterface({ input: process.stdin })) {

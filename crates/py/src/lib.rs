@@ -26,11 +26,11 @@ mod _native {
     #[pymodule_export]
     use crate::mechanics::flow::{free_flow, free_flow_derivatives};
     #[pymodule_export]
+    use crate::mechanics::forces_and_events::{Event, Force, law_registry};
+    #[pymodule_export]
     use crate::mechanics::free::FreeMotion;
     #[pymodule_export]
-    use crate::mechanics::laws::{Event, Force};
-    #[pymodule_export]
-    use crate::mechanics::made::Made;
+    use crate::mechanics::law_value::LawValue;
     #[pymodule_export]
     use crate::mechanics::motion::symmetric_top;
     #[pymodule_export]

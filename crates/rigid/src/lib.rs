@@ -29,6 +29,7 @@ pub use body::Body;
 pub use body::inertia::Inertia;
 pub use body::mesh::TriangleMesh;
 pub use body::solids::{Amount, Size, Solid};
+pub use body::surface::Surface;
 pub use error::{BodyError, SimulateError};
 pub use polhode_ga::diagnostic::Diagnostic;
 pub use scene::Scene;

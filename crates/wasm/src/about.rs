@@ -5,7 +5,7 @@ use crate::opened::Opened;
 use polhode_rigid::exact::free::FreeMotion;
 use polhode_rigid::exact::lagrange::{LagrangeDescription, LagrangeTop};
 use polhode_rigid::exact::regime::FreeDescription;
-use polhode_rigid::laws::torque::{Argument, Torque};
+use polhode_rigid::laws::torque::Torque;
 use polhode_rigid::scene::Law;
 use polhode_rigid::{Size, Solid};
 
@@ -70,12 +70,12 @@ fn body(of: &Opened) -> Json {
         ("frame", numbers(&inertia.principal_frame().components())),
         ("solid", Json::or_null(of.scene.solid().map(solid))),
         ("solid_at", numbers(&of.scene.shift().0)),
-        ("mesh", of.mesh().is_some().into()),
+        ("mesh", (of.surface.is_some() && of.scene.solid().is_none()).into()),
     ])
 }
 
 /// A solid by the names that scenes give its sizes.
-fn solid(solid: Solid) -> Json {
+pub fn solid(solid: Solid) -> Json {
     let (kind, sizes) = solid.sizes();
     let size = |(name, size): (&'static str, Size)| match size {
         Size::One(length) => (name, length.into()),
@@ -84,18 +84,15 @@ fn solid(solid: Solid) -> Json {
     Json::Object([("kind", kind.into())].into_iter().chain(sizes.into_iter().map(size)).collect())
 }
 
-/// A law by its name and, in words, what it has: its formula as the scene says it, or its numbers.
+/// A law by its name, and its formula as in the scene or its numbers.
 fn law(law: &Law) -> Json {
-    let argument = |argument: &Argument| match argument {
-        Argument::One(x) => x.to_string(),
-        Argument::Row(row) => {
-            let row: Vec<String> = row.iter().map(f64::to_string).collect();
-            format!("({})", row.join(", "))
-        }
+    let argument = |(_, own): (_, &[f64])| match own {
+        [x] => x.to_string(),
+        own => format!("({})", own.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
     };
-    let text = match (&law.formula, law.torque.call()) {
+    let text = match (&law.formula, law.torque.registered()) {
         (Some(formula), _) => formula.clone(),
-        (None, Some((_, arguments))) => arguments.iter().map(argument).collect::<Vec<_>>().join(", "),
+        (None, Some((entry, numbers))) => entry.split(&numbers).map(argument).collect::<Vec<_>>().join(", "),
         (None, None) => String::new(),
     };
     Json::Object(vec![("name", law.name.into()), ("text", text.into())])

@@ -7,19 +7,21 @@
 // A name for JavaScript is `unsafe` in so far as two crates might choose the same.
 #![allow(unsafe_code)]
 
-use crate::about::about;
+use crate::about::{about, solid as solid_json};
 use crate::formulas;
+use crate::laws;
 use crate::merged::merged;
-use crate::opened::{Files, Opened, surface, vertices};
+use crate::opened::{self, Files, Opened};
 use crate::recorded::Recorded;
 use crate::rows::ROW;
-use polhode_rigid::TriangleMesh;
+use polhode_ga::{Rotor, Vector};
+use polhode_rigid::{Inertia, Solid, Surface};
 use std::cell::RefCell;
 
 /// A motion that the page shows.
 enum Held {
     Followed(Box<Opened>),
-    Recorded(Recorded, Option<TriangleMesh>),
+    Recorded(Recorded, Option<Surface>),
 }
 
 #[derive(Default)]
@@ -103,6 +105,12 @@ fn floats(bytes: &[u8]) -> Vec<f64> {
     bytes.as_chunks().0.iter().map(|eight| f64::from_le_bytes(*eight)).collect()
 }
 
+/// Exactly N numbers from the first room.
+fn numbers<const N: usize>(rooms: &[Vec<u8>]) -> Outcome<[f64; N]> {
+    let found = floats(rooms.first().map_or(&[], |room| room));
+    found.try_into().map_err(|found: Vec<f64>| format!("expected {N} numbers, got {}", found.len()))
+}
+
 fn bytes(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
     numbers.into_iter().flat_map(f64::to_le_bytes).collect()
 }
@@ -139,12 +147,16 @@ impl Desk {
         }
     }
 
-    fn mesh(&self, handle: usize) -> Outcome<&TriangleMesh> {
-        let mesh = match self.get(handle)? {
-            Held::Followed(opened) => opened.mesh(),
-            Held::Recorded(_, mesh) => mesh.as_ref(),
+    /// The surface of a body. If its scene gives none, it follows from the numbers in the room: the mass, the principal
+    /// moments, the principal frame, and the arm from the fixed point to the centre of mass.
+    fn surface(&self, handle: usize, rooms: &[Vec<u8>]) -> Outcome<Surface> {
+        let [mass, i1, i2, i3, f0, f1, f2, f3, arm @ ..] = numbers::<11>(rooms)?;
+        let known = match self.get(handle)? {
+            Held::Followed(opened) => &opened.surface,
+            Held::Recorded(_, surface) => surface,
         };
-        mesh.ok_or_else(|| "the body is no mesh".to_owned())
+        let frame = Rotor::from_unit_components([f0, f1, f2, f3]);
+        Ok(known.clone().unwrap_or_else(|| Surface::of_inertia(mass, [i1, i2, i3], frame, Vector(arm))))
     }
 }
 
@@ -158,14 +170,14 @@ pub extern "C" fn open(budget: f64) -> i32 {
     })
 }
 
-/// Takes rows of a recorded motion and, where its body has a mesh, the scene, its name and files; a handle.
+/// Takes rows of a recorded motion and, if there is one, the scene, its name and files; a handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn record() -> i32 {
     answered(|desk, rooms| {
         let mut rooms = rooms.into_iter();
         let recorded = Recorded::new(&floats(&rooms.next().unwrap_or_default()))?;
         let (scene, name, files) = scene(rooms)?;
-        Ok((desk.hold(Held::Recorded(recorded, surface(&scene, &name, &files))), Vec::new()))
+        Ok((desk.hold(Held::Recorded(recorded, opened::surface(&scene, &name, &files))), Vec::new()))
     })
 }
 
@@ -198,18 +210,70 @@ pub extern "C" fn states(handle: usize) -> i32 {
     })
 }
 
-/// The vertices of the surface in body axes, in m.
+/// Takes the numbers of [`Desk::surface`]; answers the vertices of the surface in body axes, in m, its triangles as 32-bit
+/// indices, and a 32-bit tint per triangle. Returns the number of vertices.
 #[unsafe(no_mangle)]
-pub extern "C" fn surface_vertices(handle: usize) -> i32 {
-    answered(|desk, _| Ok((0, bytes(vertices(desk.mesh(handle)?)))))
+pub extern "C" fn surface(handle: usize) -> i32 {
+    answered(|desk, rooms| {
+        let Surface { vertices, faces, tints } = desk.surface(handle, &rooms)?;
+        let mut reply = bytes(vertices.iter().flat_map(|vertex| vertex.0));
+        reply.extend(faces.iter().flatten().chain(&tints).flat_map(|number| number.to_le_bytes()));
+        Ok((vertices.len() as i32, reply))
+    })
 }
 
-/// The triangles of the surface, as 32-bit numbers of vertices.
+/// Takes the numbers of [`Desk::surface`]; answers the side lengths of a box around the body, in m.
 #[unsafe(no_mangle)]
-pub extern "C" fn surface_faces(handle: usize) -> i32 {
-    answered(|desk, _| {
-        let faces = desk.mesh(handle)?.faces();
-        Ok((0, faces.iter().flatten().copied().flat_map(u32::to_le_bytes).collect()))
+pub extern "C" fn extents(handle: usize) -> i32 {
+    answered(|desk, rooms| Ok((0, bytes(desk.surface(handle, &rooms)?.extents()))))
+}
+
+/// Takes the kind of a solid and three lengths; answers the solid that fills a box of these sides, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn solid() -> i32 {
+    answered(|_, rooms| {
+        let mut rooms = rooms.into_iter();
+        let kind = text(rooms.next())?;
+        let solid = Solid::filling(&kind, numbers(rooms.as_slice())?);
+        let solid = solid.ok_or_else(|| format!("there is no solid of kind '{kind}'"))?;
+        Ok((0, solid_json(solid).to_string().into_bytes()))
+    })
+}
+
+/// Takes principal moments and the principal frame; answers the second moments and, unless these are along the body
+/// axes, the rotor from their axes to the body axes.
+#[unsafe(no_mangle)]
+pub extern "C" fn second_moments() -> i32 {
+    answered(|_, rooms| {
+        let [i1, i2, i3, frame @ ..] = numbers::<7>(&rooms)?;
+        let inertia = Inertia::from_principal_moments([i1, i2, i3]).map_err(|error| error.to_string())?;
+        let (second, axes) = inertia.rotated(Rotor::from_unit_components(frame)).second_moments();
+        Ok((0, bytes(second.into_iter().chain(axes.into_iter().flat_map(Rotor::components)))))
+    })
+}
+
+/// Takes second moments and the rotor from their axes to the body axes; answers the rows of the inertia matrix.
+#[unsafe(no_mangle)]
+pub extern "C" fn inertia() -> i32 {
+    answered(|_, rooms| {
+        let [a, b, c, axes @ ..] = numbers::<7>(&rooms)?;
+        let inertia = Inertia::from_second_moments([a, b, c], Rotor::from_unit_components(axes));
+        Ok((0, bytes(inertia.map_err(|error| error.to_string())?.matrix().into_iter().flatten())))
+    })
+}
+
+/// Takes a rotor; answers its [`Rotor::zxz_angles`].
+#[unsafe(no_mangle)]
+pub extern "C" fn attitude() -> i32 {
+    answered(|_, rooms| Ok((0, bytes(Rotor::from_unit_components(numbers(&rooms)?).zxz_angles()))))
+}
+
+/// Takes a rotor; answers the unit plane and the angle of [`Rotor::plane_angle`].
+#[unsafe(no_mangle)]
+pub extern "C" fn plane_angle() -> i32 {
+    answered(|_, rooms| {
+        let (plane, angle) = Rotor::from_unit_components(numbers(&rooms)?).plane_angle();
+        Ok((0, bytes(plane.0.into_iter().chain([angle]))))
     })
 }
 
@@ -240,4 +304,10 @@ pub extern "C" fn evaluate() -> i32 {
         let lines = text(rooms.into_iter().next())?;
         Ok((0, formulas::evaluated(&lines).into_bytes()))
     })
+}
+
+/// The registry of laws, as JSON.
+#[unsafe(no_mangle)]
+pub extern "C" fn law_registry() -> i32 {
+    answered(|_, _| Ok((0, laws::laws().to_string().into_bytes())))
 }

@@ -115,7 +115,7 @@ fn a_surface_is_where_the_body_is() {
     let files = Files::from([("part.stl".to_owned(), stl.into_bytes())]);
     let text = HEAVY.replace("solid = 'cone'\nradius = 0.1\nheight = 0.3", "mesh = 'part.stl'");
     let of = Opened::new(&text, "test.toml", &files, &mut || true).expect("a scene");
-    let middle = of.mesh().unwrap().vertices().iter().map(|v| v.0[2]).fold(f64::INFINITY, f64::min);
+    let middle = of.surface.as_ref().unwrap().vertices.iter().map(|v| v.0[2]).fold(f64::INFINITY, f64::min);
     assert_eq!(middle, 0.1);
     assert!((of.body.center_of_mass.0[2] - 0.35).abs() < 1e-15);
 }

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from polhode._scene.scene import Scene
 
 Report = Callable[[int, float], object]
-# Shows how far a thing of this name is, where there is a terminal.
+# Progress bar of a name, on a terminal; a pass of 0 is not shown.
 Shown = Callable[[str], AbstractContextManager[Report | None]]
 
 _KINDS = ("motion", "polhode", "herpolhode", "locus", "drift", "phase", "scene")
@@ -25,43 +25,49 @@ def add(commands: Any, shown: Shown) -> None:
     """Add both commands to those of `polhode`."""
     figure = commands.add_parser(
         "figure",
-        help="draw a figure for paper: SVG, PDF or PNG",
+        help="draw a figure for print: SVG, PDF or PNG",
         description="Draw a figure of a scene's motion, or figure 1, 2 or 3 of the handout.",
         epilog="motion: rates, attitude and drift over time; polhode, herpolhode: paths of the angular "
-        "velocity; locus: the path of a top's axis; drift: what is conserved; phase: the portrait; "
-        "scene: the body and its bivectors. 1: a trivector swept; 2: a vector turned; 3: the inertia map.",
+        "velocity; locus: the path of a top's axis; drift: conserved quantities; phase: the phase portrait; "
+        "scene: the body and its bivectors (needs polhode[film] and a browser). 1: a trivector swept; "
+        "2: a vector turned; 3: the inertia map.",
     )
     figure.add_argument(
         "what", metavar="WHAT", choices=(*_KINDS, *_OF_HANDOUT), help=f"{', '.join(_KINDS)}, 1, 2, 3"
     )
-    figure.add_argument("scene", metavar="SCENE.toml", nargs="?", help="the scene file; none for 1, 2 and 3")
+    figure.add_argument(
+        "scene", metavar="SCENE.toml", nargs="?", help="the scene file, except for 1, 2 and 3"
+    )
     figure.add_argument(
         "-o", "--output", metavar="FILE", type=file_name("a figure"), required=True,
         help="FILE.svg, FILE.pdf or FILE.png",
     )  # fmt: skip
     figure.add_argument(
-        "--view", metavar="A,E", type=_view, help="look from this azimuth and elevation in degrees"
+        "--view", metavar="A,E", type=_view, help="azimuth and elevation to look from, in degrees"
     )
     figure.add_argument(
-        "--time", metavar="T", type=float, help="of the scene, in s; the last one if left out"
+        "--time", metavar="T", type=float, help="time of the scene in s; the last one if left out"
     )
     figure.set_defaults(command=lambda options: _figure(options, shown, figure))
 
-    film = commands.add_parser("film", help="film a scene: MP4 (by ffmpeg) or GIF")
+    film = commands.add_parser(
+        "film",
+        help="film a scene: MP4 (by ffmpeg) or GIF",
+        description="Film a scene's motion as the viewer draws it. It needs polhode[film] and Chromium or "
+        "Chrome, which runs without a window.",
+    )
     film.add_argument("scene", metavar="SCENE.toml", help="the scene file")
     film.add_argument(
         "-o", "--output", metavar="FILE", type=file_name("a film"), required=True,
         help="FILE.mp4 or FILE.gif",
     )  # fmt: skip
+    film.add_argument("--seconds", metavar="N", type=float, help="length of the film; true speed if left out")
+    film.add_argument("--fps", metavar="N", type=float, default=25.0, help="frames per second; 25")
     film.add_argument(
-        "--seconds", metavar="N", type=float, default=12.0, help="how long the film takes for the motion; 12"
-    )
-    film.add_argument("--fps", metavar="N", type=float, default=25.0, help="pictures in a second; 25")
-    film.add_argument(
-        "--size", metavar="WxH", type=_size, help="in pixels; 1280x720, of a GIF 640x360, if left out"
+        "--size", metavar="WxH", type=_size, help="size in pixels; 1280x720 if left out, of a GIF 640x360"
     )
     film.add_argument(
-        "--view", metavar="A,E", type=_view, help="look from this azimuth and elevation in degrees"
+        "--view", metavar="A,E", type=_view, help="azimuth and elevation to look from, in degrees"
     )
     film.set_defaults(command=lambda options: _film(options, shown))
 
@@ -69,7 +75,9 @@ def add(commands: Any, shown: Shown) -> None:
 def _figure(options: argparse.Namespace, shown: Shown, parser: argparse.ArgumentParser) -> int:
     of_handout = options.what in _OF_HANDOUT
     if of_handout and (options.scene or options.view or options.time is not None):
-        parser.error(f"figure {options.what} is one of the handout's: it takes no scene, view or time")
+        parser.error(
+            f"figure {options.what} is a figure of the handout: it does not take a scene, view or time"
+        )
     if not of_handout and options.scene is None:
         parser.error(f"figure {options.what} needs a scene: polhode figure {options.what} SCENE.toml -o FILE")
     from polhode._support.extras import optional
@@ -99,9 +107,7 @@ def _figure(options: argparse.Namespace, shown: Shown, parser: argparse.Argument
 
 def _film(options: argparse.Namespace, shown: Shown) -> int:
     from polhode._figures.film import planned
-    from polhode._support.extras import optional
 
-    optional("matplotlib", "plot", "a film")
     path = Path(options.output)
     planned(path, options.seconds, options.fps, options.size, options.view)
     scene = _scene_of_one(options.scene)
@@ -114,7 +120,7 @@ def _film(options: argparse.Namespace, shown: Shown) -> int:
             fps=options.fps,
             size=options.size,
             view=options.view,
-            progress=None if report is None else lambda fraction: report(1, fraction),
+            progress=None if report is None else lambda fraction: report(0, fraction),
         )
     print(f"Written\n  {path}")
     return 0
@@ -127,8 +133,8 @@ def _scene_of_one(name: str) -> Scene:
     scene = Scene.read(name)
     if scene.ensemble is not None:
         raise ValueError(
-            f"{name} has {scene.ensemble.number} bodies, and this draws one: take its table [ensemble] out, "
-            "or draw the ensemble with `polhode run`"
+            f"{name} has {scene.ensemble.number} bodies, and this command draws one: remove its table "
+            "[ensemble], or draw the ensemble with `polhode run`"
         )
     return scene
 
@@ -136,7 +142,7 @@ def _scene_of_one(name: str) -> Scene:
 def _size(text: str) -> tuple[int, int]:
     width, cross, height = text.partition("x")
     if not (cross and width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
-        raise argparse.ArgumentTypeError(f"expected WIDTHxHEIGHT in pixels, as 1280x720, found {text!r}")
+        raise argparse.ArgumentTypeError(f"expected WIDTHxHEIGHT in pixels, such as 1280x720, got {text!r}")
     return int(width), int(height)
 
 
@@ -145,6 +151,6 @@ def _view(text: str) -> tuple[float, float]:
         azimuth, elevation = (float(part) for part in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"expected azimuth and elevation in degrees, as 35,22, found {text!r}"
+            f"expected azimuth and elevation in degrees, such as 35,22, got {text!r}"
         ) from None
     return azimuth, elevation

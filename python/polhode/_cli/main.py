@@ -399,7 +399,7 @@ def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
         task = bar.add_task(name, total=1.0)
 
         def report(number: int, fraction: float) -> None:
-            bar.update(task, description=f"{name}, pass {number}", completed=fraction)
+            bar.update(task, description=f"{name}, pass {number}" if number else name, completed=fraction)
 
         yield report
 

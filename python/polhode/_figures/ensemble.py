@@ -1,4 +1,4 @@
-"""Figures of an ensemble: how its motions spread with time, and where its bodies point in space."""
+"""Figures of an ensemble: the spread of its motions over time, and directions of an axis in space."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from polhode._algebra.constructors import vector
 from polhode._figures.style import _BLACK, _BLUE, _ORANGE, new_figure, time_unit
 from polhode._report.ensemble.collect import Gathered
 from polhode._report.ensemble.quantiles import first_above, quantiles
-from polhode._report.text import time as told_time
+from polhode._report.text import time as time_text
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -19,24 +19,23 @@ if TYPE_CHECKING:
 
 _WIDE, _NARROW = "#CFE3F1", "#86BBDD"
 
-# Width in rad of the kernel by which directions are smeared, and the cells in which they are counted before
-# and in which the density is drawn.
-_SMEAR = np.radians(4.0)
+# Width in rad of the smoothing kernel; cells that directions are binned in, and cells that are drawn.
+_WIDTH = np.radians(4.0)
 _COUNTED, _DRAWN = (180, 90), (240, 120)
-# Cells whose kernels are computed at once: some 30 MB.
+# Cells per batch of kernels: about 30 MB.
 _AT_ONCE = 256
-# The cosine above which a direction is said to be along another.
+# Directions with a larger cosine count as parallel.
 _ALONG = 0.999
-# The latitude in rad from which a label finds no room above.
+# Labels of points above this latitude, in rad, are put below.
 _HIGH = np.radians(70)
-# The colours' range, of the density over that of directions all alike.
+# Range of the colours: density relative to a uniform distribution.
 _FAINTEST, _DENSEST = 0.03, 100.0
 
 
 def fan_figure(gathered: Gathered) -> Figure:
-    """Draw over time how bodies lie around the undisturbed motion: bands of quantiles.
+    """Draw bands of quantiles over time.
 
-    From above the angle of the attitude from the undisturbed one, the tilt of an axis, and the rate.
+    From the top: the angle of the attitude from that of the nominal body, the tilt of an axis, and the rate.
     """
     figure = new_figure(8, 8)
     panels = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
@@ -45,7 +44,7 @@ def fan_figure(gathered: Gathered) -> Figure:
     for axes, (name, factor, label) in zip(
         panels,
         (
-            ("from_nominal", 180 / np.pi, "attitude, from that of the\nundisturbed body, degrees"),
+            ("from_nominal", 180 / np.pi, "attitude, from that of the\nnominal body, degrees"),
             ("tilt", 180 / np.pi, f"tilt of the axis\nfrom {gathered.tilt_name}, degrees"),
             ("rate", 1.0, "angular velocity |Ω|,\nrad/s"),
         ),
@@ -71,7 +70,7 @@ def fan_figure(gathered: Gathered) -> Figure:
 
 
 def _scale(times: Array) -> tuple[Array, str]:
-    """Return the times that are drawn, and along which scale: those in equal ratios without the start."""
+    """Return the times to draw and the scale; a logarithmic one leaves out the start."""
     if len(times) > 3 and times[-1] - times[-2] > 2 * (times[2] - times[1]):
         return times[1:], "log"
     return times, "linear"
@@ -85,7 +84,7 @@ def _fan(axes: Axes, t: Array, bands: Array) -> None:
 
 
 def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
-    """Mark when the 95 % quantile of the angle passes 10° and 90°."""
+    """Mark where the 95 % quantile of the angle exceeds 10° and 90°."""
     highest = quantiles(gathered.series["from_nominal"])[-1]
     axes.set_ylim(0, 185)
     axes.set_yticks(range(0, 181, 45))
@@ -93,11 +92,11 @@ def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
         moment = first_above(gathered.scene.elapsed, highest, np.radians(angle))
         if not moment:
             continue
-        # To the left, above the bands, if there is room.
+        # On the left, above the bands, if there is room.
         left = axes.transLimits.transform(axes.transScale.transform((moment / seconds, angle)))[0] > 0.35
         axes.plot(moment / seconds, angle, "o", color=_ORANGE, ms=5, mec="white", mew=0.8, zorder=5)
         axes.annotate(
-            f"95 % within {angle}° for {told_time(moment, 3)}",
+            f"95 % within {angle}° for {time_text(moment, 3)}",
             (moment / seconds, angle),
             xytext=(-7, 7) if left else (9, 0),
             textcoords="offset points",
@@ -117,9 +116,9 @@ def _counted(gathered: Gathered) -> str:
 
 
 def directions_figure(gathered: Gathered) -> Figure:
-    """Draw maps of the sphere, equal in area, of where the axis points in space at three times.
+    """Draw equal-area maps of the directions of the axis in space at three times.
 
-    In the middle of each is that from which the axis is tilted, L of the undisturbed body or e3; else e1.
+    Each is centred on the reference of the tilt, L of the nominal body or e3; else on e1.
     """
     figure = new_figure(11, 3.5)
     middle, name = _middle(gathered)
@@ -131,36 +130,36 @@ def directions_figure(gathered: Gathered) -> Figure:
         directions = gathered.directions[:, k].astype(float)
         drawn = _map(axes, directions[np.isfinite(directions).all(axis=1)] @ frame.T)
         when = float(times[gathered.shown[k]])
-        axes.set_title("at the start" if when == 0 else f"after {told_time(when, 3)}", fontsize=11)
+        axes.set_title("at the start" if when == 0 else f"after {time_text(when, 3)}", fontsize=11)
         _mark(axes, gathered, frame, gathered.shown[k])
     bar = figure.colorbar(
         drawn, ax=list(panels), orientation="horizontal", shrink=0.4, aspect=40, pad=0.03, extend="both"
     )
-    bar.set_label("density, over that of directions all alike", fontsize=9)
+    bar.set_label("density, relative to a uniform distribution", fontsize=9)
     figure.suptitle(gathered.scene.name)
     figure.supxlabel(
-        f"Where {gathered.axis_name} points in space, of {_counted(gathered)}, smeared over "
-        f"{np.degrees(_SMEAR):.0f}°; ring: the undisturbed body.\n"
-        f"The sphere of space axes from outside, in equal areas, about {name}; "
-        f"{'e2' if abs(frame[0, 2]) > _ALONG else 'e3'} is above it.",
+        f"Directions of {gathered.axis_name} in space, of {_counted(gathered)}, smoothed over "
+        f"{np.degrees(_WIDTH):.0f}°; ring: the nominal body.\n"
+        f"The sphere of space axes from outside, in equal areas, centred on {name}; "
+        f"{'e2' if abs(frame[0, 2]) > _ALONG else 'e3'} is up.",
         fontsize=9,
     )
     return figure
 
 
 def _middle(gathered: Gathered) -> tuple[Array, str]:
-    """Return the direction in the middle of the maps and its name: that from which the axis is tilted."""
+    """Return the direction on which the maps are centred, and its name."""
     momentum = gathered.nominal.momentum_space.components[0]
     size = float(np.linalg.norm(momentum))
     if gathered.tilt_name == "L" and size > 0:
-        return momentum / size, "the momentum L of the undisturbed body"
+        return momentum / size, "the momentum L of the nominal body"
     if gathered.tilt_name == "the vertical":
         return np.array([0.0, 0.0, 1.0]), "e3"
     return np.array([1.0, 0.0, 0.0]), "e1"
 
 
 def _frame(middle: Array) -> Array:
-    """Return the rotation (3, 3) that puts a direction to the middle and e3 above it, e2 above e3."""
+    """Return the rotation (3, 3) that puts a direction in the middle and e3 above it; above e3 itself e2."""
     up = np.array([0.0, 1.0, 0.0]) if abs(middle[2]) > _ALONG else np.array([0.0, 0.0, 1.0])
     up = up - (up @ middle) * middle
     up = up / np.linalg.norm(up)
@@ -192,7 +191,7 @@ def _map(axes: Axes, directions: Array) -> Any:
 
 
 def _mark(axes: Axes, gathered: Gathered, frame: Array, k: int) -> None:
-    """Mark where the axis of the undisturbed body points, and the axes of space."""
+    """Mark the axis of the nominal body and the axes of space."""
     from matplotlib.patheffects import withStroke
 
     halo = [withStroke(linewidth=2, foreground="white")]
@@ -227,11 +226,10 @@ def _angles(direction: Array) -> tuple[Any, Any]:
 
 
 def _density(directions: Array, points: Array) -> Array:
-    """Return the density of directions (n, 3) at points (..., 3) of the sphere, 1 where all are alike.
+    """Return the density of directions (n, 3) at points (..., 3) of the sphere; a uniform one is 1.
 
-    A sum of kernels ``exp(κ(cos θ − 1))``, κ = 1/width², each of the integral ``2π(1 − exp(−2κ))/κ``.
-    Directions in one cell of a fine grid are put together in their mean, which is much closer to them than
-    the width.
+    A sum of kernels ``exp(κ(cos θ − 1))``, κ = 1/width², each with the integral ``2π(1 − exp(−2κ))/κ``.
+    Directions in one cell of a fine grid, much smaller than the width, are replaced by their mean.
     """
     longitude, latitude = _angles(directions)
     columns = ((longitude / (2 * np.pi) + 0.5) * _COUNTED[0]).astype(int) % _COUNTED[0]
@@ -239,7 +237,7 @@ def _density(directions: Array, points: Array) -> Array:
     cells, which, counts = np.unique(rows * _COUNTED[0] + columns, return_inverse=True, return_counts=True)
     means = np.stack([np.bincount(which, directions[:, k], len(cells)) for k in range(3)], axis=-1)
     means = means / np.linalg.norm(means, axis=-1, keepdims=True)
-    sharpness = 1 / _SMEAR**2
+    sharpness = 1 / _WIDTH**2
     flat = points.reshape(-1, 3).astype(np.float32)
     total = np.zeros(len(flat))
     for start in range(0, len(cells), _AT_ONCE):

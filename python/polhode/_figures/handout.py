@@ -1,4 +1,4 @@
-"""The three figures of the handout; every number in them comes from the algebra."""
+"""The three figures of the handout, computed with the algebra."""
 
 from __future__ import annotations
 
@@ -10,10 +10,6 @@ from polhode._algebra.constructors import I, e1, e2, e3
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._figures.camera import View, frame_picture
-from polhode._figures.painter import Painter
-from polhode._figures.shapes import box
-from polhode._figures.solid import Solid, rgb
-from polhode._figures.stage import oriented
 from polhode._figures.style import (
     _AXES,
     _BLACK,
@@ -23,6 +19,7 @@ from polhode._figures.style import (
     FAINT,
     MOMENTUM,
     OMEGA,
+    WEIGHT,
     entitle,
     explain,
     in_our_look,
@@ -61,7 +58,7 @@ def swept_trivector(a: Multivector, b: Multivector, c: Multivector) -> Figure:
     sense = "right" if swept > 0 else "left"
     explain(
         figure,
-        f"a = {_told(a)}, b = {_told(b)}, c = {_told(c)}: a∧b = {_told(a ^ b)}, and swept along c "
+        f"a = {_text(a)}, b = {_text(b)}, c = {_text(c)}: a∧b = {_text(a ^ b)}, and swept along c "
         f"a∧b∧c = {swept:.4g} I, the volume with its sense, {sense}-handed (handout eq. 1.2 and 1.3).",
     )
     return figure
@@ -94,63 +91,56 @@ def turned_vector(a: Multivector, B: Multivector, angle: float) -> Figure:
     ):
         tip = np.asarray(value.components)
         _arrow(axes, view, zero, tip, colour, width)
-        _write(axes, view, tip, name, colour if colour != FAINT else "#5B6675", offset)
+        _write(axes, view, tip, name, WEIGHT if colour == FAINT else colour, offset)
     _write(axes, view, 0.58 * powers[len(powers) // 2], "θ", _BLACK)
     tips_of = np.stack([a.components, turned.components, across.components])
     rim = _rim(plane, 1.25 * float(within.norm()))
     frame_picture(axes, view.project(np.concatenate([rim, tips_of])), 0.22)
     explain(
         figure,
-        f"B = {_told(plane)} with B² = {_told(plane | plane)}, θ = {np.degrees(angle):.4g}°, "
-        f"R = {_told(R)}. a = {_told(a)} goes to a' = {_told(turned)}: the part a∥ = (a·B) B⁻¹ in the plane "
-        f"turns by θ in its sense, a⊥ = (a∧B) B⁻¹ stays (handout eq. 2.4).",
+        f"B = {_text(plane)} with B² = {_text(plane | plane)}, θ = {np.degrees(angle):.4g}°, "
+        f"R = {_text(R)}. a = {_text(a)} goes to a' = {_text(turned)}: the part a∥ = (a·B) B⁻¹ in the plane "
+        f"turns by θ in its sense, a⊥ = (a∧B) B⁻¹ does not change (handout eq. 2.4).",
     )
     return figure
 
 
 @in_our_look
 def inertia_of_plane(body: Body, lengths: Any, B: Multivector) -> Figure:
-    """Figure 3: the inertia map of a box takes the plane of rotation B to I(B), in general in another one."""
+    """Figure 3: the inertia map of a box takes the plane of rotation B to I(B), in general another plane."""
     L = body.inertia(B)
     figure, axes = _picture("The inertia tensor takes the plane of rotation B to I(B)")
     view = View(32, 20)
-    painter = Painter(view)
-    half = np.asarray(lengths) / 2
-    size = float(np.linalg.norm(half))
-    Solid(*box(np.asarray(lengths) / size)).paint(painter, Rotor.identity())
+    half = np.asarray(lengths) / float(np.linalg.norm(lengths))
+    _draw_box(axes, view, half)
     for k in range(3):
-        painter.arrow(np.zeros(3), 1.55 * np.eye(3)[k], rgb(_AXES[k]), 1.3, 0.11)
+        _arrow_from_box(axes, view, 1.55 * np.eye(3)[k], half, _AXES[k], 1.7)
         _write(axes, view, 1.67 * np.eye(3)[k], f"e{'₁₂₃'[k]}", _AXES[k])
     largest = float(body.inertia.principal_moments.max())
-    for value, most, colour, name, arrows in (
-        (B, float(B.norm()), OMEGA, "B", 3),
-        (L, largest * float(B.norm()), MOMENTUM, "I(B)", 3),
+    for value, most, colour, name, offset in (
+        (B, float(B.norm()), OMEGA, "B", (-13, 0)),
+        (L, largest * float(B.norm()), MOMENTUM, "I(B)", (18, 0)),
     ):
-        disc = oriented(value, most, 1.45, colour, arrows)
-        assert disc is not None
-        painter.discs.append(disc)
-        normal = 1.2 * np.asarray(value.dual().normalized().components)
-        painter.arrow(np.zeros(3), normal, rgb(colour), 1.1, 0.09)
-        angles = np.linspace(0, 2 * np.pi, 73)
-        sides = view.project(disc.rim(angles))[:, 0]
-        best = angles[int(np.argmax(-sides if name == "B" else sides))]
-        _write(axes, view, disc.rim(best), name, colour, (-13, 0) if name == "B" else (18, 0))
-    painter.draw(axes)
+        rim = _rim(value, 1.45 * float(np.sqrt(float(value.norm()) / most)))
+        _draw_disc_through_box(axes, view, rim, half, colour)
+        _arrow_from_box(axes, view, 1.2 * value.dual().normalized().components, half, colour, 1.3)
+        across = view.project(rim)[:, 0] * np.sign(offset[0])
+        _write(axes, view, rim[int(np.argmax(across))], name, colour, offset)
     frame_picture(axes, np.array([[-1.75, -1.55], [1.75, 1.75]]), 0.0)
     cosine = float(-(B | L)) / float(B.norm() * L.norm())
     meet = np.degrees(np.arccos(cosine))
     i = ", ".join(f"{x:.4g}" for x in body.inertia.principal_moments)
     explain(
         figure,
-        f"A box with the moments {i} kg m²: B = {_told(B)} rad/s goes to I(B) = {_told(L)} kg m²/s, each "
+        f"A box with the moments {i} kg m²: B = {_text(B)} rad/s goes to I(B) = {_text(L)} kg m²/s, each "
         f"component by its own moment (handout eq. 4.18 and 4.24). The planes meet at {meet:.4g}°. "
-        f"Areas in proportion to |B| and |I(B)|; the thin arrows are their duals.",
+        f"Areas are proportional to |B| and |I(B)|; the thin arrows are their duals.",
     )
     return figure
 
 
 def handout_figure(number: int) -> Figure:
-    """Return figure 1, 2 or 3 of the handout, with numbers chosen to look at."""
+    """Return figure 1, 2 or 3 of the handout, with example values."""
     if number == 1:
         return swept_trivector(0.15 * e1 + 1.5 * e2, -1.2 * e1 + 0.15 * e2, -0.1 * e1 + 0.4 * e2 + 1.05 * e3)
     if number == 2:
@@ -170,18 +160,20 @@ def _picture(title: str) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
-def _told(value: Multivector) -> str:
-    """Return a value with few digits, indices set low, numbers kept beside their blades."""
+def _text(value: Multivector) -> str:
+    """Return a value with few digits, subscripts, and no line break before a blade."""
     text = repr(value.map(np.vectorize(lambda x: float(f"{x:.4g}"))))
     for k in "123":
         text = text.replace(f"e{k}", f"e{'₁₂₃'[int(k) - 1]}")
     return text.replace("-", "−").replace(" e", "\u00a0e")
 
 
-def _arrow(axes: Axes, view: View, start: Array, end: Array, colour: str, width: float = 1.7) -> None:
+def _arrow(
+    axes: Axes, view: View, start: Array, end: Array, colour: str, width: float = 1.7, zorder: int = 6
+) -> None:
     flat = view.project(np.stack([start, end]))
     arrow = _arrowprops(colour, width, 13)
-    axes.annotate("", xy=flat[1], xytext=flat[0], arrowprops=arrow, zorder=6)
+    axes.annotate("", xy=flat[1], xytext=flat[0], arrowprops=arrow, zorder=zorder)
 
 
 def _write(
@@ -198,7 +190,7 @@ def _write(
 
 
 def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
-    """Draw the solid of three edges (3, 3): its first face and later ones on the way, edges behind dashed."""
+    """Draw the solid of three edges (3, 3) with its swept face at four places; edges behind are dashed."""
     a, b, c = edges
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     base = square @ edges[:2]
@@ -208,7 +200,7 @@ def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
         if 0 < share < 1:
             axes.fill(*flat.T, facecolor="none", edgecolor=_ORANGE, lw=0.5, alpha=0.5, zorder=2)
     hand = np.sign(np.linalg.det(edges))
-    # Which of the two faces across each edge vector looks at us: that at its end, or that at its start.
+    # For each edge vector, whether the face at its end, and not that at its start, is towards us.
     at_end = [float(hand * np.cross(*others) @ view.toward) > 0 for others in ((b, c), (c, a), (a, b))]
     for k in range(3):
         first, second = (k + 1) % 3, (k + 2) % 3
@@ -224,7 +216,7 @@ def _draw_parallelepiped(axes: Axes, view: View, edges: Array) -> None:
 
 
 def _arrowprops(colour: str, width: float, head: float) -> dict[str, Any]:
-    """Return how matplotlib draws an arrow from end to end."""
+    """Return the properties of an arrow that ends exactly at its points."""
     return {
         "arrowstyle": "-|>",
         "color": colour,
@@ -245,9 +237,54 @@ def _draw_turn(axes: Axes, view: View, center: Array, first: Array, second: Arra
 
 
 def _rim(plane: Multivector, radius: float) -> Array:
-    disc = oriented(plane, float(plane.norm()), radius, _BLACK, 0)
-    assert disc is not None
-    return disc.rim(np.linspace(0, 2 * np.pi, 181))
+    """Return points (361, 3) of a circle about the origin, in the plane and sense of a bivector."""
+    turn = Rotor.from_vectors(e3, plane.dual() / plane.norm())
+    s = np.linspace(0, 2 * np.pi, 361)[:, np.newaxis]
+    rim: Array = radius * (np.cos(s) * turn(e1).components + np.sin(s) * turn(e2).components)
+    return rim
+
+
+# --- a box about the origin with half-lengths (3,), and arrows and discs from its centre. A ray that leaves
+# the box through a face towards us is in front of it (z-orders from 4 on), others are behind it.
+
+
+def _draw_box(axes: Axes, view: View, half: Array) -> None:
+    """Draw the three faces towards us."""
+    sides = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    for k, shade in enumerate(("#B9C2CF", "#838B95", "#C4CCDB")):
+        corners = np.empty((4, 3))
+        corners[:, k] = np.copysign(half[k], view.toward[k])
+        others = [(k + 1) % 3, (k + 2) % 3]
+        corners[:, others] = sides * half[others]
+        axes.fill(*view.project(corners).T, facecolor=shade, edgecolor=_BLACK, lw=0.9, zorder=3)
+
+
+def _leaving(view: View, points: Array, half: Array) -> tuple[Array, Any]:
+    """Return where rays to points (n, 3) leave the box, and whether through a face towards us."""
+    shares = np.abs(points) / half
+    face = shares.argmax(axis=1)
+    rows = np.arange(len(points))
+    return points / shares[rows, face, np.newaxis], points[rows, face] * view.toward[face] > 0
+
+
+def _arrow_from_box(axes: Axes, view: View, tip: Array, half: Array, colour: str, width: float) -> None:
+    (start,), (ours,) = _leaving(view, tip[np.newaxis], half)
+    _arrow(axes, view, start, tip, colour, width, zorder=6 if ours else 1)
+
+
+def _draw_disc_through_box(axes: Axes, view: View, rim: Array, half: Array, colour: str) -> None:
+    """Draw an oriented disc from its rim: one half behind the box, one in front, without what is inside."""
+    inner, ours = _leaving(view, rim[:-1], half)
+    start = int(np.flatnonzero(ours & ~np.roll(ours, 1))[0])
+    arrow = _arrowprops(colour, 1.8, 16)
+    for first, zorder, inside in ((start, 4, inner), (start + 180, 1, 0 * inner)):
+        chosen = (first + np.arange(181)) % 360
+        outer = view.project(rim[chosen])
+        outline = np.concatenate([outer, view.project(inside[chosen])[::-1]])
+        axes.fill(*outline.T, facecolor=colour, edgecolor="none", alpha=0.2, zorder=zorder)
+        axes.plot(*outer.T, color=colour, lw=1.8, zorder=zorder + 1)
+        for k in (70, 150) if zorder == 4 else (90,):
+            axes.annotate("", xy=outer[k + 4], xytext=outer[k], arrowprops=arrow, zorder=zorder + 1)
 
 
 def _draw_plane(axes: Axes, view: View, plane: Multivector, radius: float) -> None:
@@ -255,10 +292,10 @@ def _draw_plane(axes: Axes, view: View, plane: Multivector, radius: float) -> No
     flat = view.project(rim)
     axes.fill(*flat.T, facecolor="#EEF1F5", edgecolor=FAINT, lw=1.0, zorder=0)
     arrow = _arrowprops(FAINT, 1.2, 15)
-    for k in (20, 80, 140):
-        axes.annotate("", xy=flat[k + 3], xytext=flat[k], arrowprops=arrow, zorder=1)
+    for k in (40, 160, 280):
+        axes.annotate("", xy=flat[k + 6], xytext=flat[k], arrowprops=arrow, zorder=1)
     lowest = int(np.argmin(flat[:, 1] - 0.6 * flat[:, 0]))
-    _write(axes, view, rim[lowest], "B", "#5B6675", (9, -9))
+    _write(axes, view, rim[lowest], "B", WEIGHT, (9, -9))
 
 
 def _draw_sector(axes: Axes, view: View, points: Array) -> None:

@@ -1,4 +1,4 @@
-"""The herpolhode: the path of the angular velocity in the invariable plane."""
+"""Herpolhode figure: the path of the angular velocity in the invariable plane."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from polhode._figures.style import (
     explain,
     in_our_look,
     new_figure,
+    scaled_unit,
     title_of,
-    told_in_powers,
 )
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.smooth import rotor_at, samples
-from polhode._report.text import time as told_time
+from polhode._report.text import time as time_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 
     from polhode._mechanics.trajectory import Trajectory
 
-# Points of a period in which the least and the largest distance from L are looked for.
+# Samples of a period from which the least and largest distance from L are found.
 _POINTS = 4097
-# Two circles whose radii differ by less than this share are drawn as one.
-_ALIKE = 1e-4
+# Circles whose radii differ by less than this fraction are drawn as one.
+_EQUAL = 1e-4
 
 
 @in_our_look
 def herpolhode_figure(trajectory: Trajectory) -> Figure:
-    """Draw ω of a free body in the plane across L in which it stays, between its two circles."""
+    """Draw ω of a free body in the invariable plane, which is perpendicular to L, between its two circles."""
     figure = new_figure(5.2, 5.9)
     axes = figure.add_subplot()
     entitle(figure, title_of(trajectory, "Herpolhode"))
@@ -47,19 +47,19 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
         axes.set_axis_off()
         axes.text(0.5, 0.5, "At rest: no herpolhode", ha="center", transform=axes.transAxes)
         return figure
-    # Turned so that L lies along the third axis; its plane then has the first two.
+    # Into axes with L along the third one: the invariable plane is spanned by the first two.
     into_plane = ~Rotor.from_vectors(e3, momentum.dual().normalized())
     path = samples(trajectory)
     omega = into_plane(path.rotor(path.omega_body)).components
     free = FreeMotion(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0])
     around = into_plane(free.herpolhode(_POINTS)).components
-    power, per_second = told_in_powers(around[:, :2], "rad/s")
+    power, per_second = scaled_unit(around[:, :2], "rad/s")
     omega, around = omega / power, around / power
     radii = np.hypot(around[:, 0], around[:, 1])
     least, largest = float(radii.min()), float(radii.max())
     _draw_annulus(axes, least, largest)
     turns = float(np.abs(np.diff(np.unwrap(np.arctan2(omega[:, 1], omega[:, 0])))).sum()) / (2 * np.pi)
-    crowded = turns > 15 or 0.85 * largest < least < (1 - _ALIKE) * largest
+    crowded = turns > 15 or 0.85 * largest < least < (1 - _EQUAL) * largest
     axes.plot(omega[:, 0], omega[:, 1], color=HERPOLHODE, lw=0.7 if crowded else 1.4, zorder=3)
     axes.plot(*omega[0, :2], "o", color=HERPOLHODE, ms=6, mec="white", mew=0.8, zorder=5)
     axes.plot(0, 0, "+", color=MOMENTUM, ms=10, mew=1.8, zorder=6)
@@ -70,7 +70,7 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_xlabel(f"ω along g₁, {per_second}")
     axes.set_ylabel(f"ω along g₂, {per_second}")
-    explain(figure, _told(free, power * float(omega[0, 2]), power * least, power * largest))
+    explain(figure, _caption(free, power * float(omega[0, 2]), power * least, power * largest))
     return figure
 
 
@@ -79,22 +79,22 @@ def _draw_annulus(axes: Axes, least: float, largest: float) -> None:
     circle = np.stack([np.cos(s), np.sin(s)])
     axes.fill(*(largest * circle), facecolor="#EAF5F1", edgecolor="none", zorder=0)
     axes.fill(*(least * circle), facecolor="white", edgecolor="none", zorder=0)
-    for radius in (least, largest) if largest > (1 + _ALIKE) * least else (largest,):
+    for radius in (least, largest) if largest > (1 + _EQUAL) * least else (largest,):
         axes.plot(*(radius * circle), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=2)
 
 
-def _told(free: FreeMotion, distance: float, least: float, largest: float) -> str:
+def _caption(free: FreeMotion, distance: float, least: float, largest: float) -> str:
     period = free.describe()["period"]
-    told = (
-        "The angular velocity ω_S = −I Ω_S in space, from the dot. It stays in the "
-        f"invariable plane, across L at {abs(distance):.5g} rad/s = 2E/|L| from the fixed "
-        "origin; g₁∧g₂ is the plane and sense of L."
+    caption = (
+        "The angular velocity ω_S = −I Ω_S in space, from the dot on. It stays in the invariable plane, "
+        f"perpendicular to L at a distance of {abs(distance):.5g} rad/s = 2E/|L| from the fixed origin; "
+        "g₁∧g₂ has the plane and sense of L."
     )
-    if largest > (1 + _ALIKE) * least:
-        told += f" Dashed: its least and largest distance from L, {least:.4g} and {largest:.4g} rad/s"
-        told += f", each passed twice in a period of {told_time(period, 4)}." if period else "."
+    if largest > (1 + _EQUAL) * least:
+        caption += f" Dashed: its least and largest distance from L, {least:.4g} and {largest:.4g} rad/s"
+        caption += f", each reached twice in a period of {time_text(period, 4)}." if period else "."
     elif largest > 1e-9 * abs(distance):
-        told += f" Dashed: its distance from L, {largest:.4g} rad/s, is always the same."
+        caption += f" Dashed: its distance from L, {largest:.4g} rad/s, is constant."
     else:
-        told += " The turning is steady: it stays in one point."
-    return told
+        caption += " The rotation is steady: ω is constant."
+    return caption

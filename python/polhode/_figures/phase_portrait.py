@@ -1,4 +1,4 @@
-"""The phase portrait of a body without torque: motions of one |L| on the sphere of momentum in the body."""
+"""Phase portraits of torque-free bodies: motions of one |L| on the momentum sphere."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 
     from polhode._mechanics.trajectory import Trajectory
 
-# Angles from an axis of extreme moment towards that of the middle one at which other motions begin, in rad.
+# Starts of the neighbouring motions: angles in rad from an axis of extreme moment towards the middle one.
 _STARTS = np.radians([15, 35, 55, 75])
 _POINTS = 241
-# Equal moments, within rounding.
-_ALIKE = 1e-9
+# Relative difference of moments that counts as rounding.
+_EQUAL = 1e-9
 
 
 class _Axes(NamedTuple):
@@ -45,16 +45,16 @@ class _Axes(NamedTuple):
     center: int
     right: int
     up: int
-    # Whether the motion goes about the positive half of the central axis.
+    # 1 or −1: the half of the central axis that the motion is about.
     sign: float
 
 
 @in_our_look
 def phase_figure(trajectory: Trajectory, wheel: Array, view: Any = None) -> Figure:
-    """Draw L over |L| in principal axes: on the sphere, and on its map of true areas.
+    """Draw L/|L| in principal axes, on the sphere and on its equal-area map.
 
-    Of a damped body L keeps to the curve of the free one. A wheel's momentum (3,) in body axes makes other
-    neighbours.
+    L/|L| of a damped body stays on the curve of the free one. With a wheel of momentum (3,) in body axes the
+    neighbours are those with the same wheel.
     """
     moments = trajectory.inertia.principal_moments
     to_principal = ~trajectory.inertia.principal_frame
@@ -76,22 +76,22 @@ def phase_figure(trajectory: Trajectory, wheel: Array, view: Any = None) -> Figu
     sphere, flat = figure.subplots(1, 2, width_ratios=(1, 1.25))
     _draw_sphere(sphere, _view(view, chosen), path, family, divides)
     _draw_map(flat, chosen, path, family, divides)
-    explain(figure, _told(moments, with_wheel, bool(family), bool(divides)))
+    explain(figure, _caption(moments, with_wheel, bool(family), bool(divides)))
     return figure
 
 
 def _chosen_axes(moments: Array, path: Array) -> _Axes:
-    """Put the extreme axis that L goes about in the middle of the map, and the other extreme one above.
+    """Put the extreme axis that L circles in the middle of the map, and the other extreme one at the top.
 
-    Of a body with two equal moments the axis of symmetry is above.
+    The axis of a symmetric body is at the top.
     """
     low, middle, high = (int(k) for k in np.argsort(moments, kind="stable"))
-    if moments[middle] - moments[low] <= _ALIKE * moments[high]:
+    if moments[middle] - moments[low] <= _EQUAL * moments[high]:
         center, up = low, high
-    elif moments[high] - moments[middle] <= _ALIKE * moments[high]:
+    elif moments[high] - moments[middle] <= _EQUAL * moments[high]:
         center, up = high, low
     else:
-        # The axis whose component does not pass zero; of both on the separatrix the larger one.
+        # The axis whose component stays farther from zero; on the separatrix, that of the larger component.
         center = max((low, high), key=lambda k: (np.abs(path[:, k]).min(), np.abs(path[:, k]).max()))
         up = high if center == low else low
     right = ({0, 1, 2} - {center, up}).pop()
@@ -99,7 +99,7 @@ def _chosen_axes(moments: Array, path: Array) -> _Axes:
 
 
 def _view(view: Any, chosen: _Axes) -> View:
-    """Look at the axis in the middle from somewhat to the right of it and above."""
+    """Return the view, by default at the axis in the middle from slightly right and above."""
     if view is not None:
         return view_of(view)
     gaze = np.zeros(3)
@@ -109,15 +109,15 @@ def _view(view: Any, chosen: _Axes) -> View:
 
 
 def _family(moments: Array) -> list[Array]:
-    """Return L over |L| (n, 3) of other free motions, about both ends of the axes of extreme moments."""
+    """Return L/|L| (n, 3) of other free motions, about both ends of the axes of extreme moments."""
     order = [int(k) for k in np.argsort(moments, kind="stable")]
     low, middle, high = order
-    if moments[high] - moments[low] <= _ALIKE * moments[high]:
+    if moments[high] - moments[low] <= _EQUAL * moments[high]:
         return []
     starts = []
     for axis, other in ((low, middle), (high, middle)):
-        # Of a symmetric body one axis has a double: turning about any of those is steady.
-        if abs(moments[axis] - moments[other]) <= _ALIKE * moments[high]:
+        # An axis with the same moment as the middle one: rotation about it is steady.
+        if abs(moments[axis] - moments[other]) <= _EQUAL * moments[high]:
             continue
         for angle in _STARTS:
             for sign in (1.0, -1.0):
@@ -135,14 +135,14 @@ def _principal(moments: Array) -> Any:
 
 
 def _separatrix(moments: Array) -> list[Array]:
-    """Return the two great circles (n, 3) on which the energy is that of turning about the middle axis.
+    """Return the two great circles (n, 3) on which the energy is that of rotation about the middle axis.
 
     There ``L_low² (1/i_low − 1/i_mid) = L_high² (1/i_mid − 1/i_high)``.
     """
     low, middle, high = np.argsort(moments, kind="stable")
     below = 1 / moments[low] - 1 / moments[middle]
     above = 1 / moments[middle] - 1 / moments[high]
-    if min(below, above) <= _ALIKE / moments[high]:
+    if min(below, above) <= _EQUAL / moments[high]:
         return []
     s = np.linspace(0, 2 * np.pi, _POINTS)
     circles = []
@@ -156,7 +156,7 @@ def _separatrix(moments: Array) -> list[Array]:
 
 
 def _family_with_wheel(moments: Array, h: Array, chosen: _Axes) -> list[Array]:
-    """Return L over |L| of other motions with the wheel: curves of equal energy of the body."""
+    """Return L/|L| of other motions with the wheel: curves of equal energy of the body."""
     contours = optional("contourpy", "plot", "a figure").contour_generator
     azimuth, height = np.meshgrid(
         np.linspace(-np.pi, np.pi, 241), np.sin(np.linspace(-1, 1, 161) * np.pi / 2)
@@ -209,12 +209,12 @@ def _draw_map(axes: Axes, chosen: _Axes, path: Array, family: list[Array], divid
     center, right, up = (f"e{'₁₂₃'[k]}" for k in chosen[:3])
     sign = "−" if chosen.sign < 0 else ""
     axes.set_xlabel(f"azimuth of L from {sign}{center} towards {right}, degrees")
-    axes.set_ylabel(f"L along {up} over |L|")
+    axes.set_ylabel(f"L along {up}, over |L|")
     axes.spines[["top", "right"]].set_visible(True)
 
 
 def _draw_on_map(axes: Axes, curve: Array, chosen: _Axes, **style: Any) -> None:
-    """Draw a curve (n, 3), again a turn to the left and right where it goes over the edge."""
+    """Draw a curve (n, 3), repeated by whole turns where it crosses the edge."""
     azimuth, height = _on_map(curve, chosen)
     azimuth = np.degrees(np.unwrap(azimuth))
     first = np.floor((azimuth.min() + 180) / 360)
@@ -228,7 +228,7 @@ def _on_map(points: Array, chosen: _Axes) -> tuple[Array, Array]:
 
 
 def _name_axes(axes: Axes, chosen: _Axes) -> None:
-    """Mark where the ends of the two axes on the equator are."""
+    """Mark the ends of the two axes on the equator."""
     for k, sign, azimuths in (
         (chosen.center, chosen.sign, (0,)),
         (chosen.center, -chosen.sign, (-180, 180)),
@@ -246,15 +246,15 @@ def _name_axes(axes: Axes, chosen: _Axes) -> None:
             )  # fmt: skip
 
 
-def _told(moments: Array, with_wheel: bool, family: bool, divides: bool) -> str:
-    told = (
-        "Thick: L seen from the body, L_B = Σ Lₖ I eₖ about principal axes eₖ, over |L|, from the dot; "
+def _caption(moments: Array, with_wheel: bool, family: bool, divides: bool) -> str:
+    caption = (
+        "Thick: L in the body, L_B = Σ Lₖ I eₖ about principal axes eₖ, over |L|, from the dot on; "
         f"moments {', '.join(f'{i:.4g}' for i in moments)} kg m². "
     )
     if family:
-        told += f"Grey: other motions of this |L|{' with this wheel' if with_wheel else ''}. "
+        caption += f"Grey: other motions of this |L|{' with this wheel' if with_wheel else ''}. "
     if divides:
-        told += "Black: the separatrix through ± the axis of the middle moment. "
+        caption += "Black: the separatrix through both ends of the axis of the middle moment. "
     if not family:
-        told += "All moments are equal: L stays where it is. "
-    return told + "Left the sphere, dashed behind; right its map, true in area."
+        caption += "All moments are equal: L is constant. "
+    return caption + "Left: the sphere (dashed: behind). Right: its equal-area map."

@@ -1,4 +1,4 @@
-"""The kinds of figures that a motion has, and figures as files."""
+"""Registry of the kinds of figures of a motion; writing figures to files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polhode._figures.camera import view_of
+from polhode._figures.camera import angles_of
 from polhode._figures.spheres import axis_figure, orbit_figure, polhode_figure
 from polhode._figures.style import main_axis, motion_figure, require_times
 from polhode._report.describe import kind_of, long_axis, orbit_of, weight, wheel
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 # Kinds of motion whose angular velocity stays on an ellipsoid in the body.
 ON_ELLIPSOID = ("free", "damped", "gyrostat")
-# Kinds in which depth is drawn, seen from a direction.
-_SEEN = ("polhode", "locus", "phase", "scene")
+# Kinds of figures that have a direction of view.
+_WITH_VIEW = ("polhode", "locus", "phase", "scene")
 
-# In SVG text is outlines, for few readers have a font with ∧ and ₁; in PDF it stays text, in a font of the
-# type that journals take.
+# SVG has text as outlines, because few readers have a font with ∧ and ₁. PDF has text, in a font type that
+# journals accept.
 _AS_FILES = {"svg.fonttype": "path", "svg.hashsalt": "polhode", "pdf.fonttype": 42}
 _UNDATED: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},
@@ -46,18 +46,20 @@ def figure(trajectory: Trajectory, kind: str, view: Any = None, time: float | No
 
 
 def check(kind: str, view: Any, time: float | None) -> None:
-    """Raise a ValueError for a figure that no motion has."""
+    """Raise a ValueError for arguments that no motion allows."""
     if kind not in KINDS:
         raise ValueError(f"unknown kind of figure {kind!r}, expected one of {', '.join(KINDS)}")
-    if view is not None and kind not in _SEEN:
-        raise ValueError(f"view is for the kinds {', '.join(_SEEN)}; {kind!r} has no depth")
+    if view is not None and kind not in _WITH_VIEW:
+        raise ValueError(f"view is for the kinds {', '.join(_WITH_VIEW)}, not for {kind!r}")
     if time is not None and kind != "scene":
-        raise ValueError(f"time is for the kind 'scene'; {kind!r} shows all times")
-    view_of(view)
+        raise ValueError(f"time is for the kind 'scene', not for {kind!r}")
+    angles_of(view)
+    if kind == "scene":
+        optional("playwright", "film", "a figure of kind 'scene'")
 
 
 def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
-    """Draw what a kind of motion is known by: its polhode, or the path of an axis."""
+    """Return the figure typical of the kind of motion: the polhode, or the path of an axis."""
     kind = kind_of(scene)
     if kind in ON_ELLIPSOID:
         return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
@@ -71,7 +73,7 @@ def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
 
 
 def encoded(figure: Figure, form: str) -> bytes:
-    """Return a figure as the bytes of a file, the same for the same figure."""
+    """Return a figure as the bytes of a file; equal figures give equal bytes."""
     buffer = io.BytesIO()
     with optional("matplotlib", "plot", "a figure").rc_context(_AS_FILES):
         figure.savefig(buffer, format=form, dpi=200, metadata=_UNDATED[form])
@@ -91,8 +93,8 @@ def _polhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
     kind = _kind(trajectory)
     if kind not in ON_ELLIPSOID:
         raise ValueError(
-            "kind 'polhode' is for bodies that no torque but damping in proportion to L turns, or with a "
-            f"wheel, whose Ω stays on an ellipsoid; {_acting(trajectory)}"
+            "kind 'polhode' is for bodies whose Ω stays on an ellipsoid: free, damped in proportion to L, "
+            f"or with a wheel; {_acting(trajectory)}"
         )
     h = _wheel(trajectory)
     return polhode_figure(trajectory, h if kind == "gyrostat" else None, view)
@@ -103,7 +105,7 @@ def _herpolhode(trajectory: Trajectory, view: Any, time: float | None) -> Figure
 
     if _kind(trajectory) != "free":
         raise ValueError(
-            "kind 'herpolhode' is for free bodies: only their Ω stays in an invariable plane; "
+            "kind 'herpolhode' is for free bodies, whose Ω stays in an invariable plane; "
             + _acting(trajectory)
         )
     _require_path(trajectory, "herpolhode")
@@ -130,7 +132,7 @@ def _phase(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
     if kind in ON_ELLIPSOID:
         return phase_portrait.phase_figure(trajectory, _wheel(trajectory), view)
     if view is not None:
-        raise ValueError("view is for the phase portraits of bodies without torque; this one has no depth")
+        raise ValueError("view is for the phase portraits of bodies without torque, not for this one")
     if kind == "heavy":
         return tilt.top_figure(trajectory, _weight(trajectory, "phase"))
     if kind == "satellite":
@@ -139,7 +141,7 @@ def _phase(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
 
 
 def _scene(trajectory: Trajectory, view: Any, time: float | None) -> Figure:
-    from polhode._figures.stage import scene_figure
+    from polhode._figures.scene import scene_figure
 
     return scene_figure(trajectory, view, time)
 
@@ -155,11 +157,11 @@ KINDS: dict[str, Callable[[Trajectory, Any, float | None], Figure]] = {
 }
 
 
-# --- what a motion is of
+# --- what acts on the body
 
 
 def _kind(trajectory: Trajectory) -> str:
-    """Return the kind of motion by what acted, or where that is not known by what was conserved."""
+    """Return the kind of motion from what acted, or if that is unknown from what was conserved."""
     if trajectory._origin is not None:
         return kind_of(trajectory._origin)
     if "angular_momentum" not in trajectory.certificate.conserved:
@@ -168,7 +170,7 @@ def _kind(trajectory: Trajectory) -> str:
 
 
 def _wheel(trajectory: Trajectory) -> Array:
-    """Return the momentum of wheels (3,) in body axes: L but for that of the body's own turning."""
+    """Return the momentum of wheels (3,) in body axes: L minus that of the body."""
     if trajectory._origin is not None:
         return np.zeros(3) + wheel(trajectory._origin.torque)
     momentum = (~trajectory.rotor)(trajectory.momentum_space).components
@@ -190,21 +192,19 @@ def _weight(trajectory: Trajectory, kind: str) -> Array:
 
 
 def _acting(trajectory: Trajectory) -> str:
-    """Say what acts, for an error."""
+    """Return what acts on the body, for an error message."""
     setting = trajectory._origin
     if setting is None:
         return (
-            "what acted on this one is not known, for it was picked from a batch or unpickled; "
+            "the torque on this one is unknown, because it was picked from a batch or unpickled: "
             "simulate the body alone"
         )
     if setting.torque is None:
-        return "on this one no torque acts"
-    return f"on this one acts {', '.join(law.name for law in setting.torque.laws)}"
+        return "no torque acts on this one"
+    return f"this one is under {', '.join(law.name for law in setting.torque.laws)}"
 
 
 def _require_path(trajectory: Trajectory, kind: str) -> None:
     n = len(trajectory.time)
     if n < 2:
-        raise ValueError(
-            f"kind {kind!r} draws a path, which needs 2 output times or more; this motion has {n}"
-        )
+        raise ValueError(f"kind {kind!r} draws a path and needs 2 output times or more; this motion has {n}")

@@ -1,4 +1,4 @@
-"""Figures on a convex surface: the polhode on its ellipsoid, the path of an axis on the unit sphere."""
+"""Polhodes on the inertia ellipsoid, and paths of axes on the unit sphere."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from polhode._mechanics.trajectory import Trajectory
 
-# Points of a curve that is drawn from its formula.
+# Points of curves from formulas.
 _POINTS = 361
 
 
@@ -39,9 +39,9 @@ _POINTS = 361
 def polhode_figure(trajectory: Trajectory, wheel: Array | None = None, view: Any = None) -> Figure:
     """Draw the polhode on the inertia ellipsoid ``Σ i_k ω_k² = 2E`` of the start, among its neighbours.
 
-    Components are about the principal axes. Where the curve is behind the ellipsoid it is dashed and pale.
-    Of a body that loses energy it is drawn as if it had that of the start. A wheel's momentum (3,) in body
-    axes makes other neighbours.
+    Components are about the principal axes; parts behind the ellipsoid are dashed and pale. The polhode of a
+    body that loses energy is scaled to the energy of the start. With a wheel of momentum (3,) in body axes,
+    the neighbours are those with the same wheel.
     """
     require_times(trajectory)
     figure = new_figure(5.2, 5.6)
@@ -71,22 +71,22 @@ def polhode_figure(trajectory: Trajectory, wheel: Array | None = None, view: Any
     look.curve(axes, omega, omega * moments, color=POLHODE, lw=2.0)
     look.dot(axes, omega[0], omega[0] * moments, color=POLHODE)
     look.finish(axes, semi_axes, ("ω₁", "ω₂", "ω₃"), _AXES)
-    explain(figure, _told_of_polhode(moments, energies, bool(family), bool(divides)))
+    explain(figure, _polhode_caption(moments, energies, bool(family), bool(divides)))
     return figure
 
 
-def _told_of_polhode(moments: Array, energies: Array, family: bool, divides: bool) -> str:
-    slowed = " (drawn larger as the body slows)" if energies.min() < 0.999 * energies[0] else ""
-    told = (
-        "Thick: the angular velocity Ω_B = Σ ωₖ I eₖ about principal axes eₖ, from the dot"
+def _polhode_caption(moments: Array, energies: Array, family: bool, divides: bool) -> str:
+    slowed = " (scaled up as the body slows)" if energies.min() < 0.999 * energies[0] else ""
+    caption = (
+        "Thick: the angular velocity Ω_B = Σ ωₖ I eₖ about principal axes eₖ, from the dot on"
         f"{slowed}, on the ellipsoid i₁ω₁² + i₂ω₂² + i₃ω₃² = 2E with i = "
         f"{', '.join(f'{i:.4g}' for i in moments)} kg m², E = {energies[0]:.4g} J. "
     )
     if family:
-        told += "Grey: other motions of this energy. "
+        caption += "Grey: other motions of this energy. "
     if divides:
-        told += "Black: the separatrix between turning about the longest and the shortest axis. "
-    return told + "Dashed: behind."
+        caption += "Black: the separatrix between rotation about the axes of least and greatest moment. "
+    return caption + "Dashed: behind."
 
 
 def _polhode_family(moments: Array, energy: float) -> list[Array]:
@@ -115,9 +115,9 @@ def _polhode_family(moments: Array, energy: float) -> list[Array]:
 
 
 def _wheel_family(moments: Array, energy: float, h: Array) -> list[Array]:
-    """Return polhodes of one energy with a wheel of momentum h: where ``|I(ω) + h|`` has one size.
+    """Return polhodes of one energy with a wheel of momentum h: level curves of ``|I(ω) + h|``.
 
-    Level curves over azimuth and height on the sphere ``u_k = ω_k √i_k``, ``|u|² = 2E``.
+    They are taken over azimuth and height on the sphere ``u_k = ω_k √i_k``, ``|u|² = 2E``.
     """
     contour = optional("contourpy", "plot", "a figure").contour_generator
 
@@ -156,16 +156,16 @@ def axis_figure(trajectory: Trajectory, axis: Array, name: str) -> Figure:
     """Draw the path on the unit sphere of a direction fixed in the body (3,); e3 of space is up."""
     require_times(trajectory)
     path = samples(trajectory).rotor(vector(axis / np.linalg.norm(axis))).components
-    caption = f"Path of {name} on the unit sphere of space axes eₖ, from the dot. Dashed: behind."
+    caption = f"Path of {name} on the unit sphere of space axes eₖ, from the dot on. Dashed: behind."
     return path_figure(trajectory, path, caption, SPACE_AXES)
 
 
 def orbit_figure(trajectory: Trajectory, path: Array, name: str) -> Figure:
-    """Draw the path on the unit sphere of a direction (n, 3) given along the orbit, on its normal, and up."""
+    """Draw the path on the unit sphere of a direction (n, 3) in orbit axes: along, normal, up."""
     require_times(trajectory)
     caption = (
-        f"Path of {name} as seen on the orbit, from the dot: up is away from the planet, along is flight. "
-        "Dashed: behind."
+        f"Path of {name} in orbit axes, from the dot on: up is away from the planet, along is the direction "
+        "of flight. Dashed: behind."
     )
     return path_figure(trajectory, path, caption, ("along", "normal", "up"))
 

@@ -1,4 +1,4 @@
-"""Figures for paper: their look; rates, attitude and conserved quantities over time."""
+"""Style of the figures; the motion figure: rates, attitude and drift over time."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 
-# Okabe and Ito's palette, told apart by colour-blind readers too; the same as that of viewer/src/palette.ts.
+# Okabe and Ito's palette, safe for colour-blind readers; the same as in viewer/src/palette.ts.
 _BLUE, _ORANGE, _GREEN, _BLACK = "#0072B2", "#D55E00", "#009E73", "#222222"
 _AXES = (_BLUE, _ORANGE, _GREEN)
 OMEGA, MOMENTUM, TRACE, POLHODE, HERPOLHODE = _ORANGE, _BLUE, "#CC79A7", "#B07A00", _GREEN
-FAINT, BODY, WEIGHT = "#8A94A3", "#C9D2DE", "#5B6675"
-# Motions beside the one that is shown.
+FAINT, WEIGHT = "#8A94A3", "#5B6675"
+# Neighbouring motions.
 OTHERS = "#B8B8B8"
 
-# Planes and axes as they are written in figures.
+# Labels of planes and axes.
 PLANES = ("e₂∧e₃", "e₃∧e₁", "e₁∧e₂")
-SPACE_AXES, BODY_AXES = ("e₁", "e₂", "e₃"), ("f₁", "f₂", "f₃")
+SPACE_AXES = ("e₁", "e₂", "e₃")
 
-# For a figure two columns of a journal wide.
+# For a figure as wide as two columns of a journal.
 _LOOK = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
@@ -49,18 +49,18 @@ _LOOK = {
     "text.usetex": False,
     "path.simplify": True,
 }
-# How many letters of the caption and of the title fit in an inch.
+# Letters per inch of the caption and of the title.
 _CAPTION_LETTERS, _TITLE_LETTERS = 15.5, 11.0
 
-# More turns than this in one figure are a solid block.
+# More turns than this would fill a figure as a solid block.
 _TURNS_SEEN = 100
 
-# (longest duration that reads well, seconds in the unit, its name)
+# (longest duration to show in a unit, seconds in the unit, its name)
 _TIME_UNITS = ((300.0, 1.0, "s"), (18e3, 60.0, "min"), (432e3, 3600.0, "h"), (1.3e8, 86400.0, "d"))
 
 
 def in_our_look(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Draw in the look of all our figures, whatever the reader's own settings of matplotlib are."""
+    """Draw in the style of this package, whatever the user's matplotlib settings are."""
 
     @functools.wraps(draw)
     def drawn(*arguments: P.args, **named: P.kwargs) -> Figure:
@@ -85,19 +85,19 @@ def as_png(figure: Figure) -> bytes:
 
 
 def entitle(figure: Figure, title: str) -> None:
-    """Set the title, in as many lines as it needs."""
+    """Set the title, wrapped to the width of the figure."""
     lines = textwrap.fill(title, int(_TITLE_LETTERS * figure.get_figwidth()))
     figure.suptitle(lines, parse_math=False)
 
 
 def explain(figure: Figure, text: str) -> None:
-    """Set the caption below, in as many lines as it needs."""
+    """Set the caption below, wrapped to the width of the figure."""
     width = int(_CAPTION_LETTERS * figure.get_figwidth())
     figure.supxlabel(textwrap.fill(text, width), fontsize=8)
 
 
 def dress(axes: Axes) -> None:
-    """Give axes over numbers their grid and their small type."""
+    """Set grid, ticks and spines of axes with scales."""
     axes.grid(alpha=0.25, lw=0.6)
     axes.set_axisbelow(True)
     axes.tick_params(labelsize=8.5, width=0.6)
@@ -111,11 +111,11 @@ def title_of(trajectory: Trajectory, otherwise: str) -> str:
 
 def require_times(trajectory: Trajectory) -> None:
     if not len(trajectory.time):
-        raise ValueError("the motion has no output times, so there is nothing to draw")
+        raise ValueError("the motion has no output times: there is nothing to draw")
 
 
 def time_unit(times: Array) -> tuple[float, str]:
-    """Return the seconds in a unit in which times read well, and its name."""
+    """Return a unit for times, as its seconds and its name."""
     span = float(np.abs(times).max(initial=0.0))
     for longest, seconds, name in _TIME_UNITS:
         if span <= longest:
@@ -123,8 +123,8 @@ def time_unit(times: Array) -> tuple[float, str]:
     return 365.25 * 86400.0, "yr"
 
 
-def told_in_powers(values: Array, unit: str) -> tuple[float, str]:
-    """Return the power of ten over which numbers read well, and the unit with it."""
+def scaled_unit(values: Array, unit: str) -> tuple[float, str]:
+    """Return a power of ten to divide values by, and the unit with it."""
     largest = float(np.nanmax(np.abs(values), initial=0.0))
     if largest == 0 or 0.01 <= largest < 1e4:
         return 1.0, unit
@@ -134,13 +134,13 @@ def told_in_powers(values: Array, unit: str) -> tuple[float, str]:
 
 @in_our_look
 def motion_figure(trajectory: Trajectory) -> Figure:
-    """Draw angular velocity in the body, attitude, and what was conserved, over time."""
+    """Draw angular velocity in the body, attitude, and the drift of conserved quantities over time."""
     require_times(trajectory)
     figure = new_figure(7, 6.6)
     rates, attitude, drift = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 2))
     seconds, unit = time_unit(trajectory.time)
     t = trajectory.time / seconds
-    power, per_second = told_in_powers(trajectory.omega_body.components, "rad/s")
+    power, per_second = scaled_unit(trajectory.omega_body.components, "rad/s")
     for k, (plane, colour) in enumerate(zip(PLANES, _AXES, strict=True)):
         rates.plot(t, trajectory.omega_body.components[:, k] / power, color=colour, lw=1.2, label=plane)
     rates.set_ylabel(f"angular velocity in\nthe body Ω_B, {per_second}")
@@ -155,7 +155,7 @@ def motion_figure(trajectory: Trajectory) -> Figure:
     entitle(figure, title_of(trajectory, "Motion of a rigid body"))
     explain(
         figure,
-        "Ω_B: components over the planes of body axes, each that of the axis perpendicular to it. "
+        "Ω_B: components in the planes of body axes, coloured as the axis perpendicular to each. "
         "Rotor: a' = R a ~R takes body axes to space axes, R' = −½ R Ω_B.",
     )
     return figure
@@ -169,7 +169,7 @@ def main_axis(trajectory: Trajectory) -> tuple[int, Array]:
 
 
 def _draw_attitude(axes: Axes, trajectory: Trajectory, t: Array) -> None:
-    """Draw the rotor; of a body that spins too often to be seen, the direction of the axis it spins about."""
+    """Draw the rotor, or for a fast spinning body the direction of its spin axis."""
     rates = (~trajectory.inertia.principal_frame)(trajectory.omega_body).components
     speed = np.linalg.norm(rates, axis=1)
     turns = float(np.abs(np.diff(trajectory.time) * 0.5 * (speed[1:] + speed[:-1])).sum()) / (2 * np.pi)
@@ -188,7 +188,7 @@ def _draw_attitude(axes: Axes, trajectory: Trajectory, t: Array) -> None:
 
 
 def _draw_drift(axes: Axes, trajectory: Trajectory, t: Array) -> None:
-    """Draw what is conserved, its relative changes in units of a power of ten; |L| if nothing is."""
+    """Draw relative changes of conserved quantities over a power of ten; |L| if none is conserved."""
     series = {QUANTITIES[name][0]: values for name, values in trajectory.drifts().items()}
     if not series:
         axes.plot(t, np.linalg.norm(trajectory.momentum_space.components, axis=1), color=_BLUE, label="|L|")

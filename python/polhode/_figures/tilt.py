@@ -1,4 +1,4 @@
-"""The axis of a body in space: its path on the unit sphere, and its angle against the rate of that."""
+"""Locus and phase portrait of an axis: its path on the unit sphere; its angle against its rate."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 
     from polhode._mechanics.trajectory import Trajectory
 
-# Tilts and rates at which the energy is computed for its curves.
+# Numbers of tilts and rates of the grid for curves of equal energy.
 _GRID = (321, 241)
-# How far beyond the tilts of a motion its phase portrait reaches, over their span, and at least, in rad.
+# Margin of a phase portrait beyond the tilts of the motion: a fraction of their span, at least this in rad.
 _BEYOND, _LEAST = 0.35, 1e-5
-# An axis that tilts less quickly keeps its tilt, in rad/s.
+# A tilt that changes by less than this, in rad/s, is constant.
 _STILL = 1e-9
 
 
@@ -47,15 +47,15 @@ def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
     top = _lagrange(trajectory, c)
     caption = (
         "Path on the unit sphere of the axis from the fixed point to the centre of mass, in space axes eₖ, "
-        "from the dot; gravity is along −e₃. "
+        "from the dot on; gravity is along −e₃. "
     )
     if top is None:
         low, high = (float(x) for x in np.degrees([_tilt(path).min(), _tilt(path).max()]))
         bounds = (np.radians(low), np.radians(high))
-        caption += f"Black: the least and the largest tilt that it reached, {low:.5g}° and {high:.5g}°. "
+        caption += f"Black: the least and largest tilt reached, {low:.5g}° and {high:.5g}°. "
     else:
-        told = top.describe()
-        bounds = (told["tilt_min"], told["tilt_max"])
+        about = top.describe()
+        bounds = (about["tilt_min"], about["tilt_max"])
         low, high = (float(x) for x in np.degrees(bounds))
         caption += f"Black: the bounds of its tilt, {low:.5g}° and {high:.5g}°. "
     return path_figure(trajectory, path, caption + "Dashed: behind.", SPACE_AXES, bounds, view)
@@ -63,28 +63,28 @@ def locus_figure(trajectory: Trajectory, c: Array, view: Any = None) -> Figure:
 
 @in_our_look
 def top_figure(trajectory: Trajectory, c: Array) -> Figure:
-    """Draw the tilt of a top's axis against its rate, among the curves of energy of its two momenta."""
+    """Draw the tilt of a top's axis against its rate, among curves of equal energy with the same momenta."""
     theta, rate = _tilt_and_rate(trajectory, c / np.linalg.norm(c))
     figure, axes = _portrait(trajectory)
     top = _lagrange(trajectory, c)
-    caption = "Tilt θ of the axis from the fixed point to the centre of mass from up, e₃, and its rate"
-    told = {} if top is None else top.describe()
+    caption = "Tilt θ from e₃ (up) of the axis from the fixed point to the centre of mass, and its rate"
+    about = {} if top is None else top.describe()
     fastest = float(np.nanmax(np.abs(rate), initial=0.0))
     if top is None:
         _draw(axes, np.degrees(theta), np.degrees(rate))
-        caption += ", from the dot."
-    elif fastest <= _STILL and not told["precession_rate"]:
+        caption += ", from the dot on."
+    elif fastest <= _STILL and not about["precession_rate"]:
         _draw(axes, np.degrees(theta), np.nan_to_num(np.degrees(rate)))
         caption += ": the axis stands still."
     else:
-        _draw_energy(axes, trajectory, c, told, fastest)
+        _draw_energy(axes, trajectory, c, about, fastest)
         _draw(axes, np.degrees(theta), np.degrees(rate))
-        for bound in (told["tilt_min"], told["tilt_max"]):
+        for bound in (about["tilt_min"], about["tilt_max"]):
             axes.axvline(np.degrees(bound), color=_BLACK, lw=0.8, ls=(0, (4, 2)), zorder=1)
         caption += (
-            f", from the dot. Black: the curve of its energy, {told['energy']:.5g} J; grey: other energies "
-            f"with the same momentum about e₃, {told['vertical_momentum']:.5g} kg m²/s, and about the axis, "
-            f"{told['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
+            f", from the dot on. Black: the curve of its energy, {about['energy']:.5g} J; grey: others "
+            f"with the same momentum about e₃, {about['vertical_momentum']:.5g} kg m²/s, and about the axis, "
+            f"{about['axial_momentum']:.5g} kg m²/s. Dashed: the bounds of the tilt."
         )
     axes.set_xlabel("tilt θ, degrees")
     axes.set_ylabel("θ', degrees/s")
@@ -94,7 +94,7 @@ def top_figure(trajectory: Trajectory, c: Array) -> Figure:
 
 @in_our_look
 def satellite_figure(trajectory: Trajectory) -> Figure:
-    """Draw the angle of a satellite's long axis from up, in the plane of its orbit, against its rate."""
+    """Draw the angle of a satellite's long axis from up, in the orbit plane, against its rate."""
     assert trajectory._origin is not None
     along, _, up = long_axis(orbit_of(trajectory._origin.torque), trajectory).T
     angle = np.unwrap(np.arctan2(along, up))
@@ -108,15 +108,15 @@ def satellite_figure(trajectory: Trajectory) -> Figure:
     axes.set_ylabel("its rate, degrees/s")
     explain(
         figure,
-        "The axis of the least moment, in the plane of the orbit, from the dot; the rate is that between "
-        "output times.",
+        "The angle of the axis of least moment from up in the orbit plane, from the dot on. Its rate is from "
+        "finite differences between output times.",
     )
     return figure
 
 
 @in_our_look
 def angle_figure(trajectory: Trajectory) -> Figure:
-    """Draw the angle from e3 of the axis about which the body mostly turns, against its rate."""
+    """Draw the angle from e3 of the main axis of rotation, against its rate."""
     number, axis = main_axis(trajectory)
     theta, rate = _tilt_and_rate(trajectory, axis)
     figure, axes = _portrait(trajectory)
@@ -126,13 +126,13 @@ def angle_figure(trajectory: Trajectory) -> Figure:
     axes.set_ylabel("θ', degrees/s")
     explain(
         figure,
-        f"The axis f{name} about which the body mostly turns: its angle from e₃ of space, from the dot.",
+        f"The angle from e₃ of the main axis of rotation, f{name}, from the dot on.",
     )
     return figure
 
 
 def _rate_of(angle: Array, time: Array) -> Array:
-    """Return the rate of an angle (n,) from its values; one time has one rate."""
+    """Return the rate of an angle (n,) by finite differences; equal times have equal rates."""
     moments, first, which = np.unique(time, return_index=True, return_inverse=True)
     if len(moments) < 2:
         return np.zeros_like(angle)
@@ -155,7 +155,7 @@ def _draw(axes: Axes, angle: Array, rate: Array) -> None:
 
 
 def _lagrange(trajectory: Trajectory, c: Array) -> LagrangeTop | None:
-    """Return the motion in closed form; None for a body that is not symmetric about c."""
+    """Return the motion in closed form; None if the body is not symmetric about c."""
     try:
         return LagrangeTop(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0], c)
     except ValueError:
@@ -175,21 +175,21 @@ def _tilt_and_rate(trajectory: Trajectory, axis: Array) -> tuple[Array, Array]:
     moving = n.dot(states.rotor(states.omega_body)).components
     path = n.components
     across = np.hypot(path[:, 0], path[:, 1])
-    # cos θ = n·e3, so that −sin θ θ' = n'·e3; upright the rate has no sign, and is left out.
+    # cos θ = n·e3, so −sin θ θ' = n'·e3. The rate of an upright axis has no sign: it is NaN.
     rate = np.full(len(across), np.nan)
     np.divide(-moving[:, 2], across, out=rate, where=across > 1e-9)
     return _tilt(path), rate
 
 
-def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, told: dict[str, Any], fastest: float) -> None:
-    """Draw the curves of equal energy with the momenta of this motion, about up and about its axis."""
-    low, high = told["tilt_min"], told["tilt_max"]
+def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, about: dict[str, Any], fastest: float) -> None:
+    """Draw curves of equal energy with the momenta of this motion about up and about its axis."""
+    low, high = about["tilt_min"], about["tilt_max"]
     beyond = max(_BEYOND * (high - low), _LEAST)
     theta = np.linspace(max(low - beyond, 1e-4), min(high + beyond, np.pi - 1e-4), _GRID[0])
-    reach = 1.45 * fastest if fastest > _STILL else beyond * told["precession_rate"]
+    reach = 1.45 * fastest if fastest > _STILL else beyond * about["precession_rate"]
     rate = np.linspace(-abs(reach), abs(reach), _GRID[1])
-    energy = _energy(trajectory, c, told, theta, rate[:, np.newaxis])
-    least, present = float(energy.min()), told["energy"]
+    energy = _energy(trajectory, c, about, theta, rate[:, np.newaxis])
+    least, present = float(energy.min()), about["energy"]
     span = max(present - least, 1e-12 * abs(present))
     others = least + span * np.array([0.2, 0.6, 1.5, 2.1, 2.8, 3.6])
     x, y = np.degrees(theta), np.degrees(rate)
@@ -198,11 +198,11 @@ def _draw_energy(axes: Axes, trajectory: Trajectory, c: Array, told: dict[str, A
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
 
-def _energy(trajectory: Trajectory, c: Array, told: dict[str, Any], theta: Array, rate: Array) -> Array:
-    """Return the energy of tops whose axis has the tilts and rates, with the momenta of this motion.
+def _energy(trajectory: Trajectory, c: Array, about: dict[str, Any], theta: Array, rate: Array) -> Array:
+    """Return the energy of tops with these tilts and rates of the axis, and the momenta of this motion.
 
-    In the body with the axis a, the line of nodes n and w = a × n. There up is cos θ a + sin θ w, and L has
-    the given part along a, a part along w such that that along up is right, and that of a turn θ' along n.
+    In body axes: a along the axis, n along the line of nodes, w = a × n. Up is cos θ a + sin θ w. L has the
+    given component along a, a component along w that gives the momentum about up, and I(θ' n).
     """
     size = float(np.linalg.norm(c))
     a = c / size
@@ -210,8 +210,8 @@ def _energy(trajectory: Trajectory, c: Array, told: dict[str, Any], theta: Array
     n /= np.linalg.norm(n)
     w = np.cross(a, n)
     theta, rate = np.broadcast_arrays(theta, rate)
-    side = (told["vertical_momentum"] - told["axial_momentum"] * np.cos(theta)) / np.sin(theta)
-    momentum = told["axial_momentum"] * a + side[..., np.newaxis] * w
+    side = (about["vertical_momentum"] - about["axial_momentum"] * np.cos(theta)) / np.sin(theta)
+    momentum = about["axial_momentum"] * a + side[..., np.newaxis] * w
     momentum = momentum + trajectory.inertia(bivector(rate[..., np.newaxis] * n)).components
     omega = trajectory.inertia.inverse(bivector(momentum)).components
     energy: Array = 0.5 * (omega * momentum).sum(axis=-1) + size * np.cos(theta)

@@ -1,4 +1,4 @@
-"""Laws and events are values made of a name and checked arguments: the checks, and how they are shown."""
+"""Arguments of laws and events: checks, formulas, and text."""
 
 from __future__ import annotations
 
@@ -74,15 +74,15 @@ def narrowed(value: Any) -> Any:
     return value if held in (0, value._mask) else value._part(held)
 
 
-def made_of_formula(
+def law_of_formula(
     make: Callable[[tuple[tuple[str, Any], ...]], T],
     text: str,
     values: dict[str, Any],
     batches: bool = False,
 ) -> T:
-    """Return what `make` makes of a formula with these values for its names, which may be `batches`."""
+    """Return the law that `make` returns for checked values of the names; these may be `batches`."""
     if not isinstance(text, str):
-        raise TypeError(f"a formula is a text, got {type(text).__name__}")
+        raise TypeError(f"a formula must be a string, got {type(text).__name__}")
     given = {name: formula_value(value, name, batches) for name, value in values.items()}
     try:
         return make(tuple(given.items()))
@@ -93,14 +93,14 @@ def made_of_formula(
 
 
 def function_of(f: Any, names: str) -> Any:
-    """Return a function, which is to be called with these."""
+    """Return a function of these arguments."""
     if not callable(f):
-        raise TypeError(f"a function of {names} is needed, got {type(f).__name__}")
+        raise TypeError(f"expected a function of {names}, got {type(f).__name__}")
     return f
 
 
 def shown(name: str, arguments: Iterable[Any], named: Mapping[str, Any], form: str = "") -> str:
-    """Return the call that makes a value, its numbers in a format."""
+    """Return the call of a constructor as text, its numbers in a format."""
     texts = [_text(x, form) for x in arguments] + [f"{key}={_text(x, form)}" for key, x in named.items()]
     return f"{name}({', '.join(texts)})"
 

@@ -1,4 +1,4 @@
-"""What torque laws are given: numbers for all bodies, or for each body of a batch its own."""
+"""Arguments of torque laws: numbers shared by all bodies, or a row for each body of a batch."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from polhode._support.arrays import Array, Shape, as_floats, frozen
 
 
 class Batch:
-    """A row of numbers for each body of a batch: a value, equal where its numbers are.
+    """A row of numbers for each body of a batch; equal if the numbers are equal.
 
     Attributes
     ----------
     rows
         The numbers, (*shape, k), read-only and in C order.
     like
-        For a formula a single multivector of the same kind; else 1.0.
+        A single multivector of the same kind for a formula, else 1.0.
     """
 
     __slots__ = ("like", "rows")
@@ -77,7 +77,7 @@ def bivectors(value: Any, name: str) -> tuple[float, ...] | Batch:
 
 
 def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
-    """Return the components of a rotor, or a batch of them; of None those of the identity."""
+    """Return the components of a rotor, or a batch of them; for None those of the identity."""
     if value is None:
         return (1.0, 0.0, 0.0, 0.0)
     if not isinstance(value, Rotor):
@@ -86,14 +86,13 @@ def rotors(value: Rotor | None, name: str) -> tuple[float, ...] | Batch:
 
 
 def gains(value: Any, name: str) -> tuple[float, ...] | Batch:
-    """Return three numbers, none negative, from a number or three, or a batch from (..., 3) or (..., 1)."""
+    """Return three finite numbers from a number or three, or a batch from (..., 3) or (..., 1)."""
     array = as_floats(value, name)
     if array.shape[-1:] not in ((), (3,)) and not (array.ndim > 1 and array.shape[-1] == 1):
         raise ValueError(
             f"{name} must be a number or three along the body axes, or a batch (..., 3) of them or (..., 1), "
             f"got shape {array.shape}"
         )
-    check_not_negative(array, name)
     return rows(np.broadcast_to(array, (*array.shape[:-1], 3)), name)
 
 
@@ -113,16 +112,8 @@ def check_finite(components: Array, what: str) -> None:
         raise ValueError(f"{place(index)}{what} is {value}; it must be finite")
 
 
-def check_not_negative(values: Array, name: str) -> None:
-    """Raise a ValueError with the first value that is negative."""
-    if (values < 0).any():
-        index = _first(values < 0)
-        told = f"{place(index)}{name} is {values[tuple(index)]}"
-        raise ValueError(f"{told}; a damper takes energy away, so it must not be negative")
-
-
 def place(index: tuple[int, ...]) -> str:
-    """``at index (2,): ``; nothing for a single value."""
+    """Return ``at index (2,): ``, or nothing for a single value."""
     return f"at index {index}: " if index else ""
 
 
@@ -145,7 +136,7 @@ def _broadcast(batch: Batch, shape: Shape) -> Batch:
 
 
 def named_together(given: tuple[tuple[str, Any], ...]) -> tuple[tuple[str, Any], ...]:
-    """Return the values of names in a formula, batches as such and broadcast to one shape."""
+    """Return the values of names in a formula, with batches broadcast to one shape."""
     many = {name: x for name, x in given if isinstance(x, Multivector) and x.shape}
     shape = common({f"`{name}`": x.shape for name, x in many.items()}, "the formula")
     return tuple((name, _broadcast(_of_values(x), shape) if name in many else x) for name, x in given)
@@ -159,9 +150,9 @@ def _of_values(values: Multivector) -> Batch:
 
 
 def common(shapes: Mapping[str, Shape], what: str) -> Shape:
-    """Return the shape to which batches broadcast; what does not is a ValueError with the shapes."""
+    """Return the shape to which batches broadcast, or raise a ValueError with their shapes."""
     try:
         return np.broadcast_shapes(*shapes.values())
     except ValueError:
-        told = ", ".join(f"{shape} of {name}" for name, shape in shapes.items() if shape)
-        raise ValueError(f"the batch shapes of {what} do not broadcast together: {told}") from None
+        listed = ", ".join(f"{shape} of {name}" for name, shape in shapes.items() if shape)
+        raise ValueError(f"the batch shapes of {what} do not broadcast together: {listed}") from None

@@ -1,4 +1,4 @@
-"""Bodies held at a fixed point under gravity: the pivot, and the moment of the weight about it."""
+"""Bodies held at a pivot under gravity: their axes, and the moment of the weight."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from polhode._support.arrays import Array
 
 Laws = tuple[_native.Law, ...]
 
-# Laws that hold the body: the fixed point of `heavy` is the origin of the body's axes, `gravity` names it.
+# Laws that hold the body at a point: `heavy` at the origin of its axes, `gravity` at a given pivot.
 HOLDING = ("gravity", "heavy")
 
 
@@ -23,7 +23,7 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
     Parameters
     ----------
     bodies
-        An array of objects, each a `Body` or an `Inertia`. An inertia is that about the fixed point.
+        An array of objects, each a `Body`, or an `Inertia` about the fixed point.
     laws
         Torque laws, which may be batches.
 
@@ -31,7 +31,7 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
     ------
     ValueError
         If laws hold the body at different points, if gravity was made for another body, or if c of `heavy`
-        contradicts the centre of mass.
+        does not point along the centre of mass.
     """
     held = [law for law in laws if law.name in HOLDING]
     if not held:
@@ -41,7 +41,7 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
         if (points[0] != point).any():
             raise ValueError(
                 f"the laws hold the body at different points, {_text(points[0])} and {_text(point)} m; give "
-                "all the same pivot (that of heavy is the origin of the body's axes)"
+                "all of them the same pivot (that of heavy is the origin of the body axes)"
             )
     for law in held:
         check = _check_body if law.name == "gravity" else _check_weight
@@ -80,7 +80,7 @@ def _as_heavy(law: _native.Law) -> _native.Law:
 
 
 def _check_body(bodies: Any, law: _native.Law) -> None:
-    """Gravity must act on the body that it was made for."""
+    """Raise if gravity was made for another body."""
     mass, center = map(_rows, law.arguments[1:3])
     rows = np.concatenate(np.broadcast_arrays(mass, center[..., :1], center[..., 1:2], center[..., 2:]), -1)
     own = np.array([_numbers(body) for body in bodies.flat]).reshape(*bodies.shape, 4)
@@ -90,20 +90,20 @@ def _check_body(bodies: Any, law: _native.Law) -> None:
         index = tuple(int(i) for i in np.argwhere(other)[0])
         (m, *x), (n, *y) = (np.broadcast_to(a, (*other.shape, 4))[index].tolist() for a in (rows, own))
         raise ValueError(
-            f"{place(index)}gravity was made for a body of {m} kg with the centre of mass at {x} m, this one "
-            f"has {n} kg at {y} m; make it for the same body"
+            f"{place(index)}gravity was made for a body of {m} kg with the centre of mass at {x} m, this "
+            f"body has {n} kg at {y} m; call ph.torque.gravity with this body"
         )
 
 
 def _numbers(body: Body | Inertia) -> list[float]:
-    """Return mass and centre of mass, NaN of an inertia."""
+    """Return mass and centre of mass; NaN for an inertia."""
     if isinstance(body, Inertia):
         return [np.nan] * 4
     return [body.mass, *body._core.center_of_mass().tolist()]
 
 
 def _check_weight(bodies: Any, law: _native.Law) -> None:
-    """The c of `heavy` must be along the centre of mass, where that is known."""
+    """Raise if c of `heavy` does not point along the centre of mass, where that is known."""
     c = _rows(law.arguments[0])
     shape = common({"the body": bodies.shape, "c": c.shape[:-1]}, "body and torque")
     c = np.broadcast_to(c, (*shape, 3))

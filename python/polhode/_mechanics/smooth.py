@@ -45,20 +45,6 @@ def samples(trajectory: Trajectory) -> Samples:
     return Samples(times, state.rotor, state.omega_body)
 
 
-def states_at(trajectory: Trajectory, times: Array) -> Samples:
-    """Return the states at times; of a motion that knows no others, at the output times next to them."""
-    if trajectory._motion is not None:
-        state = trajectory.at(times)
-        return Samples(times, state.rotor, state.omega_body)
-    if len(trajectory.time) == 1:
-        return Samples(trajectory.time, trajectory.rotor, trajectory.omega_body)
-    after = np.clip(np.searchsorted(trajectory.time, times), 1, len(trajectory.time) - 1)
-    middles = 0.5 * (trajectory.time[after - 1] + trajectory.time[after])
-    rows = np.where(times < middles, after - 1, after)
-    rotors = Rotor._from_rows(trajectory.rotor._data[rows])
-    return Samples(trajectory.time[rows], rotors, trajectory.omega_body[rows])
-
-
 def rotor_at(trajectory: Trajectory, k: int) -> Rotor:
     """Return the rotor at an output time by its number, as a rotor."""
     rotor: Rotor = Rotor._from_rows(trajectory.rotor._data[k])

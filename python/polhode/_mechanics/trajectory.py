@@ -293,16 +293,21 @@ class Trajectory:
         kind
             ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
             ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
-            what is conserved; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors.
+            conserved quantities; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors,
+            captured from the viewer in a headless browser.
         view
-            Azimuth and elevation in degrees from which to look at what has depth; None for the usual ones.
+            Azimuth and elevation to look from, in degrees, for kinds that have depth; None for the default.
         time
-            Of the scene, in s; None for the last one.
+            Time of the scene in s; None for the last one.
 
         Raises
         ------
         ValueError
             For a batch, a kind that does not fit the motion, or too few output times.
+        ImportError
+            Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
+        OSError
+            For ``"scene"`` without a browser.
         """
         self._require_one("plot")
         from polhode._figures.registry import figure
@@ -313,37 +318,45 @@ class Trajectory:
         self,
         path: str | os.PathLike[str],
         *,
-        seconds: float = 12.0,
+        seconds: float | None = None,
         fps: float = 25.0,
         size: tuple[int, int] | None = None,
         view: Any = None,
         progress: Callable[[float], object] | None = None,
     ) -> None:
-        """Write a film of the scene of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
+        """Write a film of the motion of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
+
+        The frames are captured from the viewer in a headless browser, at equally spaced times from the first
+        output time on.
 
         Parameters
         ----------
-        seconds, fps
-            How long the film takes for the whole motion, and its pictures in a second.
+        seconds
+            Length of the film; None for true speed, a second of motion in a second of film.
+        fps
+            Frames per second.
         size
             Width and height in pixels; None for (1280, 720), of a GIF (640, 360).
         view
-            As for `plot`.
+            As for `plot`; None for that of the viewer.
         progress
-            Called now and then with the fraction done.
+            Called after each frame with the fraction done.
 
         Raises
         ------
         ValueError
-            For a batch, another name of file, too few output times, or a film of no pictures.
+            For a batch, another suffix, fewer than 2 output times, fewer than 2 frames, or a motion too long
+            or too short for true speed.
+        ImportError
+            Without Playwright: ``pip install 'polhode[film]'``.
         OSError
-            Without ffmpeg, or where the file cannot be written; an older file stays.
+            Without a browser or ffmpeg, or if the file cannot be written; an older file stays.
 
         Warns
         -----
         UserWarning
-            If the body turns by more than a quarter turn from one picture to the next, so that it seems to
-            turn otherwise; with the speed up to which the film shows the motion as it is.
+            If the body turns by more than a quarter turn between frames, so that it appears to turn at
+            another rate; with the speed up to which the film is faithful.
         """
         self._require_one("film")
         from polhode._figures.film import write

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from polhode._mechanics.registry import TORQUES
+
 # How wide the names of rows are.
 _COLUMNS = 18
 
@@ -24,22 +26,6 @@ QUANTITIES = {
     "kovalevskaya_integral": ("Kovalevskaya's K", "rad⁴/s⁴"),
     "goryachev_chaplygin_integral": ("Goryachev's G", "rad³/s³"),
     "jacobi_integral": ("Jacobi's integral", "J"),
-}
-
-# Name and unit of each argument of a law.
-_ARGUMENTS = {
-    "heavy": (("c =", "N m"),),
-    "gravity_gradient": (("n =", "rad/s"), ("e =", ""), ("M0 =", "rad")),
-    "constant_body": (("", "N m in the body"),),
-    "constant_space": (("", "N m in space"),),
-    "damping": (("g =", "1/s"),),
-    "quadratic_damping": (("k =", "N m s²"),),
-    "viscous_damping": (("d =", "N m s"),),
-    "magnetic": (("dipole", "A m²"), ("field", "T")),
-    "torsion_spring": (("k =", "N m"), ("rest", "")),
-    "gyrostat": (("h =", "kg m²/s"),),
-    "pd_control": (("kp =", "N m"), ("kd =", "N m s"), ("target", "")),
-    "larmor": (("b =", "rad/s"),),
 }
 
 
@@ -97,17 +83,15 @@ def _law(law: dict[str, Any]) -> tuple[str, str]:
     name, arguments = law["law"], law["arguments"]
     if name == "formula":
         return f"torque_{arguments[1]}", " ".join(law["formula"].split())
-    if name not in _ARGUMENTS:
+    if name not in TORQUES or name == "tabulated":
         return name, law["call"].partition("(")[2].removesuffix(")")
-    told = []
-    for (label, unit), argument in zip(_ARGUMENTS[name], arguments, strict=True):
-        if isinstance(argument, list):
-            equal = len(set(argument)) == 1 and name in ("viscous_damping", "pd_control")
-            value = number(argument[0]) if equal else _listed(argument)
-        else:
-            value = number(argument)
-        told.append(" ".join(part for part in (label, value, unit) if part))
-    return name, "; ".join(told)
+    texts = []
+    for argument, value in zip(TORQUES[name].arguments, arguments, strict=True):
+        equal = argument.shape == "gains" and len(set(value)) == 1
+        text = number(value[0] if equal else value) if equal or argument.shape == "scalar" else _listed(value)
+        unit = "" if argument.unit == "1" else " " + argument.unit.replace("^2", "²")
+        texts.append(f"{argument.name} = {text}{unit}")
+    return name, "; ".join(texts)
 
 
 def _run(run: dict[str, Any], kind: str, row: Row) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.registry import FORCES, TORQUES, Entry
 from polhode._mechanics.state import State
 from polhode._support.arrays import Array
 from polhode.force import Force
@@ -70,8 +71,8 @@ class Problem:
             "define": _definitions(law for law in laws if law.name == "formula"),
             "body": self._body(),
             "initial": self._initial(),
-            "torque": _fields(laws, _TORQUES, "torque"),
-            "force": _fields(self.force.laws if self.force else (), _FORCES, "force"),
+            "torque": _fields(laws, TORQUES, "torque"),
+            "force": _fields(self.force.laws if self.force else (), FORCES, "force"),
             "run": self._run(),
             "method": self._method(),
         }
@@ -135,65 +136,34 @@ class Problem:
 # --- laws, as the fields of [torque] and [force]
 
 
-def _gradient(n: float, eccentricity: float, mean_anomaly: float) -> dict[str, float]:
-    return {"rate": n, "eccentricity": eccentricity, "mean_anomaly": mean_anomaly}
-
-
-def _tabulated(times: Any, torques: Any, frame: str, kind: str) -> dict[str, Any]:
-    return {"times": times, "torques": torques, "frame": frame, "kind": kind}
-
-
-def _thrust(F: Any, at: Any = None) -> dict[str, Any]:
-    return {"force": F} if at is None else {"force": F, "at": at}
-
-
-def _rotor(components: Any) -> dict[str, Any]:
-    return {"rotor": components}
-
-
-# What the field of a law is given, made of the law's arguments.
-_Field = Callable[..., Any]
-
-_TORQUES: dict[str, _Field] = {
-    **dict.fromkeys(
-        (
-            "heavy",
-            "larmor",
-            "damping",
-            "viscous_damping",
-            "quadratic_damping",
-            "gyrostat",
-            "constant_body",
-            "constant_space",
-        ),
-        lambda argument: argument,
-    ),
-    "gravity_gradient": _gradient,
-    "magnetic": lambda dipole, field: {"dipole": dipole, "field": field},
-    "torsion_spring": lambda k, rest: {"stiffness": k, "rest": _rotor(rest)},
-    "pd_control": lambda kp, kd, target: {"kp": kp, "kd": kd, "target": _rotor(target)},
-    "tabulated": _tabulated,
-    "formula": lambda text, frame, values: text,
-}
-
-_FORCES: dict[str, _Field] = {
-    **dict.fromkeys(("constant", "drag", "quadratic_drag", "central"), lambda argument: argument),
-    "thrust": _thrust,
-    "spring": lambda k, anchor: {"stiffness": k, "anchor": anchor},
-}
-
-
-def _fields(laws: Iterable[Any], known: dict[str, _Field], what: str) -> dict[str, Any]:
+def _fields(laws: Iterable[Any], entries: Mapping[str, Entry], table: str) -> dict[str, Any]:
     """Return the fields of a table whose laws add up, in their order."""
     fields: dict[str, Any] = {}
     for law in laws:
-        if law.name not in known:
-            raise UnwritableError(f"a scene has no {what} that is a {law.name} of Python's")
-        name = f"torque_{law.arguments[1]}" if (what, law.name) == ("torque", "formula") else law.name
+        is_formula = (table, law.name) == ("torque", "formula")
+        name = f"torque_{law.arguments[1]}" if is_formula else law.name
         if name in fields:
-            raise UnwritableError(f"a scene has but one {what} `{name}`, and this motion has two")
-        fields[name] = known[law.name](*law.arguments)
+            raise UnwritableError(f"a scene has at most one {table} `{name}`, this motion has two")
+        if is_formula:
+            fields[name] = law.arguments[0]
+        elif name in entries:
+            fields[name] = _field(entries[name], law.arguments)
+        elif name == "function":
+            raise UnwritableError(
+                "Python callables cannot be written to a scene file; use a formula, as of ph.torque.formula"
+            )
+        else:
+            raise UnwritableError(f"[{table}] of a scene has no {name}")
     return fields
+
+
+def _field(entry: Entry, arguments: tuple[Any, ...]) -> Any:
+    """Return the value of a law's field in a scene."""
+    values = {
+        argument.field: {"rotor": value} if argument.shape == "rotor" else value
+        for argument, value in zip(entry.arguments, arguments, strict=False)
+    }
+    return values.get("", values)
 
 
 def _definitions(formulas: Iterable[Any]) -> dict[str, Any]:

@@ -1,1 +1,1 @@
-"""The viewer: pages, the server and the widget."""
+"""The viewer: pages, the server, the widget and captured pictures."""

@@ -1,6 +1,6 @@
-"""What the viewer is given to show: scenes and motions as documents.
+"""Documents for the viewer: scenes and motions.
 
-Their form is `PageDocument` in `viewer/src/document.ts`.
+Their format is `PageDocument` in `viewer/src/document.ts`.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._native import SceneError
 from polhode._scene.scene import Scene
 from polhode._scene.writer import Problem, UnwritableError
-from polhode._support.arrays import as_float
+from polhode._support.arrays import Array, as_float
 from polhode._support.packing import packed, unpacked
 from polhode._viewer.recording import recorded
 from polhode.torque import Torque, damping, heavy, larmor, settled
 
 Document = dict[str, Any]
 
-# How long a motion is shown if nobody says it: turns at the initial rate, or s of a body at rest.
+# Default duration: turns at the initial rate, or s for a body at rest.
 _TURNS, _REST = 20, 10.0
 _SAMPLES = 1001
 
@@ -48,7 +48,7 @@ def document(
     *,
     duration: float | None = None,
 ) -> Document:
-    """Return the document that shows something.
+    """Return the document of a scene or a motion.
 
     Parameters
     ----------
@@ -58,23 +58,22 @@ def document(
         - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
         - A `Body` or an `Inertia`, with a state, and a torque and a force as for `polhode.simulate`.
     duration
-        For how long, in s, of motions that have no end of their own; None for 20 turns at the initial rate.
+        Duration in s of motions without an end of their own; None for 20 turns at the initial rate.
 
-    The page solves a scene by itself, and so everything that a scene can say: a motion that was exact is
-    given as a scene alone, one that was stepped as a scene with its states at up to 20,000 times, so that
-    it need not be followed again before something is changed. A motion that no scene can say, as that under
-    a Python function, is given by its states alone.
+    The page solves scenes itself. An exact motion is given as a scene alone; a stepped one as a scene with
+    its states at up to 20,000 times, so that the page need not integrate it before something is changed. A
+    motion that no scene can describe, such as one under a Python function, is given by its states alone.
 
     Raises
     ------
     TypeError, ValueError
-        For what cannot be shown, and arguments that do not fit together.
+        For values that cannot be shown, and for inconsistent arguments.
     SceneError, OSError
-        For files.
+        For files that cannot be read.
     """
     if isinstance(x, (Body, Inertia)):
         if state is None:
-            raise TypeError("a body alone does not move; give its state too")
+            raise TypeError("a body needs a state to be shown: give state")
         if not isinstance(state, State):
             raise TypeError(f"state must be a State, got {type(state).__name__}")
         law, push = as_torque(torque), None if force is None else as_force(force)
@@ -92,13 +91,13 @@ def document(
     if isinstance(x, (str, os.PathLike)):
         return of_file(Path(x))
     raise TypeError(
-        f"cannot show what is of type {type(x).__name__}; give a Scene, a Trajectory, a motion in closed "
-        "form, the path of a scene or of a netCDF file, or a Body and its State"
+        f"cannot show a value of type {type(x).__name__}: give a Scene, a Trajectory, a closed-form motion, "
+        "the path of a scene or netCDF file, or a Body and its State"
     )
 
 
 def _refuse(x: Any, **given: Any) -> None:
-    """Raise a TypeError for arguments that what is shown has by itself."""
+    """Raise a TypeError for arguments that the shown value already has."""
     if extra := [name for name, value in given.items() if value is not None]:
         what = repr(str(x)) if isinstance(x, (str, os.PathLike)) else f"a {type(x).__name__}"
         raise TypeError(f"{' and '.join(extra)} cannot be given for {what}, which has its own")
@@ -110,47 +109,50 @@ def of_scene(scene: Scene) -> Document:
 
 
 def of_text(text: str, path: Path) -> Document:
-    """Return the document of a scene's text, with the mesh that it names if that can be read.
+    """Return the document of a scene's text, with its mesh file if that can be read.
 
-    What is wrong with the scene the page says.
+    The page reports what is wrong with the scene.
     """
     shown: Document = {"format": 1, "scene": text, "name": path.name}
     name = _mesh(text)
     if name is not None:
-        # A ValueError is a name that no file can have.
+        # A ValueError: the name is not a valid file name.
         with contextlib.suppress(OSError, ValueError):
             shown["files"] = {name: packed((path.parent / name).read_bytes())}
     return shown
 
 
 def of_file(path: Path) -> Document:
-    """Return the document of a scene file or a netCDF file; a `SceneError` for a scene that is wrong."""
+    """Return the document of a scene file or a netCDF file; a `SceneError` for an invalid scene."""
     if path.suffix.lower() == ".nc":
         return of_trajectory(Trajectory.read(path), path)
     return of_scene(Scene.read(path))
 
 
-def of_trajectory(trajectory: Trajectory, path: Path = Path("motion.nc")) -> Document:
-    """Return the document of one body's motion, which was read from a path.
+def of_trajectory(
+    trajectory: Trajectory, path: Path = Path("motion.nc"), times: Array | None = None
+) -> Document:
+    """Return the document of one body's motion, read from a path.
 
-    The mesh of a scene that came with a file is looked for beside that file.
+    The mesh of a scene in a file is looked for beside that file. At `times` (n,), in s, the page shows the
+    states of `Trajectory.at`, if the motion has states between the output times.
     """
     trajectory._require_one("the viewer")
     shown, origin = _live(trajectory, path)
     if "scene" in shown and trajectory.certificate.method == "exact":
         return shown
-    return {**shown, "recorded": recorded(trajectory, origin, "files" in shown)}
+    return {**shown, "recorded": recorded(trajectory, origin, "files" in shown, times)}
 
 
 def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem | None]:
-    """Return a document with the scene of a motion, if there is one, and what the motion came from."""
+    """Return a document with the scene of a motion, if it has one, and the problem that was solved."""
     origin = trajectory._origin
     if isinstance(origin, Scene):
         return of_scene(origin), origin
     nothing: Document = {"format": 1, "name": path.name}
     if origin is not None:
         try:
-            # An event may have ended it before the last time that was asked for.
+            # An event may have ended it before the last requested time.
             scene = replace(origin, times=trajectory.time).scene()
             return {"format": 1, "scene": scene, "name": "motion.toml"}, origin
         except UnwritableError:
@@ -165,14 +167,14 @@ def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem
 
 
 def scene_of(shown: Document) -> Scene:
-    """Return the scene of a document, with the mesh that the document brings.
+    """Return the scene of a document, with the mesh of the document.
 
-    A `SceneError` names the places as in the document's own file.
+    A `SceneError` refers to places in the document's own file.
     """
     name = shown.get("name") or "scene.toml"
-    # Those with a whole path are where they were.
+    # Files with an absolute path are read from there.
     files = {file: content for file, content in shown.get("files", {}).items() if not os.path.isabs(file)}
-    # A mesh may lie above its scene: `../meshes/top.stl`.
+    # A mesh may be in a parent folder of its scene: `../meshes/top.stl`.
     above = max((Path(file).parts.count("..") for file in files), default=0)
     with tempfile.TemporaryDirectory() as top:
         path = Path(top, *("below",) * above, Path(name).name)
@@ -188,7 +190,7 @@ def scene_of(shown: Document) -> Scene:
 
 
 def title_of(shown: Document) -> str:
-    """Return what a page with this document is called."""
+    """Return the title of a page with this document."""
     title = None
     if "recorded" in shown:
         title = json.loads(shown["recorded"]["about"])["title"]
@@ -199,7 +201,7 @@ def title_of(shown: Document) -> str:
 
 
 def _mesh(text: str) -> str | None:
-    """Return the name of the mesh in a scene, which may be wrong in any way."""
+    """Return the name of the mesh file in the text of a scene, which may be invalid."""
     try:
         name = tomllib.loads(text).get("body", {}).get("mesh")
     except (tomllib.TOMLDecodeError, AttributeError):
@@ -207,7 +209,7 @@ def _mesh(text: str) -> str | None:
     return name if isinstance(name, str) and name else None
 
 
-# --- motions that are asked for here
+# --- motions given as problems
 
 
 def _problem(body: Body | Inertia, state: State, torque: Torque | None, force: Any, duration: Any) -> Problem:
@@ -222,7 +224,7 @@ def _problem(body: Body | Inertia, state: State, torque: Torque | None, force: A
 
 
 def _of_problem(problem: Problem) -> Document:
-    """Return the document of a motion that was only asked for; what no scene can say is followed here."""
+    """Return the document of a problem; if no scene can describe it, it is solved here."""
     _refuse_batch(problem.state, problem.torque)
     try:
         return {"format": 1, "scene": problem.scene(), "name": "motion.toml"}
@@ -233,14 +235,16 @@ def _of_problem(problem: Problem) -> Document:
 
 def _refuse_batch(state: State, torque: Torque | None) -> None:
     if state.rotor.shape or state.omega_body.shape or (torque is not None and torque.shape):
-        raise ValueError("the viewer shows one body, this is a batch; pick one of them")
+        raise ValueError("the viewer shows one body, this is a batch: pick one body")
 
 
 def _solved(motion: FreeMotion | _ClosedForm, duration: float | None) -> Problem:
-    """Return what a motion in closed form is the answer to."""
+    """Return the problem that a motion in closed form solves."""
     if isinstance(motion, FreeMotion):
         if motion.shape:
-            raise ValueError(f"the viewer shows one body, this is a batch of shape {motion.shape}; pick one")
+            raise ValueError(
+                f"the viewer shows one body, this is a batch of shape {motion.shape}: pick one body"
+            )
         rotors, omegas = motion._core.starts()
         state = State(Rotor._from_rows(rotors.reshape(4)), bivector(omegas.reshape(3)))
         return _problem(motion._inertia, state, None, None, duration)

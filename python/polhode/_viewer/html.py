@@ -1,4 +1,4 @@
-"""A page that needs nothing else: the viewer and what it shows in one HTML file."""
+"""Self-contained pages: the viewer and its document in one HTML file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from polhode._viewer.document import Document, title_of
 
 _BUNDLE = Path(__file__).with_name("viewer.js")
 
-# Nothing comes from outside, and nothing goes there. The core is WebAssembly, which a page must allow.
+# No connections in or out. The core is WebAssembly, which the policy must allow.
 _INLINE_POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; "
     "img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
@@ -32,7 +32,7 @@ polhode-viewer {{ display: block; height: 100%; }}
 </style>
 </head>
 <body>
-<noscript>This page draws a motion, for which it needs JavaScript.</noscript>
+<noscript>This page shows a motion and needs JavaScript.</noscript>
 {element}
 {script}
 </body>
@@ -41,7 +41,7 @@ polhode-viewer {{ display: block; height: 100%; }}
 
 
 def bundle_path() -> Path:
-    """Return where the viewer's bundle is; a FileNotFoundError with the remedy where it was not built."""
+    """Return the path of the viewer's bundle; a FileNotFoundError with the remedy if it was not built."""
     if not _BUNDLE.is_file() or _BUNDLE.stat().st_size == 0:
         raise FileNotFoundError(
             f"{_BUNDLE} is missing: this copy of polhode was built without its viewer. Build it with `make "
@@ -50,22 +50,23 @@ def bundle_path() -> Path:
     return _BUNDLE
 
 
-def page(shown: Document) -> str:
-    """Return a page that shows a document: one file of HTML, without anything from outside.
+def page(shown: Document, bare: bool = False) -> str:
+    """Return a page that shows a document: one file of HTML that loads nothing else.
 
-    A FileNotFoundError where the viewer was not built.
+    A bare one draws nothing by itself; it takes pictures. A FileNotFoundError if the viewer was not built.
     """
     data = json.dumps(shown, allow_nan=False).replace("<", "\\u003c")
     return _PAGE.format(
         policy=f'\n<meta http-equiv="Content-Security-Policy" content="{_INLINE_POLICY}">',
         title=_title(title_of(shown)),
-        element=f'<polhode-viewer><script type="application/json">{data}</script></polhode-viewer>',
+        element=f"<polhode-viewer{' bare' * bare}>"
+        f'<script type="application/json">{data}</script></polhode-viewer>',
         script=f'<script type="module">\n{_inline(bundle_path().read_text(encoding="utf-8"))}</script>',
     )
 
 
 def served_page(title: str) -> str:
-    """Return a page that fetches the viewer and its document from where it came from."""
+    """Return a page that fetches the viewer and its document from its own server."""
     return _PAGE.format(
         policy="",
         title=_title(title),
@@ -75,16 +76,16 @@ def served_page(title: str) -> str:
 
 
 def _title(text: str) -> str:
-    """Return a title as HTML; the bytes of a file's name that are no text have no UTF-8 either."""
+    """Return a title as HTML; bytes of a file name that are not UTF-8 are replaced."""
     return html.escape(text.encode(errors="replace").decode())
 
 
 def _inline(script: str) -> str:
-    """Return a script that may stand in a page: nothing in it ends it early.
+    """Return a script that can be embedded in a page: nothing in it closes the element.
 
-    ``</script`` stands in texts alone, where < can be written by its number. After ``<!--`` a page reads
-    scripts by other rules.
+    ``</script`` occurs in string literals only, where < can be escaped. After ``<!--`` HTML parses scripts by
+    other rules.
     """
     if "<!--" in script:
-        raise ValueError("the viewer's bundle has the mark `<!--`, with which it cannot stand in a page")
+        raise ValueError("the viewer's bundle contains `<!--` and cannot be embedded in a page")
     return re.sub(r"<(?=/script)", r"\\x3C", script, flags=re.IGNORECASE)

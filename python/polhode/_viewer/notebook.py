@@ -1,4 +1,4 @@
-"""Motions shown in notebooks."""
+"""The function `polhode.view`: show a motion in a notebook."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def view(
     *,
     duration: float | None = None,
 ) -> Viewer:
-    """Show a motion in a notebook, with controls for the scene that says it.
+    """Show a motion in a notebook, with controls for its scene.
 
-    The page computes with the same core: of a motion that a scene can say, spin, attitude, body and torques
-    can be changed there, and the motion follows. What is changed there is changed here, and the other way
-    round; see ``help(type(viewer))``.
+    The page computes with the same core: if a scene describes the motion, its spin, attitude, body and
+    torques can be changed in the page, and the motion follows. Page and Python are synchronised in both
+    directions; see ``help(type(viewer))``.
 
     Parameters
     ----------
@@ -32,14 +32,14 @@ def view(
         - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
         - A `Body` or an `Inertia`; with `state`, and `torque` and `force` as for `polhode.simulate`.
     duration
-        For how long, in s, of motions that have no end of their own; None for 20 turns at the initial rate.
+        Duration in s of motions without an end of their own; None for 20 turns at the initial rate.
 
     Raises
     ------
     ImportError
         Without anywidget: ``pip install 'polhode[notebook]'``.
     TypeError, ValueError, SceneError, OSError
-        For what cannot be shown, and files that cannot be read.
+        For values that cannot be shown, and files that cannot be read.
     """
     from polhode._viewer.document import document
     from polhode._viewer.widget import Viewer

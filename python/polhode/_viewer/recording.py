@@ -1,6 +1,6 @@
-"""A motion that was followed here, for the viewer: rows of states, and what is known besides them.
+"""Recorded motions for the viewer: rows of states, and a description.
 
-Their form is that of `State` and `About` in `viewer/src/core/core.ts`.
+Their formats are `State` and `About` in `viewer/src/core/core.ts`.
 """
 
 from __future__ import annotations
@@ -28,48 +28,52 @@ from polhode._support.packing import packed, unpacked
 
 # Numbers in a row.
 _ROW = 24
-# Between rows a body turns by less than this, in rad, as long as there are no more rows than a page bears.
+# A body turns by less than this between rows, in rad, up to the maximum number of rows.
 _TURN = 0.2
 _MOST_ROWS = 20_000
-# As many states tell how fast it turns.
-_SOME = 101
+# Samples from which the largest rate is found.
+_RATE_SAMPLES = 101
 
 
-def recorded(trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool) -> dict[str, str]:
-    """Return what a page needs to show the motion of one body without following it again.
+def recorded(
+    trajectory: Trajectory, origin: Scene | Problem | None, mesh: bool, times: Array | None = None
+) -> dict[str, str]:
+    """Return the recorded motion of one body, as the page needs it to show the motion without solving it.
 
-    At most 20,000 rows, evenly chosen among the output times. Where the motion is known between these, and
-    the body turns far from one to the next, there are others between them.
+    It has at most 20,000 rows, evenly chosen from the output times. If the motion has states between these,
+    and the body turns far from one to the next, rows are added between them.
 
     Parameters
     ----------
     trajectory
         The motion.
     origin
-        What was run, or asked for; None where that is not known.
+        The problem that was solved; None if it is not known.
     mesh
-        Whether the document brings the mesh of its scene.
+        Whether the document has the mesh of its scene.
+    times
+        More times (n,), in s, to have rows of, if the motion has states between the output times.
 
     Raises
     ------
     ValueError
-        If the motion does not go beyond its start, or has numbers that are not finite.
+        If the motion has no time after its start, or numbers that are not finite.
     """
-    points = _points(trajectory, origin)
+    points = _points(trajectory, origin, np.empty(0) if times is None else times)
     rows = _rows(points)
     if not (finite := np.isfinite(rows).all(axis=1)).all():
         when = points.time[np.argmin(finite)]
-        raise ValueError(f"the viewer shows finite numbers, and this motion has others at t = {when:g} s")
+        raise ValueError(f"the viewer needs finite numbers; this motion has others at t = {when:g} s")
     about = _about(trajectory, origin, points)
     about["body"]["mesh"] = mesh
     return {"about": json.dumps(about, allow_nan=False), "rows": packed(rows.astype("<f8").tobytes())}
 
 
 def state_at(given: dict[str, str], time: float) -> State:
-    """Return the state that a page shows of a motion that `recorded` wrote, at a time in s.
+    """Return the state of a recorded motion at a time in s, as the page shows it.
 
-    Between rows as in the page: the rotor turns evenly, all else changes evenly. Before the first row and
-    after the last their states.
+    Between rows the rotor is interpolated by slerp and everything else linearly, as in the page. Times before
+    the first and after the last row give their states.
     """
     rows = np.frombuffer(unpacked(given["rows"]), "<f8").reshape(-1, _ROW)
     times = rows[:, 0]
@@ -82,31 +86,35 @@ def state_at(given: dict[str, str], time: float) -> State:
     return State(rotor, bivector(row[5:8]), vector(row[18:21]), vector(row[21:24]), time=when)
 
 
-def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
-    """Return the states that are kept: from the start on, or from the first one where no start is known."""
+def _points(trajectory: Trajectory, origin: Scene | Problem | None, more: Array) -> _Points:
+    """Return the recorded states, from the start on, or from the first state if the start is not known.
+
+    `more` are additional times (n,).
+    """
     times = trajectory.time
     first = float(origin.state.time) if origin is not None else float(times[0]) if len(times) else 0.0
+    first = float(min([first, *more]))
     last = float(times[-1]) if len(times) else first
     if last <= first:
         raise ValueError(
-            f"the viewer shows motions from their start on, here {first:g} s, and this one has no later time"
+            f"the viewer needs an output time after the start of the motion, {first:g} s; this one has none"
         )
     if trajectory._motion is not None:
-        some = _Points.of(trajectory._motion.at(np.linspace(first, last, _SOME)))
+        some = _Points.of(trajectory._motion.at(np.linspace(first, last, _RATE_SAMPLES)))
         rate = float(np.max([some.omega_body.norm().max(), trajectory.omega_body.norm().max()]))
         met = np.unique(np.append(times[times >= first], first))
         met = met[_evenly(len(met))]
         intervals = len(met) - 1
-        # Equal parts of each interval, so that the output times stay among them.
+        # Equal parts of each interval, so that the output times are among them.
         parts = min(math.ceil(rate * (last - first) / _TURN / intervals), (_MOST_ROWS - 1) // intervals)
-        if parts > 1 or times[0] != first:
+        if parts > 1 or times[0] != first or len(more):
             parts = max(parts, 1)
             closer = np.interp(np.arange(intervals * parts + 1) / parts, np.arange(intervals + 1), met)
-            return _Points.of(trajectory._motion.at(closer))
-    # Output times may stand twice, and before the start.
+            return _Points.of(trajectory._motion.at(np.union1d(closer, more)))
+    # Output times may be equal, and before the start.
     rising = np.flatnonzero((np.diff(times, prepend=-np.inf) > 0) & (times >= first))
     if len(rising) < 2:
-        raise ValueError(f"the viewer shows motions of two output times or more from {first:g} s on")
+        raise ValueError(f"the viewer needs two output times or more from {first:g} s on")
     kept = rising[_evenly(len(rising))]
     return _Points(
         times[kept],
@@ -116,12 +124,12 @@ def _points(trajectory: Trajectory, origin: Scene | Problem | None) -> _Points:
 
 
 def _evenly(count: int) -> Any:
-    """Return which of so many to keep where there are too many, the first and the last among them."""
+    """Return evenly spaced indices below `count`, at most the maximum number of rows, with both ends."""
     return np.linspace(0, count - 1, min(_MOST_ROWS, count)).round().astype(int)
 
 
 def _rows(points: _Points) -> Array:
-    """Return the numbers of `State`, (n, 24)."""
+    """Return the rows of `State`, (n, 24)."""
     rotor = points.rotor
     columns = [
         points.time[:, np.newaxis],
@@ -143,7 +151,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
     held = torque is not None and torque.holds
     start = None if origin is None else origin.state
     if start is not None and start.time != points.time[0]:
-        # Read from a file that does not hold the start.
+        # Read from a file without the start.
         start = None
     body = _body(origin)
     return {
@@ -180,14 +188,14 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
 
 
 def _body(origin: Scene | Problem | None) -> dict[str, Any]:
-    """Return mass, centre of mass and solid, as far as they are known."""
+    """Return mass, centre of mass and solid, if they are known."""
     whole = origin.body if origin is not None and isinstance(origin.body, Body) else None
     if whole is None:
         return {"mass": None, "center_of_mass": [0.0] * 3, "solid": None, "solid_at": [0.0] * 3}
     center = whole.center_of_mass.components
-    told = not isinstance(origin, Scene) or origin.tells_mass
+    has_mass = not isinstance(origin, Scene) or origin.tells_mass
     return {
-        "mass": whole.mass if told else None,
+        "mass": whole.mass if has_mass else None,
         "center_of_mass": center.tolist(),
         "solid": origin.solid if isinstance(origin, Scene) else None,
         "solid_at": origin.shift.tolist() if isinstance(origin, Scene) else [0.0] * 3,
@@ -195,21 +203,21 @@ def _body(origin: Scene | Problem | None) -> dict[str, Any]:
 
 
 def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
-    """Return each law by the name of its field in a scene, and its formula or its numbers."""
+    """Return the laws: the name of each field in a scene, and its formula or numbers as text."""
     laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
     formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
     gravity = isinstance(origin, Scene) and "gravity" in tomllib.loads(origin.text)
-    told = []
+    named = []
     for k, (law, formula) in enumerate(zip(laws, formulas, strict=True)):
         arguments = law.arguments
         if law.name == "formula":
-            told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
+            named.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
         elif law.name in ("tabulated", "function"):
-            told.append({"name": law.name, "text": ""})
+            named.append({"name": law.name, "text": ""})
         else:
             name = "gravity" if gravity and k == 0 else law.name
-            told.append({"name": name, "text": ", ".join(map(_number, arguments))})
-    return told
+            named.append({"name": name, "text": ", ".join(map(_number, arguments))})
+    return named
 
 
 def _number(argument: Any) -> str:
@@ -219,16 +227,16 @@ def _number(argument: Any) -> str:
 
 
 def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
-    """Return what the invariants of a free body tell."""
+    """Return the description of a free motion; None for others."""
     if origin is None or kind_of(origin) != "free":
         return None
-    told = describe_free(trajectory.inertia, points.omega_body[0])
+    about = describe_free(trajectory.inertia, points.omega_body[0])
     names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
-    return {name: told[name] for name in names}
+    return {name: about[name] for name in names}
 
 
 def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any] | None:
-    """Return what the invariants of a symmetric top under its weight alone tell."""
+    """Return the description of a symmetric top under its weight alone; None for others."""
     if origin is None or kind_of(origin) != "heavy":
         return None
     start = origin.state
@@ -236,6 +244,6 @@ def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, An
         top = LagrangeTop(trajectory.inertia, start.rotor, start.omega_body, weight(origin.torque))
     except ValueError:
         return None
-    told = top.describe()
+    about = top.describe()
     names = ("regime", "nutation_period", "precession_rate", "critical_spin", "sleeps")
-    return {"tilt": [told["tilt_min"], told["tilt_max"]], **{name: told[name] for name in names}}
+    return {"tilt": [about["tilt_min"], about["tilt_max"]], **{name: about[name] for name in names}}

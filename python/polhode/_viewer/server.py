@@ -1,4 +1,4 @@
-"""The command's faces of the viewer: pages for ``run --html``, and the server of ``view``."""
+"""The viewer for the command: pages of ``run --html``, and the server of ``view``."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ _HEADERS = {
 
 
 class UnreadableError(Exception):
-    """A file that cannot be shown; the message says why."""
+    """A file cannot be shown; the message gives the reason."""
 
 
 # --- run --html
 
 
 def check_page(target: Path) -> None:
-    """Raise an OSError if a page could not be written there, or not be made."""
+    """Raise an OSError if a page cannot be written there, or the viewer was not built."""
     bundle_path()
     check_target(target)
 
 
 def scene_page(scene: Scene) -> bytes:
-    """Return the page of a scene, which it solves by itself."""
+    """Return the page of a scene, which the page solves itself."""
     return page(of_scene(scene)).encode()
 
 
@@ -60,7 +60,7 @@ def motion_page(trajectory: Trajectory) -> bytes:
 
 # --- view
 
-# Shows how far a run is: takes the name of a file, gives what to call with the pass and the fraction done.
+# Progress bar of a file name, which yields a function of the pass and the fraction done.
 Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | None]]
 
 
@@ -72,7 +72,7 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
     UnreadableError, SceneError
         If the file cannot be shown.
     OSError, ValueError
-        If nothing can be served there, or the viewer was not built; if the motion cannot be followed.
+        If the port cannot be used, the viewer was not built, or the motion fails.
     """
     path = Path(options.file)
     script = bundle_path().read_bytes()
@@ -83,7 +83,7 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
         try:
             print(f"{path} is shown at {server.url}", "Ctrl-C ends it.", sep="\n", flush=True)
             if options.browser:
-                # A browser that is a program of the terminal would keep us from serving it.
+                # In a thread: a text browser would block the server.
                 threading.Thread(target=webbrowser.open, args=(server.url,), daemon=True).start()
             server.serve_forever()
         except KeyboardInterrupt:
@@ -92,7 +92,7 @@ def run(options: argparse.Namespace, bar: Bar) -> int:
 
 
 class Source:
-    """A file to be shown, as it is whenever it is asked for."""
+    """A file to show, read again at each request."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -101,10 +101,9 @@ class Source:
         self._document: Document = {}
 
     def document(self, progress: Callable[[int, float], object] | None = None) -> Document:
-        """Return the document of the file; what a scene says is followed when it is new.
+        """Return the document of the file; a scene is run if it has changed.
 
-        An UnreadableError or a SceneError says what is wrong with the file; a ValueError, why its motion
-        cannot be followed.
+        An UnreadableError or a SceneError reports an invalid file; a ValueError, a motion that fails.
         """
         if self.path.suffix.lower() == ".nc":
             try:
@@ -120,7 +119,7 @@ class Source:
             return self._document
 
     def shown(self) -> Document:
-        """Return the document, also of a scene that is wrong or cannot be followed: the page tells why."""
+        """Return the document, also of an invalid or failing scene: the page reports the problem."""
         try:
             return self.document()
         except UnreadableError:
@@ -134,7 +133,7 @@ class Source:
 
 
 class Server(ThreadingHTTPServer):
-    """Serves one file to browsers on this machine, read again whenever the page is loaded."""
+    """Server of one file for browsers on this machine; the file is read at each load of the page."""
 
     daemon_threads = True
 
@@ -148,19 +147,19 @@ class Server(ThreadingHTTPServer):
 
     @property
     def port(self) -> int:
-        """The port, which the system chose if 0 was asked for."""
+        """The port; chosen by the system if 0 was requested."""
         return int(self.server_address[1])
 
     @property
     def url(self) -> str:
-        """Where the page is."""
+        """Address of the page."""
         return f"http://{_HOST}:{self.port}/"
 
     @property
     def hosts(self) -> set[str]:
-        """The names by which a browser on this machine may call us.
+        """Host names that are accepted.
 
-        Another name is that of a page elsewhere, which has its name resolved to this machine to read from it.
+        Others belong to remote pages that resolve their name to this machine in order to read from it.
         """
         port = "" if self.port == 80 else f":{self.port}"
         return {f"{name}{port}" for name in (_HOST, "localhost")}
@@ -170,7 +169,7 @@ class Server(ThreadingHTTPServer):
         return bool(client_address[0] == _HOST)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Tell in one line what went wrong; a browser that went away is no error."""
+        """Report an error in one line; a closed connection is not an error."""
         error = sys.exception()
         if not isinstance(error, ConnectionError):
             print(f"polhode: error: {type(error).__name__}: {error}", file=sys.stderr)
@@ -190,7 +189,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _answer(self) -> None:
         if self.headers.get_all("Host", []) not in [[host] for host in self.server.hosts]:
-            self._send(HTTPStatus.FORBIDDEN, "text/plain", b"this is no name of this server\n")
+            self._send(HTTPStatus.FORBIDDEN, "text/plain", b"not a host name of this server\n")
             return
         match self.path:
             case "/":
@@ -200,7 +199,7 @@ class _Handler(BaseHTTPRequestHandler):
             case "/document.json":
                 self._document()
             case _:
-                self._send(HTTPStatus.NOT_FOUND, "text/plain", b"not here\n")
+                self._send(HTTPStatus.NOT_FOUND, "text/plain", b"not found\n")
 
     def _document(self) -> None:
         try:
@@ -221,4 +220,4 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(content)
 
     def log_message(self, *_: Any) -> None:
-        """Say nothing of requests."""
+        """Do not log requests."""

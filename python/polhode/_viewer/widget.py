@@ -1,4 +1,4 @@
-"""The viewer as a widget: what is changed in the page is changed in Python, and the other way round."""
+"""The notebook widget: a viewer whose state is synchronised with Python."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _state_of(numbers: dict[str, Any] | None, _: Any) -> State | None:
 
 
 class _StateShown(traitlets.Instance):  # type: ignore[type-arg]
-    """The state as the page reported it; computed here for a time or a scene that it has not reported yet."""
+    """The state reported by the page; computed here for a time or scene that it has not reported yet."""
 
     def get(self, obj: Any, cls: Any = None) -> State | None:
         reported: State | None = super().get(obj, cls)
@@ -57,37 +57,38 @@ class _StateShown(traitlets.Instance):  # type: ignore[type-arg]
 
 
 class Viewer(anywidget.AnyWidget):
-    """A motion in a notebook; made by `polhode.view`. Works wherever anywidget does.
+    """A motion in a notebook; created by `polhode.view`. Works in every front end that anywidget supports.
 
-    Attributes but `state` and `problem` can be set, and all can be observed as those of other widgets. Until
-    a page shows the widget, those of the view that were not set are None; then they are what the page shows.
-    While the motion plays, the page reports time and state ten times a second, and exactly when it stops.
+    Attributes except `state` and `problem` can be set; all can be observed, as those of other widgets. Until
+    a page shows the widget, attributes of the view that were not set are None; then they are what the page
+    shows. While the motion plays, the page reports time and state ten times a second, and exactly when it
+    stops.
 
     Attributes
     ----------
     scene
-        The scene in TOML, as it was edited in the page; None where the motion is a recording alone. The page
-        does not take one that is wrong: `problem` says why.
+        The scene in TOML, as edited in the page; None if the motion is a recording alone. The page does not
+        accept an invalid scene: `problem` has the reason.
     time
         Time shown, in s.
     playing
-        Whether time passes.
+        Whether the motion plays.
     speed
-        Seconds of motion in a second of the clock.
+        Seconds of motion per second.
     camera
-        Whence one looks: "oblique", "along e1", "along e2", "along e3", "along L" or "with the body".
+        Camera preset: "oblique", "along e1", "along e2", "along e3", "along L" or "with the body".
     theme
         "auto", "light" or "dark".
     shown
-        What is drawn, by name: body, bodyFrame, spaceFrame, omega, momentum, axial, poinsot, polhode,
-        herpolhode, trace, gravity, labels. Names that are left out stay as they are.
+        Visibility by name: body, bodyFrame, spaceFrame, omega, momentum, axial, poinsot, polhode,
+        herpolhode, trace, gravity, labels. Names that are left out do not change.
     state
-        The `State` at `time`, of the motion of `scene`. As the page reports it; after time or scene were set
-        here, and until the page has answered, computed here, with the errors of `run`. None where `time` is.
+        The `State` at `time` of the motion of `scene`, as the page reports it. After time or scene were set
+        here, until the page has answered, it is computed here, with the errors of `run`. None if `time` is.
     problem
-        What is wrong with the scene, with its places; None if nothing is.
+        The errors of the scene with their places; None if it is valid.
     document
-        What the page was given first.
+        The document that the page was given.
     """
 
     _esm = bundle_path()
@@ -105,17 +106,17 @@ class Viewer(anywidget.AnyWidget):
     )
     problem = traitlets.Unicode(None, allow_none=True, read_only=True).tag(sync=True)
 
-    # For which time, scene and document the page reported a state.
+    # Time, scene and document of the last state that the page reported.
     _reported: tuple[Any, ...] | None = None
-    # The motion that states were asked of last, and the scene and the document that it is that of.
-    _followed: tuple[Any, Any, Scene, Trajectory] | None = None
+    # Scene text, document, scene and motion of the last state that was computed here.
+    _computed: tuple[Any, Any, Scene, Trajectory] | None = None
     _sending = False
 
     def __init__(self, shown: Document) -> None:
         super().__init__(document=shown, scene=shown.get("scene"))
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
-        """Take over what the page says; called by ipywidgets."""
+        """Apply changes from the page; called by ipywidgets."""
         if "state" in sync_data:
             time = (
                 sync_data.get("time", self.time) if sync_data["state"] is None else sync_data["state"]["time"]
@@ -124,7 +125,7 @@ class Viewer(anywidget.AnyWidget):
         super().set_state(sync_data)
 
     def get_state(self, key: Any = None, drop_defaults: bool = False) -> dict[str, Any]:
-        """Return what is sent to the page; called by ipywidgets. The page knows its state without us."""
+        """Return the values to send to the page, without `state`; called by ipywidgets."""
         self._sending = True
         try:
             return super().get_state(key, drop_defaults)  # type: ignore[no-any-return]
@@ -136,15 +137,15 @@ class Viewer(anywidget.AnyWidget):
         return document is self.document and (time, scene) == (self.time, self.scene)
 
     def _state_now(self) -> State | None:
-        """Return the state at the time that is set; where the motion is not known so far, at its end."""
+        """Return the state at `time`, or at the end of the motion if that is earlier."""
         if self.time is None:
             return None
         if "recorded" in self.document and self.scene == self.document.get("scene"):
             return state_at(self.document["recorded"], self.time)
-        known = self._followed
+        known = self._computed
         if known is None or known[0] != self.scene or known[1] is not self.document:
             scene = self.to_scene().alone()
-            known = self._followed = (self.scene, self.document, scene, scene.run())
+            known = self._computed = (self.scene, self.document, scene, scene.run())
         *_, scene, motion = known
         first, last = motion.time[[0, -1]].tolist()
         if motion.certificate.method == "exact" and not first <= self.time <= last:
@@ -160,7 +161,7 @@ class Viewer(anywidget.AnyWidget):
         return value  # type: ignore[no-any-return]
 
     def show(self, x: Any, *arguments: Any, **named: Any) -> None:
-        """Show something else, from its start; the arguments are those of `polhode.view`."""
+        """Show another motion, from its start; the arguments are those of `polhode.view`."""
         shown = document(x, *arguments, **named)
         with self.hold_sync():
             self.document, self.scene = shown, shown.get("scene")
@@ -168,29 +169,29 @@ class Viewer(anywidget.AnyWidget):
             self.set_trait("problem", None)
 
     def run(self) -> Trajectory:
-        """Return the motion of the scene as it is now in the page, computed here.
+        """Return the motion of the current scene of the page, computed here.
 
-        A ValueError where there is no scene; a SceneError for one that is wrong.
+        A ValueError if there is no scene; a SceneError if it is invalid.
         """
         return self.to_scene().run()
 
     def to_scene(self) -> Scene:
-        """Return the scene as it is now in the page. Errors as in `run`."""
+        """Return the current scene of the page. Errors as in `run`."""
         if self.scene is None:
-            raise ValueError("this motion was recorded: no scene says it, and so it cannot be run again")
+            raise ValueError("this motion is a recording without a scene and cannot be run again")
         return scene_of({**self.document, "scene": self.scene})
 
     def html(self) -> str:
-        """Return a page of its own that shows the same, as it is now: one file that needs nothing else."""
+        """Return a self-contained page that shows the current state."""
         return page(self._now())
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write that page to a file, FILE.html, whole or not at all. A ValueError for another suffix."""
+        """Write the page of `html` to FILE.html, whole or not at all. A ValueError for another suffix."""
         form_of(path, "a page")
         write_atomically({Path(path): self.html().encode()})
 
     def _now(self) -> Document:
-        """Return the document that shows what is shown now."""
+        """Return the document of the current state."""
         now: Document = dict(self.document)
         if self.scene != now.get("scene"):
             now["scene"] = self.scene

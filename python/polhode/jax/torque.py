@@ -6,16 +6,21 @@ by them. A law of `polhode.torque` itself serves too where its parameters are ju
 
 from __future__ import annotations
 
+import functools
+import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ParamSpec
 
 import numpy as np
 
 from polhode import torque as native
+from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.multivector import Multivector
+from polhode._algebra.rotor import Rotor
+from polhode._mechanics.registry import TORQUES
 from polhode._support.arrays import as_floats
 from polhode.jax import _laws
-from polhode.jax._components import Four, Three, normalized, split
+from polhode.jax._components import Four, Three, joined, normalized, split
 from polhode.jax._formula_law import Formula, value_of
 from polhode.jax._laws import Torque
 from polhode.jax._library import jax, jnp
@@ -42,65 +47,44 @@ __all__ = [
 ]
 
 
-def heavy(c: Any) -> Torque:
-    """Uniform gravity on a body held at the origin of its axes, ``γ∧c``; c (..., 3) in N m."""
-    return Torque((_laws.Heavy(_three(c, "c")),))
+P = ParamSpec("P")
 
 
-def gravity_gradient(n: Any, eccentricity: Any = 0.0, mean_anomaly: Any = 0.0) -> Torque:
-    """Return the gradient of a planet's field on a Kepler orbit; n in rad/s, the anomaly in rad."""
-    return Torque((GravityGradient(_array(n), _array(eccentricity), _array(mean_anomaly)),))
+def _law(
+    constructor: Callable[P, native.Torque], kernel: Callable[..., Any] | None = None
+) -> Callable[P, Torque]:
+    """Return a constructor of `polhode.torque` for arguments of JAX, which may be traced.
+
+    Without a kernel the law is computed by the formula of the registry.
+    """
+    signature, entry = inspect.signature(constructor), TORQUES[constructor.__name__]
+
+    @functools.wraps(constructor)
+    def law(*args: P.args, **kwargs: P.kwargs) -> Torque:
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        given = zip(entry.arguments, bound.arguments.values(), strict=True)
+        values = {x.name: _CONVERSIONS[x.shape](value, x.name) for x, value in given}
+        if kernel is not None:
+            return Torque((kernel(*values.values()),))
+        named = {x.name: _named(values[x.name], x.shape) for x in entry.arguments}
+        return Torque((Formula(named, None, entry.formula, "body"),))
+
+    law.__module__ = __name__
+    return law
 
 
-def magnetic(dipole: Any, field: Any) -> Torque:
-    """Return the torque on a dipole (..., 3) of the body in a field (..., 3) that is constant in space."""
-    return Torque((_laws.Magnetic(_three(dipole, "the dipole"), _three(field, "the field")),))
+def _named(value: Any, shape: str) -> Multivector:
+    """Return an argument as a value of a formula."""
+    if shape == "scalar":
+        return value_of(value, shape)
+    make: dict[str, Callable[[Any], Multivector]] = {"vector": vector, "bivector": bivector}
+    return make.get(shape, Rotor._from_rows)(joined(value))
 
 
-def larmor(b: Any) -> Torque:
-    """Return the torque whose axial vector in space is ``L x b``, b (..., 3) in rad/s."""
-    return Torque((_laws.Larmor(_three(b, "b")),))
-
-
-def damping(g: Any) -> Torque:
-    """Return the torque ``−g I(Ω_B)``, g in 1/s."""
-    return Torque((_laws.Damping(_array(g)),))
-
-
-def viscous_damping(d: Any) -> Torque:
-    """Return the torque ``−d Ω_B``, d in N m s: a number, or (..., 3) along the body axes."""
-    return Torque((_laws.ViscousDamping(_gains(d), None),))
-
-
-def quadratic_damping(k: Any) -> Torque:
-    """Return the torque ``−k |Ω_B| Ω_B``, k in N m s²."""
-    return Torque((_laws.QuadraticDamping(_array(k)),))
-
-
-def torsion_spring(k: Any, rest: Any = None) -> Torque:
-    """Return the torque ``−k Θ`` with ``R = rest exp(−½Θ)``, ``|Θ| <= π``; k in N m per rad."""
-    return Torque((_laws.TorsionSpring(_array(k), _rotor(rest)),))
-
-
-def pd_control(kp: Any, kd: Any, target: Any = None) -> Torque:
-    """Return the torque ``−kp Θ − kd Ω_B``; gains as for `viscous_damping`, the target a rotor."""
-    damped = isinstance(kd, jax.core.Tracer) or bool(np.any(np.asarray(kd) != 0))
-    return Torque((_laws.Control(_gains(kp), _gains(kd), _rotor(target), None, damped),))
-
-
-def gyrostat(h: Any) -> Torque:
-    """Return a wheel in the body with the constant momentum h (..., 3) relative to it, in kg m²/s."""
-    return Torque((_laws.Wheel(_three(h, "h")),))
-
-
-def constant_body(N: Any) -> Torque:
-    """Return a torque (..., 3) constant in body axes, in N m."""
-    return Torque((_laws.ConstantBody(_three(N, "N")),))
-
-
-def constant_space(N: Any) -> Torque:
-    """Return a torque (..., 3) constant in space, in N m."""
-    return Torque((_laws.ConstantSpace(_three(N, "N")),))
+def _control(kp: Three, kd: Three, target: Four) -> _laws.Control:
+    damped = any(isinstance(x, jax.core.Tracer) or bool(np.any(np.asarray(x) != 0)) for x in kd)
+    return _laws.Control(kp, kd, target, None, damped)
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
@@ -164,11 +148,11 @@ def _of_native(law: Any) -> Torque:
         return formula(text, frame=frame, **dict(values))
     if law.name == "gravity":
         return heavy(law.weight_moments().reshape(*law.shape, 3))
-    made: Torque = globals()[law.name](*law.arguments)
-    return made
+    torque: Torque = globals()[law.name](*law.arguments)
+    return torque
 
 
-def _array(value: Any) -> Any:
+def _array(value: Any, name: str = "") -> Any:
     data = value._data if isinstance(value, Multivector) else value
     array = jnp.asarray(data)
     return array if jnp.issubdtype(array.dtype, jnp.floating) else array.astype(jnp.result_type(float))
@@ -181,15 +165,39 @@ def _three(value: Any, name: str) -> Three:
     return split(array)
 
 
-def _gains(value: Any) -> Three:
+def _gains(value: Any, name: str) -> Three:
     array = _array(value)
     return split(array) if array.shape[-1:] == (3,) else (array,) * 3
 
 
-def _rotor(value: Any) -> Four:
+def _rotor(value: Any, name: str) -> Four:
     if value is None:
         return split(_array([1.0, 0.0, 0.0, 0.0]))
     array = _array(value)
     if array.shape[-1:] != (4,):
-        raise ValueError(f"a rotor needs 4 components in the last axis, got shape {array.shape}")
+        raise ValueError(
+            f"{name} needs the 4 components of a rotor in the last axis, got shape {array.shape}"
+        )
     return normalized(split(array))
+
+
+_CONVERSIONS: dict[str, Callable[[Any, str], Any]] = {
+    "scalar": _array,
+    "vector": _three,
+    "bivector": _three,
+    "gains": _gains,
+    "rotor": _rotor,
+}
+
+constant_body = _law(native.constant_body, _laws.ConstantBody)
+constant_space = _law(native.constant_space, _laws.ConstantSpace)
+damping = _law(native.damping, _laws.Damping)
+gravity_gradient = _law(native.gravity_gradient, GravityGradient)
+gyrostat = _law(native.gyrostat, _laws.Wheel)
+heavy = _law(native.heavy, _laws.Heavy)
+larmor = _law(native.larmor, _laws.Larmor)
+magnetic = _law(native.magnetic, _laws.Magnetic)
+pd_control = _law(native.pd_control, _control)
+quadratic_damping = _law(native.quadratic_damping, _laws.QuadraticDamping)
+torsion_spring = _law(native.torsion_spring, _laws.TorsionSpring)
+viscous_damping = _law(native.viscous_damping, lambda d: _laws.ViscousDamping(d, None))

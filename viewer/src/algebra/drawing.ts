@@ -1,5 +1,14 @@
 import { effect, type ReadonlySignal } from "@preact/signals";
-import { Color, DirectionalLight, HemisphereLight, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import {
+  Box3,
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
 import type { Triple } from "../core/core.ts";
 import type { Palette } from "../palette.ts";
 import { Viewpoint } from "../stage/camera.ts";
@@ -7,17 +16,17 @@ import { type Label, Labels } from "../stage/labels.ts";
 import type { Screen } from "../stage/ribbon.ts";
 import { AXES } from "../stage/rotor.ts";
 import { NoWebGL } from "../stage/stage.ts";
-import { type Drawn, drawnOf, extent } from "./figures.ts";
+import { extent, type Figure, figureOf } from "./figures.ts";
 import { Handles } from "./handles.ts";
 import { nameParts } from "./notation.ts";
 import { Shapes } from "./shapes.ts";
-import type { Thing } from "./things.ts";
+import type { Drawable } from "./drawables.ts";
 
-/** The ball in which all is to lie, in drawn units, and how large and small what was in it may become. */
+/** Radius of the ball that everything is fitted into, and the limits of the reach at which it is fitted again. */
 const BALL = 1.62;
 const LARGEST = 2;
 const SMALLEST = 0.55;
-/** Where the label of a disc stands on the screen, one after the other. */
+/** Directions on the screen for the labels of discs, in turn. */
 const SIDES = [
   [1, -0.45],
   [-1, -0.45],
@@ -25,14 +34,14 @@ const SIDES = [
   [-1, 0.6],
 ] as const;
 
-/** The colours of things, in their order. */
+/** The colours of items, in order. */
 export function colours(palette: Palette): string[] {
   return [...palette.axes, palette.trace, palette.polhode, palette.text];
 }
 
 /**
- * The values of lines, drawn in an element that it fills and follows in size: vectors as arrows, bivectors as pieces of
- * planes with a sense, trivectors as boxes, rotors as turns. It draws when something has changed.
+ * A drawing of the values of lines that fills its host element: vectors as arrows, bivectors as oriented pieces of
+ * planes, trivectors as boxes, rotors as turns. A frame is rendered only when something has changed.
  */
 export class Drawing {
   private readonly canvas = document.createElement("canvas");
@@ -45,15 +54,15 @@ export class Drawing {
   private readonly viewpoint: Viewpoint;
   private readonly handles: Handles;
   private readonly observer: ResizeObserver;
-  private readonly unwatch: () => void;
+  private readonly unsubscribe: () => void;
   private readonly calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-  private drawn: Drawn[] = [];
-  private named: { label: Label; drawn: Drawn | null; at: Vector3 }[] = [];
+  private figures: Figure[] = [];
+  private named: { label: Label; figure: Figure | null; at: Vector3 }[] = [];
   private frame: Shapes | null = null;
-  /** What is no longer shown; its programs on the graphics card go when others use them. */
+  /** Shapes to dispose after the next frame, so that new shapes reuse their shader programs. */
   private old: Shapes[] = [];
-  /** Drawn units for 1, and the point in the middle of the picture. */
+  /** Drawn units per 1, and the centre of the picture. */
   private unit = 1;
   private middle = new Vector3();
   private subject = "";
@@ -61,12 +70,12 @@ export class Drawing {
 
   constructor(
     private readonly host: HTMLElement,
-    private readonly things: ReadonlySignal<readonly Thing[]>,
+    private readonly items: ReadonlySignal<readonly Drawable[]>,
     private readonly palette: ReadonlySignal<Palette>,
     move: (line: number, components: Triple) => void,
   ) {
     const context = this.canvas.getContext("webgl2", { antialias: true });
-    if (!context) throw new NoWebGL("this browser draws no WebGL 2");
+    if (!context) throw new NoWebGL();
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context, antialias: true });
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
@@ -79,82 +88,76 @@ export class Drawing {
     this.hemisphere.position.set(0, 0, 1);
     this.scene.add(this.viewpoint.camera, this.hemisphere);
     this.viewpoint.go("oblique", AXES[2], true);
-    // Without this a context that is lost would not come back.
+    // Without this, a lost context is not restored.
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", this.draw);
     this.observer = new ResizeObserver(this.resize);
     this.observer.observe(host);
-    this.unwatch = effect(() => this.show(things.value, palette.value));
+    this.unsubscribe = effect(() => this.show(items.value, palette.value));
   }
 
   dispose(): void {
     cancelAnimationFrame(this.request);
     this.request = -1;
-    this.unwatch();
+    this.unsubscribe();
     this.observer.disconnect();
     this.viewpoint.dispose();
     this.handles.dispose();
-    for (const shapes of [...this.drawn.map((drawn) => drawn.shapes), ...this.old]) shapes.dispose();
+    for (const shapes of [...this.figures.map((figure) => figure.shapes), ...this.old]) shapes.dispose();
     this.frame?.dispose();
     this.renderer.dispose();
-    // Browsers have few contexts, and take long to collect one that nobody uses.
+    // Browsers limit the number of contexts and free unused ones late.
     this.renderer.forceContextLoss();
     this.labels.element.remove();
     this.canvas.remove();
   }
 
-  /** Looks at everything from the first place again. */
+  /** Fits everything into view and restores the initial camera. */
   home(): void {
-    this.fit(this.things.peek());
-    this.show(this.things.peek(), this.palette.peek());
+    this.fit(this.items.peek());
+    this.show(this.items.peek(), this.palette.peek());
     this.viewpoint.go("oblique", AXES[2], this.calm.matches);
   }
 
-  private show(things: readonly Thing[], palette: Palette): void {
-    this.keepInView(things);
-    this.old.push(...this.drawn.map((drawn) => drawn.shapes), ...(this.frame ? [this.frame] : []));
+  private show(items: readonly Drawable[], palette: Palette): void {
+    this.keepInView(items);
+    this.old.push(...this.figures.map((figure) => figure.shapes), ...(this.frame ? [this.frame] : []));
     for (const shapes of this.old) this.scene.remove(shapes.object);
     const tones = colours(palette);
-    this.drawn = things.map((thing) => drawnOf(thing, things, this.screen, tones[thing.colour]!, this.unit));
+    this.figures = items.map((item) => figureOf(item, items, this.screen, tones[item.colour]!, this.unit));
     this.frame = this.axes(palette);
-    this.scene.add(this.frame.object, ...this.drawn.map((drawn) => drawn.shapes.object));
+    this.scene.add(this.frame.object, ...this.figures.map((figure) => figure.shapes.object));
     this.name(tones, palette);
     this.handles.show(
-      things.filter((thing) => thing.movable && thing.vector),
+      items.filter((item) => item.movable && item.vector),
       tones,
     );
     this.light(palette);
-    const list = things.map((thing) => `${thing.label}, ${described(thing)}`).join("; ");
-    this.canvas.setAttribute("aria-label", `Drawn: ${list || "nothing"}. Arrow keys turn the picture.`);
+    const list = items.map((item) => `${item.label}, ${described(item)}`).join("; ");
+    this.canvas.setAttribute("aria-label", `Drawing of: ${list || "nothing"}. Arrow keys rotate it.`);
     this.draw();
   }
 
-  /** The unit stays while things are about as large as before: what is dragged would else run away. */
-  private keepInView(things: readonly Thing[]): void {
-    const subject = things.map((thing) => thing.label).join(" ");
-    const reach = Math.max(...things.flatMap(extent).map((point) => point.length()), 0) * this.unit;
+  /** Keeps the unit while sizes are similar; otherwise a dragged vector would move away from the pointer. */
+  private keepInView(items: readonly Drawable[]): void {
+    const subject = items.map((item) => item.label).join(" ");
+    const reach = Math.max(...items.flatMap(extent).map((point) => point.length()), 0) * this.unit;
     const farthest = this.middle.length() + LARGEST;
-    if (subject !== this.subject || reach > farthest || (reach > 0 && reach < SMALLEST)) this.fit(things);
+    if (subject !== this.subject || reach > farthest || (reach > 0 && reach < SMALLEST)) this.fit(items);
     this.subject = subject;
   }
 
-  private fit(things: readonly Thing[]): void {
-    const points = things.flatMap(extent);
+  private fit(items: readonly Drawable[]): void {
+    const points = items.flatMap(extent);
     if (points.length === 0) points.push(new Vector3(1, 1, 1), new Vector3());
-    const [low, high] = [Math.min, Math.max].map(
-      (most) =>
-        new Vector3(
-          ...([0, 1, 2].map((k) => most(...points.map((point) => point.getComponent(k)))) as Triple),
-        ),
-    ) as [Vector3, Vector3];
-    const middle = low.add(high).multiplyScalar(0.5);
+    const middle = new Box3().setFromPoints(points).getCenter(new Vector3());
     const radius = Math.max(...points.map((point) => point.distanceTo(middle)));
     this.unit = radius > 0 ? BALL / radius : 1;
     this.middle = middle.multiplyScalar(this.unit);
     this.viewpoint.look(this.middle);
   }
 
-  /** The length of the drawn axes: that of e1 where it can be seen well, else a round multiple or part of it. */
+  /** The length of the drawn axes: 1 if that is well visible, otherwise a round multiple or fraction of it. */
   private step(): number {
     const { unit } = this;
     if (unit > 0.3 && unit < 1.9) return unit;
@@ -162,7 +165,7 @@ export class Drawing {
     return [5, 2, 1].map((first) => first * power * unit).find((step) => step < 1.2)!;
   }
 
-  /** e1, e2, e3 on a grid of the same step. */
+  /** e1, e2, e3 and a grid with the same spacing. */
   private axes(palette: Palette): Shapes {
     const shapes = new Shapes(this.screen, palette.faint);
     const step = this.step();
@@ -184,23 +187,23 @@ export class Drawing {
     return shapes;
   }
 
-  /** Gives each thing and each axis its label. */
+  /** Labels the items and the axes. */
   private name(tones: string[], palette: Palette): void {
     for (const { label } of this.named) label.dispose();
     const step = this.step();
     const axes = AXES.map((axis, k) => {
       const label = this.labels.add("e", { index: k + 1, rank: 3 });
       label.paint(palette.faint);
-      return { label, drawn: null, at: axis.clone().multiplyScalar(step) };
+      return { label, figure: null, at: axis.clone().multiplyScalar(step) };
     });
-    const things = this.drawn.map((drawn) => {
-      const { letter, index, primes } = nameParts(drawn.thing.label);
+    const items = this.figures.map((figure) => {
+      const { letter, index, primes } = nameParts(figure.item.label);
       const label = this.labels.add(letter + primes, { rank: 1, ...(index && { index }) });
-      label.paint(tones[drawn.thing.colour]!);
-      label.say(drawn.mark.says);
-      return { label, drawn, at: drawn.mark.at };
+      label.paint(tones[figure.item.colour]!);
+      label.say(figure.mark.note);
+      return { label, figure, at: figure.mark.at };
     });
-    this.named = [...things, ...axes];
+    this.named = [...items, ...axes];
   }
 
   private light(palette: Palette): void {
@@ -223,7 +226,7 @@ export class Drawing {
     this.draw();
   };
 
-  /** Asks for one frame. */
+  /** Requests one frame. */
   private readonly draw = (): void => {
     if (this.request === 0) this.request = requestAnimationFrame(this.render);
   };
@@ -238,11 +241,11 @@ export class Drawing {
     this.scene.updateMatrixWorld();
     const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
     const up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
-    for (const { label, drawn, at } of this.named) {
+    for (const { label, figure, at } of this.named) {
       label.at.copy(at);
-      if (!drawn?.mark.rim) continue;
-      const [across, high] = SIDES[drawn.thing.colour % SIDES.length]!;
-      const { axis, radius } = drawn.mark.rim;
+      if (!figure?.mark.rim) continue;
+      const [across, high] = SIDES[figure.item.colour % SIDES.length]!;
+      const { axis, radius } = figure.mark.rim;
       const towards = right.clone().multiplyScalar(across).addScaledVector(up, high).projectOnPlane(axis);
       label.at.copy(towards.setLength(radius));
     }
@@ -254,12 +257,12 @@ export class Drawing {
   };
 }
 
-function described({ vector, bivector, trivector, rotor }: Thing): string {
+function described({ vector, bivector, trivector, rotor }: Drawable): string {
   const kinds = [
     vector && "a vector",
     bivector && "a bivector",
     trivector !== null && (trivector > 0 ? "a right-handed trivector" : "a left-handed trivector"),
-    rotor && `a turn by ${Math.round((rotor.angle * 180) / Math.PI)}°`,
+    rotor && `a rotation by ${Math.round((rotor.angle * 180) / Math.PI)}°`,
   ];
   return kinds.filter(Boolean).join(" and ");
 }

@@ -1,19 +1,19 @@
 import { Vector3 } from "three";
 import type { Screen } from "../stage/ribbon.ts";
 import { across, arc, Shapes } from "./shapes.ts";
-import type { Thing } from "./things.ts";
+import type { Drawable } from "./drawables.ts";
 
-/** A point that has a label, and what the label says besides the name. */
+/** The point of a label, and the text of the label after the name. */
 export interface Mark {
   at: Vector3;
-  says: string;
-  /** Where on the screen it stands, for a rim: of all points that which is farthest to there. */
+  note: string;
+  /** For a label on a rim: at the point farthest in a direction of the screen. */
   rim?: { axis: Vector3; radius: number };
 }
 
-/** A thing as it is drawn: its shapes and where it is named. Drawn units are `unit` times those of the values. */
-export interface Drawn {
-  thing: Thing;
+/** The shapes and the label of a item, in drawn units: `unit` times the values. */
+export interface Figure {
+  item: Drawable;
   shapes: Shapes;
   mark: Mark;
 }
@@ -22,102 +22,104 @@ export interface Drawn {
 const TURN = 0.5;
 const DASHED = { width: 1.3, opacity: 0.8, behind: 0.5, dash: 0.045 };
 
-export function drawnOf(
-  thing: Thing,
-  things: readonly Thing[],
+export function figureOf(
+  item: Drawable,
+  items: readonly Drawable[],
   screen: Screen,
   colour: string,
   unit: number,
-): Drawn {
+): Figure {
   const shapes = new Shapes(screen, colour);
-  let mark: Mark = { at: new Vector3(), says: "" };
+  let mark: Mark = { at: new Vector3(), note: "" };
   const scaled = (vector: Vector3) => vector.clone().multiplyScalar(unit);
-  const [a, b, c] = thing.edges.map(scaled);
-  if (thing.rotor) {
-    const alone = !things.some((other) => other !== thing && other.rotor && other.rotor.turned.length > 0);
-    mark = turn(shapes, thing.rotor, unit, alone);
+  const [a, b, c] = item.edges.map(scaled);
+  if (item.rotor) {
+    const alone = !items.some((other) => other !== item && other.rotor && other.rotor.turned.length > 0);
+    mark = turn(shapes, item.rotor, unit, alone);
   }
-  if (thing.trivector !== null) {
+  if (item.trivector !== null) {
     if (a && b && c) {
-      const base = (other: Thing) =>
-        other.bivector && other.edges.every((edge, k) => edge === thing.edges[k]);
+      const base = (other: Drawable) =>
+        other.bivector && other.edges.every((edge, k) => edge === item.edges[k]);
       shapes.parallelepiped(a, b, c, {
-        base: !things.some((other) => other.edges.length === 2 && base(other)),
+        base: !items.some((other) => other.edges.length === 2 && base(other)),
       });
       mark.at = a.clone().add(b).add(c);
     } else {
-      mark.at = cube(shapes, thing.trivector, unit);
+      mark.at = cube(shapes, item.trivector, unit);
     }
-    if (thing.trivector < 0) mark.says = "left-handed";
+    if (item.trivector < 0) mark.note = "left-handed";
   }
-  if (thing.bivector) {
+  if (item.bivector) {
     if (a && b && !c) {
       shapes.parallelogram(a, b);
       mark.at = a.clone().add(b);
     } else {
-      const radius = discRadius(thing.bivector) * unit;
-      shapes.disc(thing.bivector, radius);
-      mark.rim = { axis: thing.bivector, radius };
+      const radius = discRadius(item.bivector) * unit;
+      shapes.disc(item.bivector, radius);
+      mark.rim = { axis: item.bivector, radius };
     }
   }
-  if (thing.vector) {
-    shapes.arrow(scaled(thing.vector));
-    mark = { at: scaled(thing.vector), says: mark.says };
+  if (item.vector) {
+    shapes.arrow(scaled(item.vector));
+    mark = { at: scaled(item.vector), note: mark.note };
   }
-  return { thing, shapes, mark };
+  return { item, shapes, mark };
 }
 
-/** Points that have to be in view, in the units of the values. */
-export function extent(thing: Thing): Vector3[] {
+/** Points that must be in view, in the units of the values. */
+export function extent(item: Drawable): Vector3[] {
   const points = [new Vector3()];
-  if (thing.vector) points.push(thing.vector);
-  const [a, b, c] = thing.edges;
+  if (item.vector) points.push(item.vector);
+  const [a, b, c] = item.edges;
   if (a && b) points.push(a, b, a.clone().add(b));
   if (a && b && c) points.push(c, ...[a, b, a.clone().add(b)].map((point) => point.clone().add(c)));
-  if (thing.bivector && !b) {
-    const radius = discRadius(thing.bivector);
-    const right = across(thing.bivector).multiplyScalar(radius);
-    const up = thing.bivector.clone().normalize().cross(right);
+  if (item.bivector && !b) {
+    const radius = discRadius(item.bivector);
+    const right = across(item.bivector).multiplyScalar(radius);
+    const up = item.bivector.clone().normalize().cross(right);
     points.push(right, up, right.clone().negate(), up.clone().negate());
   }
-  if (thing.trivector !== null && !c) {
-    const half = Math.cbrt(Math.abs(thing.trivector)) / 2;
+  if (item.trivector !== null && !c) {
+    const half = Math.cbrt(Math.abs(item.trivector)) / 2;
     points.push(new Vector3(half, half, half), new Vector3(-half, -half, -half));
   }
-  for (const vector of thing.rotor?.turned ?? []) {
-    points.push(vector, vector.clone().applyAxisAngle(thing.rotor!.axis, thing.rotor!.angle));
+  for (const vector of item.rotor?.turned ?? []) {
+    points.push(vector, vector.clone().applyAxisAngle(item.rotor!.axis, item.rotor!.angle));
   }
   return points;
 }
 
-/** The area of the disc is the size of the bivector. */
+/** The area of the disc is the norm of the bivector. */
 function discRadius(bivector: Vector3): number {
   return Math.sqrt(bivector.length() / Math.PI);
 }
 
-/** The plane of a rotor, the angle in it, and the way of what is turned, if it is alone with what it leaves in the plane. */
+/** The angle of a rotor in its plane, and the arcs of the vectors that it turns; if `alone`, with their projections. */
 function turn(
   shapes: Shapes,
-  { axis, angle, turned }: NonNullable<Thing["rotor"]>,
+  { axis, angle, turned }: NonNullable<Drawable["rotor"]>,
   unit: number,
   alone: boolean,
 ): Mark {
-  const ways = turned.map((vector) => vector.clone().multiplyScalar(unit));
-  for (const from of ways) {
+  const starts = turned.map((vector) => vector.clone().multiplyScalar(unit));
+  for (const from of starts) {
     shapes.line(arc(axis, from, angle), DASHED);
-    if (alone) shadows(shapes, axis, from, angle);
+    if (alone) projections(shapes, axis, from, angle);
   }
-  const inPlane = ways.map((way) => way.clone().projectOnPlane(axis)).find((way) => way.length() > 0.15);
+  const inPlane = starts
+    .map((from) => from.clone().projectOnPlane(axis))
+    .find((part) => part.length() > 0.15);
   const radius = inPlane ? Math.min(TURN, 0.62 * inPlane.length()) : TURN;
   const start = (inPlane ?? across(axis)).clone().setLength(radius);
   shapes.sector(axis, start, angle);
   if (!inPlane) shapes.line(arc(axis, start, 2 * Math.PI), DASHED);
   const middle = start.clone().applyAxisAngle(axis, angle / 2);
-  return { at: middle, says: `${Number(((angle * 180) / Math.PI).toFixed(1))}°` };
+  return { at: middle, note: `${Number(((angle * 180) / Math.PI).toFixed(1))}°` };
 }
 
-/** What of a vector lies in the plane of a turn, before and after. */
-function shadows(shapes: Shapes, axis: Vector3, from: Vector3, angle: number): void {
+/** The projection of a vector on the plane of a turn, before and after. */
+function projections(shapes: Shapes, axis: Vector3, from: Vector3, angle: number): void {
   const to = from.clone().applyAxisAngle(axis, angle);
   for (const tip of [from, to]) {
     const inPlane = tip.clone().projectOnPlane(axis);
@@ -129,7 +131,7 @@ function shadows(shapes: Shapes, axis: Vector3, from: Vector3, angle: number): v
   }
 }
 
-/** A cube of the volume of a trivector: the rim of its base and then its height give its sense. */
+/** A cube with the volume of a trivector; the rim of its base and then its height give the orientation. */
 function cube(shapes: Shapes, trivector: number, unit: number): Vector3 {
   const side = Math.cbrt(Math.abs(trivector)) * unit;
   const [x, y, z] = [0, 1, 2].map((k) => new Vector3().setComponent(k, side)) as [Vector3, Vector3, Vector3];

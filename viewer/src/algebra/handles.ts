@@ -1,23 +1,23 @@
 import { type Camera, Plane, Raycaster, Vector2, Vector3 } from "three";
 import { AXES } from "../stage/rotor.ts";
 import type { Triple } from "../core/core.ts";
-import type { Thing } from "./things.ts";
+import type { Drawable } from "./drawables.ts";
 
-/** What an arrow key moves a tip, in units of the values. */
+/** How far an arrow key moves a tip, in the units of the values. */
 const STEP = 0.1;
 
-const HINT = "Arrow keys move it; with Shift, up and down move it along the view.";
+const HINT = "Arrow keys move it; Shift with up or down moves it along the view.";
 
-/** Buttons at the tips of vectors, by which they are dragged: in the plane of the screen, or with Shift along the view. */
+/** Buttons at the tips of vectors for dragging them in the plane of the screen, or with Shift along the view. */
 export class Handles {
   private readonly layer = document.createElement("div");
-  private buttons: { button: HTMLButtonElement; thing: Thing }[] = [];
+  private buttons: { button: HTMLButtonElement; item: Drawable }[] = [];
   private camera: Camera | null = null;
   private size = new Vector2(1, 1);
 
   constructor(
     host: HTMLElement,
-    /** Drawn units for 1. */
+    /** Drawn units per 1. */
     private readonly unit: () => number,
     private readonly move: (line: number, components: Triple) => void,
   ) {
@@ -31,62 +31,62 @@ export class Handles {
     this.layer.remove();
   }
 
-  /** Buttons are kept from one time to the next, so that they keep focus and pointer. */
-  show(things: readonly Thing[], colours: readonly string[]): void {
-    while (this.buttons.length > things.length) this.buttons.pop()!.button.remove();
-    things.forEach((thing, k) => {
-      const entry = this.buttons[k] ?? this.add(thing);
-      entry.thing = thing;
-      const parts = thing.vector!.toArray().map((x) => Number(x.toFixed(2)));
-      entry.button.setAttribute("aria-label", `${thing.label} = (${parts.join(", ")}). ${HINT}`);
-      entry.button.title = `Drag ${thing.label}; with Shift along the view`;
-      entry.button.style.color = colours[thing.colour]!;
-      entry.button.dataset["handle"] = thing.label;
+  /** Reuses the buttons, so that they keep the focus and the pointer. */
+  show(items: readonly Drawable[], colours: readonly string[]): void {
+    while (this.buttons.length > items.length) this.buttons.pop()!.button.remove();
+    items.forEach((item, k) => {
+      const entry = this.buttons[k] ?? this.add(item);
+      entry.item = item;
+      const parts = item.vector!.toArray().map((x) => Number(x.toFixed(2)));
+      entry.button.setAttribute("aria-label", `${item.label} = (${parts.join(", ")}). ${HINT}`);
+      entry.button.title = `Drag ${item.label}; with Shift, along the view`;
+      entry.button.style.color = colours[item.colour]!;
+      entry.button.dataset["handle"] = item.label;
     });
   }
 
   place(camera: Camera, width: number, height: number): void {
     this.camera = camera;
     this.size.set(width, height);
-    for (const { button, thing } of this.buttons) {
-      const at = this.tip(thing).project(camera);
+    for (const { button, item } of this.buttons) {
+      const at = this.tip(item).project(camera);
       const [x, y] = [((1 + at.x) * width) / 2, ((1 - at.y) * height) / 2];
       button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     }
   }
 
-  private tip(thing: Thing): Vector3 {
-    return thing.vector!.clone().multiplyScalar(this.unit());
+  private tip(item: Drawable): Vector3 {
+    return item.vector!.clone().multiplyScalar(this.unit());
   }
 
-  private add(thing: Thing): { button: HTMLButtonElement; thing: Thing } {
+  private add(item: Drawable): { button: HTMLButtonElement; item: Drawable } {
     const button = document.createElement("button");
     button.type = "button";
     button.className = "handle";
-    const entry = { button, thing };
+    const entry = { button, item };
     this.buttons.push(entry);
     this.layer.append(button);
     let last: { x: number; y: number; tip: Vector3 } | null = null;
     button.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       button.setPointerCapture(event.pointerId);
-      last = { x: event.clientX, y: event.clientY, tip: this.tip(entry.thing) };
+      last = { x: event.clientX, y: event.clientY, tip: this.tip(entry.item) };
     });
     button.addEventListener("pointermove", (event) => {
       if (!last || !button.hasPointerCapture(event.pointerId)) return;
-      // The tip is kept with all its digits here: rounded ones would stick to their place.
+      // All digits of the tip are kept here: a rounded tip would not follow small movements.
       const tip = this.dragged(last.tip, event.clientX - last.x, event.clientY - last.y, event.shiftKey);
       last = { x: event.clientX, y: event.clientY, tip };
-      this.move(entry.thing.line, tip.clone().divideScalar(this.unit()).toArray());
+      this.move(entry.item.line, tip.clone().divideScalar(this.unit()).toArray());
     });
     for (const end of ["pointerup", "pointercancel"] as const) {
       button.addEventListener(end, () => (last = null));
     }
-    button.addEventListener("keydown", (event) => this.pressed(event, entry.thing));
+    button.addEventListener("keydown", (event) => this.moveByKey(event, entry.item));
     return entry;
   }
 
-  /** A tip that follows the pointer by so many pixels. */
+  /** The tip moved with the pointer by some pixels. */
   private dragged(tip: Vector3, dx: number, dy: number, along: boolean): Vector3 {
     const camera = this.camera!;
     const view = camera.getWorldDirection(new Vector3());
@@ -101,38 +101,42 @@ export class Handles {
     return tip.clone().addScaledVector(view, moved.sub(tip).dot(up));
   }
 
-  /** By the axes that lie most along the screen's right and up, and for Shift along the view. */
-  private pressed(event: KeyboardEvent, thing: Thing): void {
-    const signs: Record<string, [0 | 1, number]> = {
-      ArrowRight: [0, 1],
-      ArrowLeft: [0, -1],
-      ArrowUp: [1, 1],
-      ArrowDown: [1, -1],
-    };
-    const key = signs[event.key];
-    if (!key || !this.camera) return;
+  /** Moves a vector along the axis nearest to right or up on the screen, or with Shift to the view. */
+  private moveByKey(event: KeyboardEvent, item: Drawable): void {
+    const step = KEYS[event.key];
+    if (!step || !this.camera) return;
     event.preventDefault();
     event.stopPropagation();
-    const [screen, sign] = key;
-    const columns = [0, 1].map((k) => new Vector3().setFromMatrixColumn(this.camera!.matrixWorld, k));
-    const right = most(columns[0]!, [0, 1, 2]);
-    const up = most(
-      columns[1]!,
-      [0, 1, 2].filter((k) => k !== right.axis),
+    const [key, sign] = step;
+    const { matrixWorld } = this.camera;
+    const directions = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(matrixWorld, k));
+    directions[2]!.negate();
+    // Each direction takes the nearest of the axes that are left.
+    const axes = [0, 1, 2];
+    const steps = directions.map((direction) => {
+      const axis = axes.reduce((a, b) => (size(direction, b) > size(direction, a) ? b : a));
+      axes.splice(axes.indexOf(axis), 1);
+      return AXES[axis as 0 | 1 | 2].clone().multiplyScalar(Math.sign(direction.getComponent(axis)) || 1);
+    });
+    const along = steps[key === 1 && event.shiftKey ? 2 : key]!;
+    this.move(
+      item.line,
+      along
+        .multiplyScalar(sign * STEP)
+        .add(item.vector!)
+        .toArray(),
     );
-    const deep = most(
-      this.camera.getWorldDirection(new Vector3()),
-      [0, 1, 2].filter((k) => k !== right.axis && k !== up.axis),
-    );
-    const { axis, sense } = screen === 0 ? right : event.shiftKey ? deep : up;
-    const moved = thing.vector!.clone().addScaledVector(AXES[axis as 0 | 1 | 2], sign * sense * STEP);
-    this.move(thing.line, moved.toArray());
   }
 }
 
-/** Which of some axes a direction goes along most, and in which sense. */
-function most(direction: Vector3, axes: number[]): { axis: number; sense: number } {
-  const sizes = axes.map((k) => Math.abs(direction.getComponent(k)));
-  const axis = axes[sizes.indexOf(Math.max(...sizes))]!;
-  return { axis, sense: Math.sign(direction.getComponent(axis)) || 1 };
+/** The direction of an arrow key, 0 to the right or 1 up, and its sign. */
+const KEYS: Record<string, [0 | 1, number]> = {
+  ArrowRight: [0, 1],
+  ArrowLeft: [0, -1],
+  ArrowUp: [1, 1],
+  ArrowDown: [1, -1],
+};
+
+function size(direction: Vector3, axis: number): number {
+  return Math.abs(direction.getComponent(axis));
 }

@@ -1,7 +1,7 @@
 import type { Triple } from "../core/core.ts";
 import { numberText } from "./notation.ts";
 
-/** Numbers that are given by literals in the text of a line: what a handle or a slider changes. */
+/** Literal numbers in the text of a line, which handles and sliders change. */
 
 const NUMBER = String.raw`(?:\d+(?:\.\d*)?|\.\d+)`;
 const TERM = String.raw`(?:${NUMBER}\s*\*?\s*)?e_?[123₁₂₃]`;
@@ -12,7 +12,7 @@ const VECTOR = new RegExp(
 );
 const SCALAR = new RegExp(String.raw`^(\s*[^=#(]+=\s*)([\-−]?\s*${NUMBER})(\s*${UNIT})(\s*(?:#.*)?)$`, "u");
 
-/** Where the components of `a = 2 e1 + e2` stand in its text; null if they are no literals. */
+/** The parts of a line such as `a = 2 e1 + e2`; null if its components are not literals. */
 export function vectorLiteral(text: string): { head: string; components: Triple; tail: string } | null {
   const found = VECTOR.exec(text);
   if (!found) return null;
@@ -40,7 +40,7 @@ export function withVector(text: string, components: Triple): string {
   return literal.head + (body || "0 e1") + literal.tail;
 }
 
-/** The number of `θ = 60 deg`, and its unit; null if it is no literal. */
+/** The number and the unit of a line such as `θ = 60 deg`; null if the number is not a literal. */
 export function scalarLiteral(
   text: string,
 ): { head: string; number: number; unit: string; tail: string } | null {
@@ -56,7 +56,7 @@ export function withScalar(text: string, number: number): string {
   return literal ? literal.head + numberText(number) + literal.unit + literal.tail : text;
 }
 
-/** The text with its literals taken out: what a preset has in common with what was made of it by handles and sliders. */
+/** The text without its literals: it identifies a preset after handles and sliders have changed it. */
 export function outline(text: string): string {
   const lines = text.split("\n").map((line) => {
     const literal = vectorLiteral(line) ?? scalarLiteral(line);

@@ -2,21 +2,20 @@ import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
-import { NoWebGL } from "../stage/stage.ts";
 import styles from "./algebra.css?inline";
 import { colours, Drawing } from "./drawing.ts";
 import { outline, withVector } from "./literal.ts";
 import { ALGEBRA_PRESETS } from "./presets.ts";
 import { Rows } from "./rows.tsx";
-import { type Thing, thingsOf } from "./things.ts";
+import { type Drawable, drawablesOf } from "./drawables.ts";
 
-/** The page of algebra: lines of formulas, what they come to, and a drawing of it. The text is its only state. */
+/** The algebra page: lines of formulas, their values, and a drawing. The text is its only state. */
 export function AlgebraPage({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
   useEffect(() => {
     if (model.lines.peek() === "") model.lines.value = ALGEBRA_PRESETS[0]!.lines;
   }, [model]);
   const lines = useComputed(() => model.core.evaluated(model.lines.value));
-  const things = useComputed(() => thingsOf(lines.value));
+  const items = useComputed(() => drawablesOf(lines.value, model.core));
   const tones = useComputed(() => colours(palette.value));
   const change = useMemo(
     () => (line: number, text: (old: string) => string) => {
@@ -32,16 +31,16 @@ export function AlgebraPage({ model, palette }: { model: Model; palette: Readonl
       <style>{styles}</style>
       <Choice model={model} />
       <Picture
-        things={things}
+        items={items}
         palette={palette}
         move={(line, to) => change(line, (old) => withVector(old, to))}
       />
-      <Rows text={model.lines} lines={lines} things={things} tones={tones} change={change} />
+      <Rows text={model.lines} lines={lines} items={items} tones={tones} change={change} />
     </div>
   );
 }
 
-/** Which preset the lines come from, and what it shows. Handles and sliders change literals only. */
+/** The list of presets, and the description of the current one. Handles and sliders change only literals. */
 function Choice({ model }: { model: Model }) {
   const chosen = useComputed(() => {
     const written = outline(model.lines.value);
@@ -62,7 +61,7 @@ function Choice({ model }: { model: Model }) {
         >
           {preset === null && (
             <option value="" disabled>
-              Own lines
+              Your lines
             </option>
           )}
           {ALGEBRA_PRESETS.map(({ id, title }) => (
@@ -73,40 +72,36 @@ function Choice({ model }: { model: Model }) {
         </select>
       </label>
       <p class="about" aria-live="polite">
-        {preset?.about ??
-          "Give a name a value, define a function, V(x) = ½ x·x, or ask whether an equation holds."}
+        {preset?.about ?? "Define a name or a function, V(x) = ½ x·x, or check whether an equation holds."}
       </p>
     </section>
   );
 }
 
 function Picture(props: {
-  things: ReadonlySignal<readonly Thing[]>;
+  items: ReadonlySignal<readonly Drawable[]>;
   palette: ReadonlySignal<Palette>;
   move: (line: number, to: [number, number, number]) => void;
 }) {
-  const { things, palette, move } = props;
+  const { items, palette, move } = props;
   const place = useRef<HTMLDivElement>(null);
   const drawing = useRef<Drawing | null>(null);
   const missing = useSignal<string | null>(null);
   useEffect(() => {
     try {
-      drawing.current = new Drawing(place.current!, things, palette, move);
+      drawing.current = new Drawing(place.current!, items, palette, move);
     } catch (error) {
-      missing.value =
-        error instanceof NoWebGL
-          ? "This browser draws no 3-d pictures (WebGL 2 is missing or switched off). All values are there."
-          : words(error);
+      missing.value = words(error);
     }
     return () => drawing.current?.dispose();
-  }, [things, palette]);
+  }, [items, palette]);
   return (
     <section class="drawing" aria-label="Drawing">
       <div class="drawn" ref={place} />
       {missing.value !== null ? (
         <p class="missing">{missing.value}</p>
       ) : (
-        <button class="quiet home" title="Everything in view" onClick={() => drawing.current?.home()}>
+        <button class="quiet home" title="Fit everything into view" onClick={() => drawing.current?.home()}>
           <svg class="icon" viewBox="0 0 20 20" aria-hidden="true">
             <path
               d="M3 8V3h5M12 3h5v5M17 12v5h-5M8 17H3v-5"
@@ -115,7 +110,7 @@ function Picture(props: {
               stroke-width="1.6"
             />
           </svg>
-          <span class="hidden">Everything in view</span>
+          <span class="hidden">Fit everything into view</span>
         </button>
       )}
     </section>

@@ -1,4 +1,4 @@
-/** Lines to begin with, and what they show. */
+/** Example lines with a description. */
 export interface AlgebraPreset {
   id: string;
   title: string;
@@ -17,9 +17,9 @@ const preset = (id: string, title: string, about: string, ...lines: string[]): A
 export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "trivector",
-    "A trivector is swept out",
-    "The vector a sweeps out the bivector a∧b when it moves along b; that sweeps out the trivector (a∧b)∧c when it " +
-      "moves along c. The brackets do not matter; an exchange of two vectors turns the sense over.",
+    "A trivector as a swept volume",
+    "The vector a sweeps out the bivector a∧b when it moves along b, and a∧b sweeps out the trivector (a∧b)∧c when it " +
+      "moves along c. The wedge product is associative; exchanging two vectors reverses the orientation.",
     "a = 1.5 e1 - 0.3 e2",
     "b = 0.4 e1 + 1.5 e2",
     "c = 0.3 e1 + 0.4 e2 + 1.2 e3",
@@ -31,8 +31,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "rotor",
     "A rotor turns a vector",
-    "R = exp(−B θ/2) turns every vector by the angle θ in the plane of the unit bivector B, in the sense of B. What a has " +
-      "across the plane stays as it is. Turn on with the slider.",
+    "R = exp(−B θ/2) turns every vector by the angle θ in the plane of the unit bivector B, in the sense of B. The part " +
+      "of a that is perpendicular to the plane does not change. Change θ with the slider.",
     "θ = 100 deg",
     "B = 0.28 e2∧e3 + 0.96 e1∧e2",
     "a = 1.2 e1 - 0.3 e2 + 0.7 e3",
@@ -43,9 +43,9 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   ),
   preset(
     "inertia",
-    "The inertia tensor, plane to plane",
-    "A body that turns in the plane of B has its angular momentum in the plane of I(B), in general another one. The " +
-      "principal planes, and with equal moments all planes, are taken to themselves.",
+    "The inertia map takes planes to planes",
+    "A body that rotates in the plane of B has its angular momentum in the plane of I(B), which is in general a " +
+      "different one. Only principal planes are mapped to themselves; with equal moments all planes are principal.",
     "i1 = 2.2",
     "i2 = 1.9",
     "i3 = 0.5",
@@ -58,8 +58,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "projection",
     "Projection and rejection",
-    "A bivector has an inverse, so a = (a B) B⁻¹ falls into two parts: a·B gives what lies in the plane, a∧B what stands " +
-      "across it.",
+    "A bivector has an inverse, so a = (a B) B⁻¹ splits into two parts: a·B gives the part in the plane, and a∧B the part " +
+      "perpendicular to it.",
     "a = 0.3 e1 + 1 e2 + 1.2 e3",
     "B = 0.5 e2∧e3 - 0.3 e3∧e1 + 2 e1∧e2",
     "a∥ = a·B B⁻¹",
@@ -70,7 +70,7 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "reflection",
     "A reflection",
-    "−n a n⁻¹ is the mirror image of a in the plane across n: what a has along n is turned over, the rest stays.",
+    "−n a n⁻¹ is the mirror image of a in the plane perpendicular to n: the part along n changes sign, the rest does not.",
     "n = 0.8 e1 + 0.2 e2 + 1.1 e3",
     "a = -0.4 e1 + 1.3 e2 + 0.7 e3",
     "M = 3 I n/norm(n)  # the mirror",
@@ -81,8 +81,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "two-reflections",
     "Two reflections make a rotation",
-    "One mirror after the other turns every vector in the plane of their normals, by twice the angle between them. So the " +
-      "product of two unit vectors is a rotor.",
+    "Two reflections turn every vector in the plane of the two normals by twice the angle between them. So the product " +
+      "of two unit vectors is a rotor.",
     "m = 1.2 e1 - 0.4 e2",
     "n = 0.8 e1 + 0.9 e2",
     "a = 0.9 e1 - 0.7 e2 + 0.9 e3",
@@ -94,8 +94,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "dual",
     "Vectors and planes are dual",
-    "Multiplied by I = e1e2e3, a vector becomes the plane across it, and a plane its normal. It does not matter from " +
-      "which side, for I commutes with everything.",
+    "Multiplication by I = e1e2e3 takes a vector to the plane perpendicular to it, and a plane to its normal, from either " +
+      "side, because I commutes with everything.",
     "B = 1.4 e2∧e3 + 0.6 e3∧e1 + 1.6 e1∧e2",
     "b = -I B",
     "I b == B",
@@ -106,8 +106,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "commutator",
     "The commutator of bivectors",
-    "A×B = ½(AB − BA) of two planes is a plane across both; it is not the cross product. Where B turns in the plane of A, " +
-      "it changes by B×A for each radian.",
+    "A×B = ½(AB − BA) of two planes is a plane perpendicular to both; it is not the cross product. If B rotates in the " +
+      "plane of A, it changes by B×A per radian.",
     "A = 1.8 e2∧e3",
     "B = 1.2 e3∧e1 + 1.2 e1∧e2",
     "C = A×B",
@@ -118,8 +118,8 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   preset(
     "cross",
     "The cross product is a dual",
-    "The cross product of vectors is the normal of the parallelogram that they span: a ⨯ b = −I a∧b. The parallelogram needs " +
-      "no right hand.",
+    "The cross product of vectors is the normal of the parallelogram that they span: a ⨯ b = −I a∧b. The parallelogram " +
+      "itself needs no right-hand rule.",
     "a = 1.4 e1 + 0.2 e3",
     "b = 0.4 e1 + 1.2 e2",
     "B = a∧b",
@@ -129,9 +129,9 @@ export const ALGEBRA_PRESETS: readonly AlgebraPreset[] = [
   ),
   preset(
     "slerp",
-    "From one rotor to another",
-    "S goes on from P towards Q, by the shortest turn and at an even pace: at t = 0 it is 1, at t = 1 it takes p to q. The " +
-      "logarithm of Q ~P is the bivector of that turn.",
+    "Interpolation of rotors",
+    "S turns from P towards Q by the shortest rotation at a constant rate: at t = 0 it is 1, at t = 1 it takes p to q. " +
+      "The logarithm of Q ~P is the bivector of that rotation.",
     "t = 0.4",
     "a = 0.9 e1 - 0.9 e2 + 0.4 e3",
     "P = exp(-10 deg e1∧e2)",

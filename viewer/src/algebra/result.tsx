@@ -1,11 +1,9 @@
 import type { Line } from "../core/core.ts";
-import { heldGrades, kind, small, terms } from "./notation.ts";
+import { significant } from "../format/numbers.ts";
+import { kind, nonzeroGrades, terms } from "./notation.ts";
 
-/**
- * What a line comes to, as on paper, unless that is `written` in it already; of an equation whether it holds; or what is
- * wrong.
- */
-export function Result({ id, line, written }: { id: string; line: Line; written: boolean }) {
+/** The value of a line, unless its text already shows it (`literal`); whether an equation holds; or the error. */
+export function Result({ id, line, literal }: { id: string; line: Line; literal: boolean }) {
   const { problem, equation, value } = line;
   if (problem) {
     return (
@@ -16,21 +14,21 @@ export function Result({ id, line, written }: { id: string; line: Line; written:
   }
   if (equation) {
     const { holds, residual, size } = equation;
-    const fails = `fails by ${small(residual)}, of terms of size ${small(size)}`;
+    const fails = `fails: residual ${significant(residual, 2)} for terms of size ${significant(size, 2)}`;
     return (
       <p
         id={id}
         class={holds ? "came holds" : "came fails"}
-        title={`residual ${residual} of terms of size ${size}`}
+        title={`residual ${residual} for terms of size ${size}`}
       >
         <span class="tick" aria-hidden="true">
           {holds ? "✓" : "✗"}
         </span>
-        {holds ? `holds, residual ${small(residual)}` : fails}
+        {holds ? `holds, residual ${significant(residual, 2)}` : fails}
       </p>
     );
   }
-  if (value && !written && !line.text.includes(`= ${value.text}`)) {
+  if (value && !literal && !line.text.includes(`= ${value.text}`)) {
     return (
       <p id={id} class="came" title={value.text}>
         <Value components={value.components} />
@@ -40,17 +38,17 @@ export function Result({ id, line, written }: { id: string; line: Line; written:
   return null;
 }
 
-/** Which kind of thing a line is: a small picture, in its colour in the drawing, and the word. */
+/** The kind of a value: an icon in its colour in the drawing, and the word. */
 export function Kind({ line, tone }: { line: Line; tone: string | undefined }) {
   const { value, name, shown } = line;
   if (!value) return name !== null && shown !== null ? <span class="kind">function</span> : null;
-  const what = kind(heldGrades(value), value.rotor);
+  const what = kind(nonzeroGrades(value), value.rotor);
   const glyph = GLYPHS[what];
   const filled = what === "scalar";
   return (
     <span
       class="kind"
-      title={`can have the grade${value.grades.length > 1 ? "s" : ""} ${value.grades.join(", ")}`}
+      title={`may have the grade${value.grades.length > 1 ? "s" : ""} ${value.grades.join(", ")}`}
     >
       {what}
       {glyph && (
@@ -62,7 +60,7 @@ export function Kind({ line, tone }: { line: Line; tone: string | undefined }) {
   );
 }
 
-/** `2 e₁ − 3 e₂∧e₃`, the letters of vectors in italics. */
+/** `2 e₁ − 3 e₂∧e₃`, with vectors in italics. */
 function Value({ components }: { components: readonly number[] }) {
   const all = terms(components);
   if (all.length === 0) return <span class="value">= 0</span>;

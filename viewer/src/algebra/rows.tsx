@@ -4,36 +4,36 @@ import type { Line } from "../core/core.ts";
 import { scalarLiteral, withScalar } from "./literal.ts";
 import { Kind, Result } from "./result.tsx";
 import { ScalarSlider } from "./slider.tsx";
-import type { Thing } from "./things.ts";
-import { painted } from "./painted.tsx";
+import type { Drawable } from "./drawables.ts";
+import { highlighted } from "./highlight.tsx";
 
 type Change = (line: number, text: (old: string) => string) => void;
 
 interface Props {
   text: Signal<string>;
   lines: ReadonlySignal<readonly Line[]>;
-  things: ReadonlySignal<readonly Thing[]>;
+  items: ReadonlySignal<readonly Drawable[]>;
   tones: ReadonlySignal<readonly string[]>;
   change: Change;
 }
 
-/** The lines, each with what it comes to. Enter, Backspace, the arrow keys and pasting go over their ends. */
-export function Rows({ text, lines, things, tones, change }: Props) {
+/** The lines with their values. Enter, Backspace, Delete, arrow keys and pasting work across lines. */
+export function Rows({ text, lines, items, tones, change }: Props) {
   const list = useRef<HTMLOListElement>(null);
-  /** Where the caret goes when the rows are there: the row and the place in it. */
+  /** The row and column of the caret after the next render. */
   const caret = useRef<[number, number] | null>(null);
   useLayoutEffect(() => {
     if (!caret.current) return;
     const [row, column] = caret.current;
     caret.current = null;
-    go(list.current, row, column);
+    focusAt(list.current, row, column);
   });
-  const named = new Map(things.value.map((thing) => [thing.label, thing]));
+  const named = new Map(items.value.map((item) => [item.label, item]));
   const colourOf = (name: string) => {
-    const thing = named.get(name);
-    return thing ? tones.value[thing.colour] : undefined;
+    const item = named.get(name);
+    return item ? tones.value[item.colour] : undefined;
   };
-  /** Puts some text in the place of rows, with the caret so far from its beginning. */
+  /** Replaces rows by a text, and puts the caret at an offset in it. */
   const replace = (first: number, count: number, written: string, at: number): void => {
     const all = text.peek().split("\n");
     all.splice(first, count, ...written.split("\n"));
@@ -41,7 +41,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
     caret.current = [first + before.length - 1, before[before.length - 1]!.length];
     text.value = all.join("\n");
   };
-  const pressed = (event: KeyboardEvent, row: number): void => {
+  const onKey = (event: KeyboardEvent, row: number): void => {
     const area = event.currentTarget as HTMLTextAreaElement;
     const { selectionStart: start, selectionEnd: end, value } = area;
     const all = text.peek().split("\n");
@@ -52,10 +52,10 @@ export function Rows({ text, lines, things, tones, change }: Props) {
     } else if (event.key === "Delete" && start === value.length && end === start && row < all.length - 1) {
       replace(row, 2, value + all[row + 1]!, start);
     } else if (event.key === "ArrowUp" && plain && row > 0 && (!wrapped || start === 0)) {
-      go(list.current, row - 1, start);
+      focusAt(list.current, row - 1, start);
     } else if (event.key === "ArrowDown" && plain && row < all.length - 1) {
       if (wrapped && start < value.length) return;
-      go(list.current, row + 1, start);
+      focusAt(list.current, row + 1, start);
     } else {
       return;
     }
@@ -65,8 +65,8 @@ export function Rows({ text, lines, things, tones, change }: Props) {
     <section class="rows" aria-label="Lines">
       <ol ref={list}>
         {lines.value.map((line, row) => {
-          const thing = things.value.find((one) => one.line === row);
-          const tone = thing && tones.value[thing.colour];
+          const item = items.value.find((one) => one.line === row);
+          const tone = item && tones.value[item.colour];
           const scalar =
             line.value?.grades.join() === "0" && line.name !== null ? scalarLiteral(line.text) : null;
           return (
@@ -79,7 +79,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
               data-problem={line.problem?.message}
             >
               <div class="code">
-                <pre aria-hidden="true">{painted(line, colourOf)}</pre>
+                <pre aria-hidden="true">{highlighted(line, colourOf)}</pre>
                 <textarea
                   rows={1}
                   spellcheck={false}
@@ -93,7 +93,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
                     const { value, selectionStart } = event.currentTarget;
                     replace(row, 1, value, selectionStart);
                   }}
-                  onKeyDown={(event) => pressed(event, row)}
+                  onKeyDown={(event) => onKey(event, row)}
                 />
               </div>
               <Kind line={line} tone={tone} />
@@ -105,7 +105,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
                   onChange={(number) => change(row, (old) => withScalar(old, number))}
                 />
               )}
-              <Result id={`came-${row}`} line={line} written={scalar !== null || (thing?.movable ?? false)} />
+              <Result id={`came-${row}`} line={line} literal={scalar !== null || (item?.movable ?? false)} />
             </li>
           );
         })}
@@ -123,7 +123,7 @@ export function Rows({ text, lines, things, tones, change }: Props) {
   );
 }
 
-function go(list: HTMLOListElement | null, row: number, column: number): void {
+function focusAt(list: HTMLOListElement | null, row: number, column: number): void {
   const area = list?.children[row]?.querySelector("textarea");
   area?.focus();
   area?.setSelectionRange(column, column);

@@ -14,13 +14,13 @@ import { Ribbon, type RibbonStyle, type Screen } from "../stage/ribbon.ts";
 import { AXES } from "../stage/rotor.ts";
 
 const HEAD = new ConeGeometry(0.026, 0.09, 20).translate(0, -0.045, 0).rotateX(Math.PI / 2);
-/** Points of a whole turn. */
+/** Points per full turn. */
 const ROUND = 96;
 
-/** Lines, faces and arrowheads of one colour, which are made anew whenever what they show changes. */
+/** Lines, faces and arrowheads of one colour; new ones are created for each change. */
 export class Shapes {
   readonly object = new Group();
-  private readonly made: { dispose(): void }[] = [];
+  private readonly resources: { dispose(): void }[] = [];
   private readonly solid: MeshLambertMaterial;
 
   constructor(
@@ -28,11 +28,11 @@ export class Shapes {
     private readonly colour: string,
   ) {
     this.solid = new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.45 });
-    this.made.push(this.solid);
+    this.resources.push(this.solid);
   }
 
   dispose(): void {
-    for (const made of this.made) made.dispose();
+    for (const resource of this.resources) resource.dispose();
   }
 
   arrow(to: Vector3, style: RibbonStyle = { width: 2.8, behind: 0.35, order: 4 }, from?: Vector3): void {
@@ -53,7 +53,7 @@ export class Shapes {
     this.add(ribbon);
   }
 
-  /** A convex piece of a plane. */
+  /** A convex polygon. */
   face(points: readonly Vector3[], opacity: number): void {
     const geometry = new BufferGeometry();
     const corners = points.flatMap((point) => point.toArray());
@@ -69,10 +69,10 @@ export class Shapes {
     const mesh = new Mesh(geometry, material);
     mesh.renderOrder = 1;
     this.object.add(mesh);
-    this.made.push(geometry, material);
+    this.resources.push(geometry, material);
   }
 
-  /** The head of an arrow that goes through a point. */
+  /** An arrowhead at a point. */
   head(at: Vector3, along: Vector3, size = 1): void {
     const direction = along.clone().normalize();
     const head = new Mesh(HEAD, this.solid);
@@ -82,7 +82,7 @@ export class Shapes {
     this.object.add(head);
   }
 
-  /** The parallelogram that `a` sweeps out along `b`, whose rim runs along `a` first. */
+  /** The parallelogram a∧b, whose rim runs along `a` first. */
   parallelogram(a: Vector3, b: Vector3, from = new Vector3(), opacity = 0.16): void {
     const corners = [from, from.clone().add(a), from.clone().add(a).add(b), from.clone().add(b)];
     this.face(corners, opacity);
@@ -93,7 +93,7 @@ export class Shapes {
     });
   }
 
-  /** What the parallelogram of `a` and `b`, its base, sweeps out along `c`. */
+  /** The parallelepiped a∧b∧c, with the parallelogram a∧b as its base. */
   parallelepiped(
     a: Vector3,
     b: Vector3,
@@ -113,7 +113,7 @@ export class Shapes {
     });
   }
 
-  /** A disc about the origin whose rim runs right-handed about the axis. */
+  /** A disc around the origin; its rim runs right-handed around the axis. */
   disc(axis: Vector3, radius: number): void {
     const points = arc(axis, across(axis).multiplyScalar(radius), 2 * Math.PI);
     this.face(points.slice(0, -1), 0.14);
@@ -124,12 +124,12 @@ export class Shapes {
     }
   }
 
-  /** A turn: its sector from a direction on, with an arrowhead at the end of its arc. */
+  /** The sector of a rotation from a direction on, with an arrowhead at the end of its arc. */
   sector(axis: Vector3, from: Vector3, angle: number): void {
     const points = arc(axis, from, angle);
     const origin = new Vector3();
     for (let k = 1; k < points.length; k++) this.face([origin, points[k - 1]!, points[k]!], 0.16);
-    // The head is as long as a part of the arc.
+    // The arc ends at the base of the head.
     const short = arc(axis, from, Math.max(angle - 0.07 / from.length(), angle / 2));
     this.line(short, { width: 2.4, behind: 0.4 });
     const end = points[points.length - 1]!;
@@ -141,18 +141,18 @@ export class Shapes {
 
   private add(shape: { object: Group; dispose(): void }): void {
     this.object.add(shape.object);
-    this.made.push(shape);
+    this.resources.push(shape);
   }
 }
 
-/** The points that a point passes when it turns right-handed about an axis through the origin. */
+/** Points of the arc of a point that turns right-handed around an axis through the origin. */
 export function arc(axis: Vector3, from: Vector3, angle: number): Vector3[] {
   const unit = axis.clone().normalize();
   const count = Math.max(2, Math.ceil((ROUND * angle) / (2 * Math.PI)));
   return Array.from({ length: count + 1 }, (_, k) => from.clone().applyAxisAngle(unit, (angle * k) / count));
 }
 
-/** A unit vector across an axis, in the plane of e1 and e2 if that is possible. */
+/** A unit vector perpendicular to an axis, in the plane of e1 and e2 if possible. */
 export function across(axis: Vector3): Vector3 {
   const level = AXES[2].clone().cross(axis);
   return (level.length() > 1e-6 * axis.length() ? level : AXES[0].clone()).normalize();

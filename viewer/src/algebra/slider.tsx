@@ -10,7 +10,7 @@ interface Range {
   step: number;
 }
 
-/** Sets the number of a line like `θ = 60 deg`. */
+/** A slider for the number of a line such as `θ = 60 deg`. */
 export function ScalarSlider(props: {
   name: string;
   number: number;
@@ -19,7 +19,7 @@ export function ScalarSlider(props: {
 }) {
   const { name, number, unit, onChange } = props;
   const kept = useRef<(Range & { unit: string }) | null>(null);
-  // The range stays while it holds the number, else the slider would move under the hand.
+  // The range is kept while it contains the number, so that the slider does not move during a drag.
   const { current } = kept;
   if (!current || current.unit !== unit || number < current.min || number > current.max) {
     kept.current = { ...rangeOf(number, unit), unit };
@@ -40,7 +40,7 @@ export function ScalarSlider(props: {
   );
 }
 
-/** A whole turn for angles; else from 0, or for negative numbers from as far below, to the next round number. */
+/** A full turn for angles; otherwise from 0 to a round number, or symmetric about 0 for negative numbers. */
 function rangeOf(number: number, unit: string): Range {
   if ((unit === "deg" || unit === "°") && Math.abs(number) <= 180) return { min: -180, max: 180, step: 1 };
   const size = 1.5 * Math.abs(number) || 1;

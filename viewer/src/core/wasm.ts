@@ -1,8 +1,18 @@
 import packed from "virtual:polhode-core";
 import { unpacked } from "../packed.ts";
-import { type About, type Core, type Files, type Line, type Motion, Problem } from "./core.ts";
+import {
+  type About,
+  type Files,
+  type LawEntry,
+  type Line,
+  Problem,
+  type Quadruple,
+  type Solid,
+  type Surface,
+  type Triple,
+} from "./core.ts";
 
-/** What the core exports: see crates/wasm/src/exports.rs. */
+/** The exports of the core: see crates/wasm/src/exports.rs. */
 interface Exports {
   memory: WebAssembly.Memory;
   room(size: number): number;
@@ -13,44 +23,70 @@ interface Exports {
   close(handle: number): void;
   about_motion(handle: number): number;
   states(handle: number): number;
-  surface_vertices(handle: number): number;
-  surface_faces(handle: number): number;
+  surface(handle: number): number;
+  extents(handle: number): number;
   bodies(handle: number, time: number, count: number, budget: number): number;
   merge(): number;
   evaluate(): number;
+  solid(): number;
+  second_moments(): number;
+  inertia(): number;
+  attitude(): number;
+  plane_angle(): number;
+  law_registry(): number;
 }
 
-/** How long a motion may be followed if nobody says it, in s. */
+/** Default limit on the time to solve a scene, s. */
 const BUDGET = 10;
 
-/** Loads the core that is in this bundle. */
+/** Loads the core from this bundle. */
 export async function loadCore(): Promise<Core> {
   const imports = { page: { now: () => performance.now() / 1000 } };
   const module = await WebAssembly.compile(await unpacked(packed));
   const instance = await WebAssembly.instantiate(module, imports);
-  return new Compiled(instance.exports as unknown as Exports);
+  return new Core(instance.exports as unknown as Exports);
 }
 
-class Compiled implements Core {
-  constructor(private readonly exports: Exports) {}
+/** The core. What a call takes is put into rooms first; its reply is read afterwards. */
+export class Core {
+  /** The torque laws of the registry. */
+  readonly laws: readonly LawEntry[];
 
-  open(scene: string, { name = "scene.toml", files = new Map(), budget = BUDGET }: OpenOptions = {}): Motion {
+  constructor(readonly exports: Exports) {
+    this.checked(() => exports.law_registry());
+    this.laws = JSON.parse(this.text()) as LawEntry[];
+  }
+
+  /** Solves a scene. A Problem if the scene is wrong or takes longer than `budget` seconds. */
+  open(
+    scene: string,
+    {
+      name = "scene.toml",
+      files = new Map(),
+      budget = BUDGET,
+    }: Partial<{ name: string; files: Files; budget: number }> = {},
+  ): Motion {
     this.putScene(scene, name, files);
     const handle = this.checked(() => this.exports.open(budget));
     this.checked(() => this.exports.about_motion(handle));
-    return new Held(this, handle, JSON.parse(this.text()) as About);
+    return new Motion(this, handle, JSON.parse(this.text()) as About);
   }
 
+  /**
+   * A motion computed elsewhere, as rows of states, which are interpolated for display. `about` is an `About` as JSON
+   * text; the scene gives the surface of the body.
+   */
   recorded(about: string, rows: Float64Array, of?: { scene: string; name: string; files: Files }): Motion {
-    this.put(new Uint8Array(rows.buffer, rows.byteOffset, rows.byteLength));
+    this.put(rows);
     if (of) this.putScene(of.scene, of.name, of.files);
-    return new Held(
-      this,
-      this.checked(() => this.exports.record()),
-      JSON.parse(about) as About,
-    );
+    const handle = this.checked(() => this.exports.record());
+    return new Motion(this, handle, JSON.parse(about) as About);
   }
 
+  /**
+   * The scene with tables replaced by those of `change`, a TOML text. An empty table removes that of the scene; a dotted
+   * key such as `run.samples` replaces one field.
+   */
   merged(scene: string, change: string): string {
     this.putText(scene);
     this.putText(change);
@@ -58,20 +94,58 @@ class Compiled implements Core {
     return this.text();
   }
 
+  /** Evaluates lines of formulas, each with the names that earlier lines define. */
   evaluated(lines: string): Line[] {
     this.putText(lines);
     this.checked(() => this.exports.evaluate());
     return JSON.parse(this.text()) as Line[];
   }
 
-  /** Calls the core about a motion it holds; a Problem if it says so. */
-  ask(call: (exports: Exports) => number): void {
-    this.checked(() => call(this.exports));
+  /** The solid of a kind that fills a box of these side lengths, m. */
+  solid(kind: string, lengths: Triple): Solid {
+    this.putText(kind);
+    this.put(Float64Array.from(lengths));
+    this.checked(() => this.exports.solid());
+    return JSON.parse(this.text()) as Solid;
   }
 
-  put(bytes: Uint8Array): void {
-    const place = this.exports.room(bytes.length);
-    new Uint8Array(this.exports.memory.buffer, place, bytes.length).set(bytes);
+  /**
+   * The second moments ∫x_k² dm, kg m², of a body with these principal moments and this frame: along the body axes if
+   * they are principal axes, with a null frame, and along the principal axes otherwise.
+   */
+  secondMoments(moments: Triple, frame: Quadruple): { spread: Triple; frame: Quadruple | null } {
+    const [a, b, c, ...rest] = this.numbers(this.exports.second_moments, [...moments, ...frame]);
+    return { spread: [a!, b!, c!], frame: rest.length > 0 ? (rest as Quadruple) : null };
+  }
+
+  /** The inertia matrix in body axes of a body with second moments along axes, which a rotor takes to body axes. */
+  inertia(spread: Triple, frame: Quadruple): Triple[] {
+    const rows = this.numbers(this.exports.inertia, [...spread, ...frame]);
+    return [0, 3, 6].map((k) => rows.slice(k, k + 3) as Triple);
+  }
+
+  /** The angles of the rotor exp(−½ turn e1e2) exp(−½ tilt e2e3) exp(−½ roll e1e2), rad. */
+  attitude(rotor: Quadruple): { turn: number; tilt: number; roll: number } {
+    const [turn, tilt, roll] = this.numbers(this.exports.attitude, rotor) as Triple;
+    return { turn, tilt, roll };
+  }
+
+  /** The unit plane and the angle, from 0 to 2π, of a rotor. */
+  planeAngle(rotor: Quadruple): { plane: Triple; angle: number } {
+    const [x, y, z, angle] = this.numbers(this.exports.plane_angle, rotor) as Quadruple;
+    return { plane: [x, y, z], angle };
+  }
+
+  /** Calls an export that takes numbers and replies with numbers. */
+  private numbers(call: () => number, given: number[]): number[] {
+    this.put(Float64Array.from(given));
+    this.checked(call);
+    return Array.from(this.floats());
+  }
+
+  put({ buffer, byteOffset, byteLength }: Uint8Array | Float64Array): void {
+    const place = this.exports.room(byteLength);
+    new Uint8Array(this.exports.memory.buffer, place).set(new Uint8Array(buffer, byteOffset, byteLength));
   }
 
   putText(text: string): void {
@@ -87,10 +161,10 @@ class Compiled implements Core {
     }
   }
 
-  /** A copy of the answer. */
-  bytes(): Uint8Array<ArrayBuffer> {
+  /** A copy of the reply. */
+  bytes(): ArrayBuffer {
     const { memory, reply, reply_size } = this.exports;
-    return new Uint8Array(memory.buffer.slice(reply(), reply() + reply_size()));
+    return memory.buffer.slice(reply(), reply() + reply_size());
   }
 
   text(): string {
@@ -98,11 +172,11 @@ class Compiled implements Core {
   }
 
   floats(): Float64Array {
-    return new Float64Array(this.bytes().buffer);
+    return new Float64Array(this.bytes());
   }
 
-  /** The code of a call; a Problem where it says so, or where the core itself failed, after which it is not usable. */
-  private checked(call: () => number): number {
+  /** The return code of a call. A Problem if the call reports one, or if the core crashed and cannot be used again. */
+  checked(call: () => number): number {
     let code: number;
     try {
       code = call();
@@ -114,38 +188,61 @@ class Compiled implements Core {
   }
 }
 
-type OpenOptions = NonNullable<Parameters<Core["open"]>[1]>;
-
-class Held implements Motion {
+/** The motion of a scene, or a recorded one. */
+export class Motion {
   constructor(
-    private readonly core: Compiled,
+    private readonly core: Core,
     private readonly handle: number,
     readonly about: About,
   ) {}
 
+  /**
+   * Rows of states at times in any order; a Problem for times at which the motion is not known. Exact motions are known
+   * within `about.horizon` of the start, others for `about.duration` from the start on.
+   */
   states(times: ArrayLike<number>): Float64Array {
-    this.core.put(new Uint8Array(Float64Array.from(times).buffer));
-    this.core.ask((exports) => exports.states(this.handle));
+    this.core.put(Float64Array.from(times));
+    this.core.checked(() => this.core.exports.states(this.handle));
     return this.core.floats();
   }
 
-  surface(): { vertices: Float64Array; faces: Uint32Array } | null {
-    if (!this.about.body.mesh) return null;
-    this.core.ask((exports) => exports.surface_vertices(this.handle));
-    const vertices = this.core.floats();
-    this.core.ask((exports) => exports.surface_faces(this.handle));
-    return { vertices, faces: new Uint32Array(this.core.bytes().buffer) };
+  /**
+   * The surface of the body in body axes; where only its moments are known, that of an equivalent box, ball or spinning
+   * top. `arm` points from the fixed point to the centre of mass, m.
+   */
+  surface(arm: Triple): Surface {
+    this.putBody(arm);
+    const size = 3 * this.core.checked(() => this.core.exports.surface(this.handle));
+    const reply = this.core.bytes();
+    const rest = new Uint32Array(reply, 8 * size);
+    const faces = (3 * rest.length) / 4;
+    return {
+      vertices: new Float64Array(reply, 0, size),
+      faces: rest.subarray(0, faces),
+      tints: rest.subarray(faces),
+    };
   }
 
+  /** The side lengths of a box around the body, m. */
+  extents(): Triple {
+    this.putBody([0, 0, 0]);
+    this.core.checked(() => this.core.exports.extents(this.handle));
+    return Array.from(this.core.floats()) as Triple;
+  }
+
+  /** The first bodies of an ensemble: rotors (n × 4) at a time, body axes to space axes; n at most `count`. */
   bodies(time: number, count: number): Float64Array {
-    this.core.ask((exports) => exports.bodies(this.handle, time, count, BUDGET));
+    this.core.checked(() => this.core.exports.bodies(this.handle, time, count, BUDGET));
     return this.core.floats();
   }
 
   close(): void {
-    this.core.ask((exports) => {
-      exports.close(this.handle);
-      return 0;
-    });
+    this.core.exports.close(this.handle);
+  }
+
+  /** Where the surface of the body is not known, it follows from these. */
+  private putBody(arm: Triple): void {
+    const { mass, moments, frame } = this.about.body;
+    this.core.put(Float64Array.from([mass ?? 1, ...moments, ...frame, ...arm]));
   }
 }

@@ -1,10 +1,10 @@
 import { effect } from "@preact/signals";
 import type { Model } from "./model.ts";
 
-/** The longest step in s: a page that was hidden goes on where it was. */
+/** The longest step in s, so that a page that was hidden continues where it was. */
 const LONGEST = 0.1;
 
-/** Lets the model's time pass with the clock while it plays; returns what ends it. */
+/** Advances the model's time while it plays; returns the function that stops it. */
 export function runClock(model: Model): () => void {
   let frame = 0;
   let before = 0;

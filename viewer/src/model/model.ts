@@ -1,12 +1,13 @@
 import { batch, computed, signal } from "@preact/signals";
-import { type About, type Core, type Files, type Motion, Problem, ROW, State } from "../core/core.ts";
+import { type About, type Files, Problem, ROW, State } from "../core/core.ts";
+import type { Core, Motion } from "../core/wasm.ts";
 import type { CameraName, PageDocument, Shown, ViewState } from "../document.ts";
 import { unpacked } from "../packed.ts";
 
-/** How long a scene may be followed in the page before it gives up, in s. */
+/** Time limit for solving a scene in the page, in s. */
 const BUDGET = 8;
 
-/** What is drawn at first. */
+/** Default visibility. */
 export const SHOWN: Shown = {
   body: true,
   bodyFrame: true,
@@ -22,51 +23,51 @@ export const SHOWN: Shown = {
   labels: true,
 };
 
-/** What a scene is called, and the files that it names. */
+/** The name of a scene, and the files that it refers to. */
 interface Opened {
   name: string;
   files: Files;
 }
 
 /**
- * The state of the page. All that is shown follows from it: the stage and the panels read its signals, and change it
- * through its methods alone.
+ * The state of the page. Everything shown follows from it: the stage and the panels read its signals, and change it
+ * through its methods.
  */
 export class Model {
   readonly page = signal<"motion" | "algebra">("motion");
-  /** The scene in TOML; null where a recorded motion is shown. */
+  /** The scene in TOML; null for a recorded motion alone. */
   readonly scene = signal<string | null>(null);
   readonly motion = signal<Motion | null>(null);
-  /** A text of the scene that is being written, or that is wrong; null where the scene is what is written. */
+  /** An unfinished or invalid text of the scene; null if the text is the scene. */
   readonly draft = signal<string | null>(null);
-  /** What is wrong with the scene, or with a file that was opened, in words with places; the last motion stays. */
+  /** Errors of the scene, or of an opened file, with their places; the last motion stays. */
   readonly problem = signal<string | null>(null);
   readonly time = signal(0);
   readonly playing = signal(false);
-  /** Seconds of motion in a second of the clock. */
+  /** Seconds of motion per second. */
   readonly speed = signal(1);
   readonly camera = signal<CameraName>("oblique");
   readonly theme = signal<ViewState["theme"]>("auto");
   readonly shown = signal<Shown>(SHOWN);
-  /** The lines of the page of algebra. */
+  /** The lines of the algebra page. */
   readonly lines = signal("");
-  /** What the motion was when its scene was last written or chosen, not varied: sliders take their ranges from it. */
+  /** The motion when its scene was last opened; the sliders take their ranges from it. */
   readonly opened = signal<About | null>(null);
-  /** What to look at, in a sentence or two. */
+  /** Caption of the picture. */
   readonly caption = signal<string | null>(null);
-  /** How many times all was to be brought into view. */
+  /** Number of requests to fit the picture into view. */
   readonly fitted = signal(0);
 
   readonly about = computed<About | null>(() => this.motion.value?.about ?? null);
-  /** The row of the state at the time shown. */
+  /** The state at the time shown, a row of `State`. */
   readonly row = computed<Float64Array | null>(() => this.motion.value?.states([this.time.value]) ?? null);
 
   private name = "scene.toml";
   private files: Files = new Map();
-  /** The scene as it was given, and as it was last opened. */
+  /** The scene as given, and as last opened. */
   private original: string | null = null;
   private base: string | null = null;
-  /** What came with a scene that is wrong, for when it is right. */
+  /** Name and files of an invalid scene, for when it is corrected. */
   private pending: Opened | null = null;
 
   constructor(readonly core: Core) {}
@@ -93,7 +94,7 @@ export class Model {
     });
   }
 
-  /** Shows another scene, from its start. What is wrong with it is in `problem`, and then all else stays. */
+  /** Shows another scene from its start. If it is invalid, `problem` says why, and the last motion stays. */
   open(scene: string, options: Opened | null = this.pending): void {
     const { name, files } = options ?? { name: this.name, files: this.files };
     if (!this.follow(scene, name, files)) {
@@ -113,32 +114,32 @@ export class Model {
       this.base = scene;
       this.opened.value = this.about.value;
       this.time.value = this.about.value?.start.time ?? 0;
-      this.speed.value = usualSpeed(this.motion.value);
+      this.speed.value = defaultSpeed(this.motion.value);
     });
   }
 
-  /** Tries the scene again with files that it names. */
+  /** Opens the scene again with files that it refers to. */
   supply(files: Files): void {
     const { name, files: others } = this.pending ?? { name: this.name, files: this.files };
     const scene = this.draft.value ?? this.scene.value;
     const given = [...files.keys()].join(", ");
     if (scene === null || ![...files.keys()].some((file) => scene.includes(file))) {
       const of = scene === null ? "a recorded motion" : name;
-      this.problem.value = `${given}: ${of} does not name ${files.size > 1 ? "these files" : "this file"}`;
+      this.problem.value = `${given}: ${of} does not refer to ${files.size > 1 ? "these files" : "this file"}`;
       return;
     }
     this.open(scene, { name, files: new Map([...others, ...files]) });
     if (this.problem.value !== null) {
-      this.problem.value = `${given}: was added to ${name}, in which something is still wrong:\n${this.problem.value}`;
+      this.problem.value = `${given}: was added to ${name}, which is still invalid:\n${this.problem.value}`;
     }
   }
 
-  /** Shows the scene again as it was given. */
+  /** Shows the scene as it was given. */
   reset(): void {
     if (this.original !== null) this.open(this.original, null);
   }
 
-  /** Replaces tables and fields of the scene, as it was opened, by those of a TOML text; time goes on. */
+  /** Replaces tables and fields of the opened scene by those of a TOML text; the time does not change. */
   change(tables: string): void {
     if (this.base === null) return;
     try {
@@ -148,7 +149,7 @@ export class Model {
     }
   }
 
-  /** Goes to a time, or as near to it as the motion is known. */
+  /** Goes to a time, or the nearest one at which the motion is known. */
   seek(time: number): void {
     const about = this.about.value;
     if (!about || Number.isNaN(time)) return;
@@ -161,7 +162,7 @@ export class Model {
     this.seek(this.about.value?.start.time ?? 0);
   }
 
-  /** Lets `seconds` of the clock pass; a motion that is known up to its end starts again there. */
+  /** Advances by `seconds` of the clock; at its end a motion starts again. */
   tick(seconds: number): void {
     const about = this.about.value;
     if (!this.playing.value || !about) return;
@@ -170,7 +171,7 @@ export class Model {
     this.time.value = time > last ? first : time < first ? last : time;
   }
 
-  /** Takes over what is said of the view. */
+  /** Applies settings of the view. */
   look(view: Partial<ViewState>): void {
     batch(() => {
       if (view.shown) this.shown.value = { ...this.shown.value, ...view.shown };
@@ -182,12 +183,12 @@ export class Model {
     });
   }
 
-  /** Draws a thing, or no longer. */
+  /** Toggles the visibility of a part. */
   toggle(thing: keyof Shown): void {
     this.shown.value = { ...this.shown.value, [thing]: !this.shown.value[thing] };
   }
 
-  /** Brings all into view. */
+  /** Fits the picture into view. */
   fit(): void {
     this.fitted.value += 1;
   }
@@ -225,7 +226,7 @@ export class Model {
     this.draft.value = null;
     this.pending = null;
     this.time.value = rows[State.time] ?? 0;
-    this.speed.value = usualSpeed(motion);
+    this.speed.value = defaultSpeed(motion);
   }
 
   private become(motion: Motion, scene: string | null): void {
@@ -245,7 +246,7 @@ export function firstRow(motion: Motion): Float64Array {
   return motion.states([motion.about.start.time]);
 }
 
-/** The times for which a motion is known. */
+/** The first and last time at which a motion is known. */
 export function span(about: About): [number, number] {
   const start = about.start.time;
   if (!about.exact) return [start, start + about.duration];
@@ -254,10 +255,10 @@ export function span(about: About): [number, number] {
 }
 
 /**
- * The speed at which the body turns about once in three seconds, of the form 1, 2, 5 times a power of ten; up to three
- * times as fast where it would else take long to turn over.
+ * The default speed, 1, 2 or 5 times a power of ten: about one turn in three seconds, up to three times as fast for a
+ * body that takes long to flip.
  */
-function usualSpeed(motion: Motion | null): number {
+function defaultSpeed(motion: Motion | null): number {
   const row = motion && firstRow(motion);
   if (!motion || !row || row.length < ROW) return 1;
   const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
@@ -272,7 +273,7 @@ function floats(bytes: Uint8Array): Float64Array {
   return new Float64Array(bytes.buffer, bytes.byteOffset, Math.floor(bytes.byteLength / 8));
 }
 
-/** An error as people are told of it. */
+/** The message of an error. */
 export function words(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }

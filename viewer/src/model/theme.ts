@@ -2,7 +2,7 @@ import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { DARK, LIGHT, type Palette } from "../palette.ts";
 import type { Model } from "./model.ts";
 
-/** The colours that the model's theme asks for, which may be those of the machine; `dispose` stops to listen to it. */
+/** The palette of the model's theme, which may follow the system's; `dispose` stops following it. */
 export function paletteOf(model: Model): { palette: ReadonlySignal<Palette>; dispose: () => void } {
   const query = matchMedia("(prefers-color-scheme: dark)");
   const machine = signal(query.matches);
@@ -17,7 +17,7 @@ export function paletteOf(model: Model): { palette: ReadonlySignal<Palette>; dis
   return { palette, dispose: () => query.removeEventListener("change", listen) };
 }
 
-/** A palette as variables of CSS. */
+/** A palette as CSS variables. */
 export function variables(palette: Palette): [string, string][] {
   return [
     ["color-scheme", palette === DARK ? "dark" : "light"],

@@ -22,17 +22,17 @@ interface Props {
   model: Model;
   palette: ReadonlySignal<Palette>;
   compact: boolean;
-  /** Whether there is room beside the picture, so that panels may stand open. */
+  /** Whether panels fit beside the picture; they are then open by default. */
   wide: boolean;
 }
 
-/** Which panels stand open, of those that were opened or folded by hand. */
+/** Whether panels are open, for those that the user opened or folded. */
 type Folds = Map<string, boolean>;
 
-/** The page: a header, and the motion or the algebra below. */
+/** The page: the header, and the motion or the algebra below it. */
 export function App({ model, palette, compact, wide }: Props) {
   const dragged = useSignal(false);
-  // They stay as they are while the algebra is shown.
+  // Kept while the algebra is shown.
   const controls = useMemo(() => new Controls(model), [model]);
   useEffect(() => () => controls.dispose(), [controls]);
   const folds = useMemo<Folds>(() => new Map(), []);
@@ -69,43 +69,28 @@ export function App({ model, palette, compact, wide }: Props) {
 function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
   const { model, palette, compact, wide, controls, folds } = props;
   const known = model.about.value !== null;
+  const varied = !compact && controls.about.value !== null;
+  const panels: [shown: boolean, id: string, title: string, open: boolean, content: ComponentChildren][] = [
+    [known, "state", "State", !compact || wide, <Readout model={model} />],
+    [varied, "start", "Spin and attitude", wide, <StartPanel controls={controls} />],
+    [known, "motion", "Motion", wide && !compact, <Facts model={model} />],
+    [varied, "body", "Body", false, <BodyPanel controls={controls} />],
+    [varied, "laws", "Torques", false, <LawsPanel controls={controls} />],
+    [true, "view", "View", false, <ViewPanel model={model} />],
+    [!compact, "text", "Scene", !known, <Editor model={model} />],
+  ];
   return (
     <main class="motion">
       <Picture model={model} palette={palette} />
       <Playback model={model} />
-      <aside class="panels" aria-label="Read-outs and controls">
-        {known && (
-          <Panel id="state" title="State" open={!compact || wide} folds={folds}>
-            <Readout model={model} />
-          </Panel>
-        )}
-        {!compact && controls.about.value && (
-          <Panel id="start" title="Spin and attitude" open={wide} folds={folds}>
-            <StartPanel controls={controls} />
-          </Panel>
-        )}
-        {known && (
-          <Panel id="motion" title="Motion" open={wide && !compact} folds={folds}>
-            <Facts model={model} />
-          </Panel>
-        )}
-        {!compact && controls.about.value && (
-          <>
-            <Panel id="body" title="Body" open={false} folds={folds}>
-              <BodyPanel controls={controls} />
-            </Panel>
-            <Panel id="laws" title="Torques" open={false} folds={folds}>
-              <LawsPanel controls={controls} />
-            </Panel>
-          </>
-        )}
-        <Panel id="view" title="View" open={false} folds={folds}>
-          <ViewPanel model={model} />
-        </Panel>
-        {!compact && (
-          <Panel id="text" title="Scene" open={!known} folds={folds}>
-            <Editor model={model} />
-          </Panel>
+      <aside class="panels" aria-label="Values and controls">
+        {panels.map(
+          ([shown, id, title, open, content]) =>
+            shown && (
+              <Panel key={id} id={id} title={title} open={open} folds={folds}>
+                {content}
+              </Panel>
+            ),
         )}
       </aside>
       <Announcement model={model} />
@@ -121,7 +106,7 @@ function Panel(props: {
   children: ComponentChildren;
 }) {
   const { id, folds } = props;
-  // What is folded is not drawn: read-outs change with each frame.
+  // The content of a folded panel is not rendered, because values change in every frame.
   const open = useSignal(folds.get(id) ?? props.open);
   return (
     <details
@@ -140,7 +125,7 @@ function Panel(props: {
   );
 }
 
-/** Tells those who do not see the picture when the kind of motion changes. */
+/** Announces to screen readers when the regime changes. */
 function Announcement({ model }: { model: Model }) {
   const regime = useComputed(() => regimeOf(model.about.value));
   return (

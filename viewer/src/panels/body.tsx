@@ -1,53 +1,50 @@
 import type { Solid } from "../core/core.ts";
-import { type BodyChoice, reshaped, resized, SIZES, sizeOf, thin } from "../vary/body.ts";
+import { DENSITY, lengthUnit, massUnit, si } from "../format/units.ts";
+import { around, type Range } from "../inputs/range.ts";
+import { Select } from "../inputs/select.tsx";
+import { Slider } from "../inputs/slider.tsx";
+import { type BodyChoice, dimensions, isThin, reshaped, resized, sizeOf } from "../vary/body.ts";
 import type { Controls } from "../vary/controls.ts";
-import { around, type Range, Slider } from "./slider.tsx";
-import { DENSITY, lengthUnit, massUnit, si } from "./units.ts";
 
-/** Not the rod: a body without any thickness has no definite rate about its axis. */
-const FORMS: [BodyChoice["form"], string][] = [
+/** Without the rod, which has no moment about its axis and so no definite rate about it. */
+const FORMS: [form: string, label: string][] = [
+  ["masses", "Second moments"],
   ["box", "Box"],
   ["ellipsoid", "Ellipsoid"],
   ["cylinder", "Cylinder"],
-  ["disc", "Disc, thin"],
+  ["disc", "Thin disc"],
   ["cone", "Cone"],
   ["capsule", "Capsule"],
-  ["torus", "Ring"],
+  ["torus", "Torus"],
   ["sphere", "Sphere"],
   ["hollow_sphere", "Hollow sphere"],
 ];
+const AMOUNTS = [
+  ["mass", "mass"],
+  ["density", "density"],
+] as const;
 
-/** From cork to gold. */
+/** kg/m³, from cork to gold. */
 const DENSITIES: Range = { min: 100, max: 25_000, scale: "log" };
 
-/** What the body is. */
+/** Controls of the body. */
 export function BodyPanel({ controls }: { controls: Controls }) {
   const body = controls.body.value;
   const about = controls.about.value;
   if (!body || !about) return null;
   const { form, solid } = body;
+  const { core, motion } = controls.model;
   return (
     <>
-      <div class="row">
-        <label for="form">Form</label>
-        <select
-          id="form"
-          value={form}
-          disabled={!controls.free.value}
-          onChange={(event) =>
-            controls.setBody(reshaped(body, event.currentTarget.value as BodyChoice["form"]))
-          }
-        >
-          {!about.body.solid && <option value="scene">As in the scene</option>}
-          <option value="masses">Masses along the axes</option>
-          {FORMS.map(([name, label]) => (
-            <option value={name} key={name}>
-              {label}
-            </option>
-          ))}
-        </select>
-      </div>
-      {form === "masses" && <Masses body={body} controls={controls} />}
+      <Select
+        id="form"
+        label="Form"
+        value={form}
+        options={about.body.solid ? FORMS : [["scene", "As in the scene"], ...FORMS]}
+        disabled={!controls.free.value}
+        onChange={(form) => controls.setBody(reshaped(body, form, core, motion.value!))}
+      />
+      {form === "masses" && <SecondMoments body={body} controls={controls} />}
       {form !== "masses" && form !== "scene" && solid && (
         <Sizes body={body} solid={solid} controls={controls} />
       )}
@@ -59,7 +56,7 @@ function Sizes({ body, solid, controls }: { body: BodyChoice; solid: Solid; cont
   const first = body.first ?? solid;
   return (
     <>
-      {SIZES[solid.kind].map(([name, label]) => (
+      {dimensions(solid).map(([name, label]) => (
         <Slider
           key={name}
           id={`size-${name.replaceAll(/[._]/g, "-")}`}
@@ -78,21 +75,17 @@ function Sizes({ body, solid, controls }: { body: BodyChoice; solid: Solid; cont
 function Amount({ body, controls }: { body: BodyChoice; controls: Controls }) {
   const { kind, value } = body.amount;
   const mass = controls.about.value?.body.mass ?? 1;
-  const choose = (chosen: string): void =>
-    controls.setBody({
-      ...body,
-      amount: chosen === "mass" ? { kind: "mass", value: mass } : { kind: "density", value: 1000 },
-    });
+  const set = (amount: BodyChoice["amount"]) => controls.setBody({ ...body, amount });
   return (
     <>
-      {!thin(body.form) && (
-        <div class="row">
-          <label for="amount">Given by</label>
-          <select id="amount" value={kind} onChange={(event) => choose(event.currentTarget.value)}>
-            <option value="mass">mass</option>
-            <option value="density">density</option>
-          </select>
-        </div>
+      {!isThin(body.form) && (
+        <Select
+          id="amount"
+          label="Given by"
+          value={kind}
+          options={AMOUNTS}
+          onChange={(kind) => set({ kind, value: kind === "mass" ? mass : 1000 })}
+        />
       )}
       <Slider
         id={kind}
@@ -100,22 +93,22 @@ function Amount({ body, controls }: { body: BodyChoice; controls: Controls }) {
         value={value}
         range={kind === "mass" ? around(mass, 20) : DENSITIES}
         unit={kind === "mass" ? massUnit(mass) : DENSITY}
-        onChange={(value) => controls.setBody({ ...body, amount: { kind, value } })}
+        onChange={(value) => set({ kind, value })}
       />
     </>
   );
 }
 
-/** ∫x_k² dm along each axis: whatever they are, there is such a body. */
-function Masses({ body, controls }: { body: BodyChoice; controls: Controls }) {
+/** Sliders for ∫x_k² dm, each setting of which is a possible body. */
+function SecondMoments({ body, controls }: { body: BodyChoice; controls: Controls }) {
   const about = controls.about.value!;
   const largest = Math.max(...about.body.moments);
   const range: Range = { min: 0, max: 1.5 * largest, scale: "linear" };
   return (
     <>
       <p class="note">
-        How far the mass lies out along each axis: ∫x² dm. Each moment is the sum of the other two, i₁ = ∫x₂²
-        + x₃² dm, so that every setting is a body.
+        The second moment ∫x² dm along each axis. A moment of inertia is the sum of the two others, i₁ = ∫(x₂²
+        + x₃²) dm, so every setting is a possible body.
       </p>
       {body.spread.map((spread, k) => (
         <Slider
@@ -126,10 +119,7 @@ function Masses({ body, controls }: { body: BodyChoice; controls: Controls }) {
           range={range}
           unit={si("kg m²")}
           onChange={(value) =>
-            controls.setBody({
-              ...body,
-              spread: body.spread.map((other, j) => (j === k ? value : other)) as BodyChoice["spread"],
-            })
+            controls.setBody({ ...body, spread: body.spread.with(k, value) as BodyChoice["spread"] })
           }
         />
       ))}

@@ -1,7 +1,7 @@
 import { Component, type ComponentChildren } from "preact";
 import { words } from "../model/model.ts";
 
-/** What stands in it, or what went wrong as it was drawn: the page around it goes on. */
+/** Shows its children, or the error raised while they were rendered; the rest of the page keeps working. */
 export class Boundary extends Component<{ children: ComponentChildren }, { problem: string | null }> {
   override state = { problem: null };
 

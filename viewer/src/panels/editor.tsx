@@ -2,24 +2,20 @@ import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import type { Model } from "../model/model.ts";
 
-/** The text of the scene, to be changed by hand. */
+/** A text editor for the scene. */
 export function Editor({ model }: { model: Model }) {
   const copied = useSignal(false);
   const area = useRef<HTMLTextAreaElement>(null);
   const { draft } = model;
   const scene = draft.value ?? model.scene.value;
-  if (scene === null) return <p class="note">A recorded motion has no scene to edit here.</p>;
+  if (scene === null) return <p class="note">This recorded motion has no scene to edit.</p>;
   const apply = (): void => model.open(scene);
   const copy = async (): Promise<void> => {
     area.current?.select();
-    // Where a page may not reach the clipboard, what is selected can be copied by hand.
+    // Where the clipboard is not accessible, the selected text can be copied by hand.
     await navigator.clipboard?.writeText(area.current?.value ?? "").catch(() => undefined);
     copied.value = true;
     setTimeout(() => (copied.value = false), 1500);
-  };
-  const reset = (): void => {
-    draft.value = null;
-    model.reset();
   };
   const problem = model.problem.value;
   return (
@@ -59,7 +55,7 @@ export function Editor({ model }: { model: Model }) {
         <button id="copy" type="button" onClick={() => void copy()}>
           {copied.value ? "Copied" : "Copy"}
         </button>
-        <button id="reset" type="button" onClick={reset}>
+        <button id="reset" type="button" onClick={() => model.reset()}>
           Reset
         </button>
       </div>

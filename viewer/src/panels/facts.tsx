@@ -1,134 +1,121 @@
 import type { ComponentChildren } from "preact";
-import type { About, Triple } from "../core/core.ts";
+import type { About, LawEntry, Triple } from "../core/core.ts";
+import { significant, small } from "../format/numbers.ts";
+import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
-import { significant, small } from "./format.ts";
-import { DEGREE, duration } from "./units.ts";
 
-/** What is known of the motion as a whole: its kind, its times, and how far to trust it. */
+type Fact = [name: string, value: ComponentChildren];
+
+/** Properties of the whole motion: regime, laws, periods, and accuracy. */
 export function Facts({ model }: { model: Model }) {
   const about = model.about.value;
   if (!about) return null;
-  const { free } = about;
+  const { body, free, top } = about;
+  const facts: Fact[] = [
+    ...about.laws.map(({ name, text }): Fact => {
+      const shown = about.heavy && HEAVY.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
+      return [labelOf(name, model.core.laws), <code>{shown}</code>];
+    }),
+    ...(free ? freeFacts(free) : []),
+    ...(top ? topFacts(top) : []),
+    ["Moments", `${list(body.moments)} kg m²${about.held ? " about the fixed point" : ""}`],
+    ["Mass", body.mass !== null && `${significant(body.mass, 5)} kg`],
+    ["Bodies", about.ensemble?.toLocaleString("en")],
+    ["Method", methodOf(about)],
+  ];
+  const regime = regimeOf(about);
   return (
     <>
       <dl class="facts">
-        {free && (
-          <Fact name="Regime" id="regime">
-            {free.regime}
-            {free.period !== null && circled(about.body.moments, free.axis)}
-          </Fact>
+        {regime && (
+          <div class="fact">
+            <dt>Regime</dt>
+            <dd id="regime">
+              {regime}
+              {free && free.period !== null && circled(body.moments, free.axis)}
+            </dd>
+          </div>
         )}
-        {about.top && (
-          <Fact name="Regime" id="regime">
-            {about.top.regime}
-          </Fact>
+        {facts.map(
+          ([name, value], k) =>
+            value && (
+              <div class="fact" key={k}>
+                <dt>{name}</dt>
+                <dd>{value}</dd>
+              </div>
+            ),
         )}
-        {about.laws.map((law) => (
-          <Fact name={LAWS[law.name] ?? law.name} key={law.name}>
-            <code>
-              {about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : shortened(law.text)}
-            </code>
-          </Fact>
-        ))}
-        {free && <Times free={free} />}
-        {about.top && <Top top={about.top} />}
-        <Fact name="Moments">
-          <span class="digits">{about.body.moments.map((moment) => significant(moment, 5)).join(", ")}</span>{" "}
-          kg m²
-          {about.held && " about the fixed point"}
-        </Fact>
-        {about.body.mass !== null && <Fact name="Mass">{significant(about.body.mass, 5)} kg</Fact>}
-        {about.ensemble !== null && <Fact name="Bodies">{about.ensemble.toLocaleString("en")}</Fact>}
-        <Fact name="Method">{trust(about)}</Fact>
       </dl>
       <Conserved about={about} />
     </>
   );
 }
 
-/** The laws by the names of the scene, as people call them. */
-export const LAWS: Record<string, string> = {
-  gravity: "Gravity",
-  heavy: "Gravity",
-  damping: "Damping",
-  viscous_damping: "Viscous damping",
-  quadratic_damping: "Quadratic damping",
-  gravity_gradient: "Gravity gradient",
-  magnetic: "Magnetic dipole",
-  torsion_spring: "Torsion spring",
-  pd_control: "PD control",
-  gyrostat: "Wheel",
-  larmor: "Larmor",
-  constant_body: "Constant in the body",
-  constant_space: "Constant in space",
-  tabulated: "Table",
-  torque_body: "Torque, in the body",
-  torque_space: "Torque, in space",
-};
+/** The label of a law by its name in the scene; `registry` has those of the torque laws with arguments. */
+export function labelOf(name: string, registry: readonly LawEntry[]): string {
+  const others: Record<string, string> = {
+    gravity: "Gravity",
+    torque_body: "Torque, in the body",
+    torque_space: "Torque, in space",
+  };
+  return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
+}
 
 const HEAVY = new Set(["gravity", "heavy"]);
 
 /** The vector m g l, in N m. */
 function weight(heavy: Triple): string {
-  const parts = heavy.map((part) => significant(part, 5));
-  return `(${parts.join(", ")}) N m`;
+  return `(${list(heavy)}) N m`;
 }
 
-function Times({ free }: { free: NonNullable<About["free"]> }) {
-  return (
-    <>
-      {free.period !== null && <Fact name="Period of Ω">{duration(free.period, 7)}</Fact>}
-      {free.flip_time !== null && <Fact name="From flip to flip">{duration(free.flip_time, 7)}</Fact>}
-      {free.precession_period !== null && (
-        <Fact name="Precession">{duration(free.precession_period, 7)} for a turn about L</Fact>
-      )}
-      {free.modulus > 0 && <Fact name="Modulus k">{significant(free.modulus, 7)}</Fact>}
-    </>
-  );
+/** Periods of a free body. */
+function freeFacts({ period, flip_time, precession_period, modulus }: NonNullable<About["free"]>): Fact[] {
+  return [
+    ["Period of Ω", period !== null && duration(period, 7)],
+    ["Flip period", flip_time !== null && duration(flip_time, 7)],
+    ["Precession", precession_period !== null && `${duration(precession_period, 7)} per turn about L`],
+    ["Modulus k", modulus > 0 && significant(modulus, 7)],
+  ];
 }
 
-/** How a heavy top goes round, and whether it would sleep. */
-function Top({ top }: { top: NonNullable<About["top"]> }) {
-  const [least, most] = top.tilt.map((angle) => significant(angle / DEGREE.size, 5));
-  const turn = top.precession_rate && (2 * Math.PI) / Math.abs(top.precession_rate);
-  return (
-    <>
-      <Fact name="Tilt from up">{least === most ? `${least}°` : `${least}° to ${most}°`}</Fact>
-      {top.nutation_period !== null && (
-        <Fact name="Nutation">{duration(top.nutation_period, 7)} from low to low</Fact>
-      )}
-      {turn !== null && turn !== 0 && (
-        <Fact name="Precession">{duration(turn, 7)} for a turn about e₃, on average</Fact>
-      )}
-      <Fact name="Upright">
-        {top.sleeps ? "stable" : "not stable"} with this spin; it sleeps from{" "}
-        {significant(top.critical_spin, 5)} rad/s on
-      </Fact>
-    </>
-  );
+/** Nutation and precession of a heavy top, and whether it is stable upright. */
+function topFacts({ tilt, nutation_period, precession_rate, ...top }: NonNullable<About["top"]>): Fact[] {
+  const [least, most] = tilt.map((angle) => significant(angle / DEGREE.size, 5));
+  const turn = precession_rate && (2 * Math.PI) / Math.abs(precession_rate);
+  const stable = top.sleeps ? "stable" : "unstable";
+  return [
+    ["Tilt from vertical", least === most ? `${least}°` : `${least}° to ${most}°`],
+    ["Nutation period", nutation_period !== null && duration(nutation_period, 7)],
+    ["Precession", turn && `${duration(turn, 7)} per turn about e₃, on average`],
+    ["Upright", `${stable}; stable from a spin of ${significant(top.critical_spin, 5)} rad/s on`],
+  ];
 }
 
-/** What kind of motion it is, in words; empty where none has a name. */
+/** The regime of the motion in words; empty if it has no name. */
 export function regimeOf(about: About | null): string {
   return about?.free?.regime ?? about?.top?.regime ?? "";
 }
 
-/** Which axis Ω circles. */
+/** The principal axis that Ω circles. */
 function circled(moments: Triple, axis: 1 | 2 | 3): string {
   const which = moments[axis - 1] === Math.max(...moments) ? "largest" : "smallest";
-  return `: Ω circles axis ${axis}, that of the ${which} moment`;
+  return `: Ω circles axis ${axis}, which has the ${which} moment`;
 }
 
-/** The numbers of a law with some digits; a formula as it stands. */
+function list(numbers: readonly number[]): string {
+  return numbers.map((number) => significant(number, 5)).join(", ");
+}
+
+/** The arguments of a law, rounded; a formula is left as it is. */
 function shortened(text: string): string {
   if (/[^-+\d.e(), ]/.test(text)) return text;
   return text.replace(/\d[\d.]*(e[-+]?\d+)?/g, (number) => significant(Number(number), 5));
 }
 
-/** How the motion was found, and how far it may be off. */
-export function trust(about: About): string {
+/** The method and its error estimate in words. */
+export function methodOf(about: About): string {
   if (about.exact) return "exact, in closed form";
-  if (about.method === "recorded") return "recorded, interpolated for the picture";
+  if (about.method === "recorded") return "recorded, interpolated between rows";
   const steps = `${about.method}, ${about.steps.toLocaleString("en")} steps`;
   return about.error_estimate === null ? steps : `${steps}, error about ${small(about.error_estimate)}`;
 }
@@ -139,8 +126,8 @@ function Conserved({ about }: { about: About }) {
       <thead>
         <tr>
           <th scope="col">Conserved</th>
-          <th scope="col">value, SI</th>
-          <th scope="col">drift</th>
+          <th scope="col">Value, SI</th>
+          <th scope="col">Drift</th>
         </tr>
       </thead>
       <tbody>
@@ -158,14 +145,5 @@ function Conserved({ about }: { about: About }) {
         </tr>
       </tbody>
     </table>
-  );
-}
-
-function Fact({ name, id, children }: { name: string; id?: string; children: ComponentChildren }) {
-  return (
-    <div class="fact">
-      <dt>{name}</dt>
-      <dd {...(id ? { id } : {})}>{children}</dd>
-    </div>
   );
 }

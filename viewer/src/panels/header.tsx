@@ -1,13 +1,13 @@
 import { useRef } from "preact/hooks";
+import { IconButton } from "../inputs/button.tsx";
 import type { Model } from "../model/model.ts";
 import { openPreset, PRESETS } from "../presets/index.ts";
 import { Help } from "./help.tsx";
-import { Icon } from "./icons.tsx";
-import { OPENED, openFiles } from "./open.ts";
+import { ACCEPTED, openFiles } from "./open.ts";
 
 const PAGES = ["motion", "algebra"] as const;
 
-/** What is shown, what else there is, and help. */
+/** The title, the list of scenes, the tabs and help. */
 export function Header({ model, compact }: { model: Model; compact: boolean }) {
   const motion = model.page.value === "motion";
   return (
@@ -20,9 +20,9 @@ export function Header({ model, compact }: { model: Model; compact: boolean }) {
   );
 }
 
-/** One stop of the Tab key; arrows go from tab to tab. */
+/** The pages as tabs: the Tab key reaches one of them, the arrow keys change to the other. */
 function Tabs({ model }: { model: Model }) {
-  const turn = (event: KeyboardEvent): void => {
+  const changeTab = (event: KeyboardEvent): void => {
     if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
     event.preventDefault();
     model.page.value = model.page.value === "motion" ? "algebra" : "motion";
@@ -30,7 +30,7 @@ function Tabs({ model }: { model: Model }) {
     tabs[PAGES.indexOf(model.page.value)]?.focus();
   };
   return (
-    <div role="tablist" aria-label="Pages" class="tabs" onKeyDown={turn}>
+    <div role="tablist" aria-label="Pages" class="tabs" onKeyDown={changeTab}>
       {PAGES.map((page) => (
         <button
           key={page}
@@ -48,7 +48,7 @@ function Tabs({ model }: { model: Model }) {
   );
 }
 
-/** Scenes that the page knows, and those of this machine. */
+/** The presets, and a button that opens files. */
 function Scenes({ model }: { model: Model }) {
   const input = useRef<HTMLInputElement>(null);
   const chosen = PRESETS.find(({ caption }) => caption === model.caption.value);
@@ -76,22 +76,20 @@ function Scenes({ model }: { model: Model }) {
           </option>
         ))}
       </select>
-      <button
+      <IconButton
         id="open"
         class="quiet"
-        aria-label="Open a scene"
-        title="Open a scene"
+        label="Open a scene"
+        icon="open"
         onClick={() => input.current?.click()}
-      >
-        <Icon name="open" />
-      </button>
+      />
       <input
         id="file"
         ref={input}
         class="hidden"
         type="file"
         multiple
-        accept={OPENED}
+        accept={ACCEPTED}
         tabIndex={-1}
         aria-label="Scene and mesh files"
         onChange={(event) => {

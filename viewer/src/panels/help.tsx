@@ -1,8 +1,8 @@
 import { useRef } from "preact/hooks";
-import { Icon } from "./icons.tsx";
+import { Icon } from "../inputs/button.tsx";
 import { KEYS } from "./keys.ts";
 
-/** A button, and the keys that it tells. */
+/** A button that opens the list of keys. */
 export function Help() {
   const dialog = useRef<HTMLDialogElement>(null);
   return (
@@ -29,16 +29,14 @@ export function Help() {
           <dl class="keys">
             {KEYS.map(([keys, action]) => (
               <div key={keys}>
-                <dt>
-                  {keys.split(" ").map((key) => (/^[–]$/.test(key) ? " – " : <kbd key={key}>{key}</kbd>))}
-                </dt>
+                <dt>{keys.split(" ").map((key) => (key === "–" ? " – " : <kbd key={key}>{key}</kbd>))}</dt>
                 <dd>{action}</dd>
               </div>
             ))}
           </dl>
           <p class="note">
-            Drag to turn the picture, pinch or use the wheel to come nearer. Drop a scene (.toml) anywhere to
-            open it, along with the mesh that it names.
+            Drag to rotate the picture; pinch or scroll to zoom. Drop a scene (.toml) anywhere to open it,
+            together with the mesh that it names.
           </p>
           <button id="help-close" onClick={() => dialog.current?.close()}>
             <Icon name="close" /> Close

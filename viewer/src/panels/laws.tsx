@@ -1,29 +1,28 @@
+import { PLANES } from "../format/numbers.ts";
+import { Select } from "../inputs/select.tsx";
+import { Slider } from "../inputs/slider.tsx";
 import type { Controls } from "../vary/controls.ts";
-import { AXIS, key, type LawForm, type LawName, type LawsChoice, type Parameter } from "../vary/laws.ts";
-import { LAWS } from "./facts.tsx";
-import { Slider } from "./slider.tsx";
+import { AXIS, key, type LawForm, type LawsChoice, type Parameter } from "../vary/laws.ts";
+import { labelOf } from "./facts.tsx";
 
-const PLANES = ["e₂∧e₃", "e₃∧e₁", "e₁∧e₂"];
-
-/** What turns the body: as the scene says, or laws that add up. */
+/** Controls of the torques: those of the scene, or a sum of laws chosen here. */
 export function LawsPanel({ controls }: { controls: Controls }) {
   const about = controls.about.value;
   const choice = controls.laws.value;
   if (!about) return null;
-  const own = about.laws.map(({ name }) => LAWS[name] ?? name).join(", ") || "none";
+  const own = about.laws.map(({ name }) => labelOf(name, controls.model.core.laws)).join(", ") || "none";
   return (
     <>
-      <div class="row">
-        <label for="laws">Torques</label>
-        <select
-          id="laws"
-          value={choice.from}
-          onChange={(event) => controls.chooseLaws(event.currentTarget.value as LawsChoice["from"])}
-        >
-          <option value="scene">{`As in the scene: ${own}`}</option>
-          <option value="here">Chosen here</option>
-        </select>
-      </div>
+      <Select
+        id="laws"
+        label="Torques"
+        value={choice.from}
+        options={[
+          ["scene", `As in the scene: ${own}`],
+          ["here", "Chosen here"],
+        ]}
+        onChange={(from) => controls.chooseLaws(from)}
+      />
       {choice.from === "here" &&
         controls.forms.value.map((law) => (
           <Law key={law.name} law={law} choice={choice} controls={controls} />
@@ -35,7 +34,7 @@ export function LawsPanel({ controls }: { controls: Controls }) {
 function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; controls: Controls }) {
   const on = choice.on.has(law.name);
   const toggle = (): void => {
-    const names = new Set<LawName>(choice.on);
+    const names = new Set(choice.on);
     if (!names.delete(law.name)) names.add(law.name);
     controls.setLaws({ ...choice, on: names });
   };
@@ -49,39 +48,22 @@ function Law({ law, choice, controls }: { law: LawForm; choice: LawsChoice; cont
       </label>
       {on &&
         law.parameters.map((parameter) => {
-          const value = choice.values[key(law, parameter)] ?? parameter.value;
-          const id = `${law.name}-${parameter.name}`.replaceAll("_", "-");
+          const common = {
+            id: `${law.name}-${parameter.name}`.replaceAll("_", "-"),
+            value: choice.values[key(law, parameter)] ?? parameter.value,
+            onChange: (value: number) => set(parameter, value),
+          };
           return parameter.name === AXIS ? (
-            <PlaneChoice key={id} id={id} value={value} onChange={(axis) => set(parameter, axis)} />
-          ) : (
-            <Slider
-              key={id}
-              id={id}
-              {...parameter}
-              value={value}
-              onChange={(value) => set(parameter, value)}
+            <Select
+              key={common.id}
+              label="Plane"
+              options={PLANES.map((plane, k) => [k, plane])}
+              {...common}
             />
+          ) : (
+            <Slider key={common.id} {...parameter} {...common} />
           );
         })}
-    </div>
-  );
-}
-
-function PlaneChoice(props: { id: string; value: number; onChange: (axis: number) => void }) {
-  return (
-    <div class="row">
-      <label for={props.id}>Plane</label>
-      <select
-        id={props.id}
-        value={props.value}
-        onChange={(event) => props.onChange(Number(event.currentTarget.value))}
-      >
-        {PLANES.map((plane, k) => (
-          <option value={k} key={plane}>
-            {plane}
-          </option>
-        ))}
-      </select>
     </div>
   );
 }

@@ -1,33 +1,32 @@
 import { parsed } from "../document.ts";
 import { type Model, words } from "../model/model.ts";
 
-/** What a scene may come with. */
-export const OPENED = ".toml,.json,.stl,.obj,.ply";
+/** Suffixes of the files that the page opens. */
+export const ACCEPTED = ".toml,.json,.stl,.obj,.ply";
 
 /**
- * Opens files of this machine: a scene with the meshes that it names, meshes that the scene on hand was missing, or a
- * document of the page. What is wrong with a file is said with its name.
+ * Opens local files: a scene with the meshes that it names, meshes that the current scene lacks, or a document of the
+ * page. Errors name the file.
  */
 export async function openFiles(model: Model, files: readonly File[]): Promise<void> {
-  const ends = (file: File, ends: string) =>
-    ends.split(",").some((end) => file.name.toLowerCase().endsWith(end));
-  const scenes = files.filter((file) => ends(file, ".toml,.json"));
+  const hasSuffix = (file: File, suffixes: string) =>
+    suffixes.split(",").some((suffix) => file.name.toLowerCase().endsWith(suffix));
+  const scenes = files.filter((file) => hasSuffix(file, ".toml,.json"));
   const named = (some: readonly File[]) => some.map((file) => file.name).join(", ");
-  const strange = files.filter((file) => !ends(file, OPENED));
+  const unknown = files.filter((file) => !hasSuffix(file, ACCEPTED));
   try {
     if (scenes.length > 1) {
-      throw new Error(`${named(scenes)}: the page shows one scene at a time; open one of these`);
+      throw new Error(`${named(scenes)}: the page shows one scene at a time; open one of these files`);
     }
     const [scene] = scenes;
-    if (!scene && strange.length > 0) {
-      const recorded = strange.some((file) => ends(file, ".nc"))
-        ? "; `polhode view` shows a netCDF file"
-        : "";
+    if (!scene && unknown.length > 0) {
+      const netcdf = unknown.some((file) => hasSuffix(file, ".nc"));
+      const hint = netcdf ? "; `polhode view` shows netCDF files" : "";
       throw new Error(
-        `${named(strange)}: the page opens scenes (.toml), documents (.json) and meshes (.stl, .obj, .ply)${recorded}`,
+        `${named(unknown)}: the page opens scenes (.toml), documents (.json) and meshes (.stl, .obj, .ply)${hint}`,
       );
     }
-    const meshes = files.filter((file) => file !== scene && !strange.includes(file));
+    const meshes = files.filter((file) => file !== scene && !unknown.includes(file));
     const contents = meshes.map(async (file) => [file.name, new Uint8Array(await bytes(file))] as const);
     const others = new Map(await Promise.all(contents));
     if (!scene) {
@@ -35,7 +34,7 @@ export async function openFiles(model: Model, files: readonly File[]): Promise<v
       return;
     }
     const text = new TextDecoder().decode(await bytes(scene));
-    if (ends(scene, ".json")) {
+    if (hasSuffix(scene, ".json")) {
       await model.show(parsed(text, scene.name));
     } else {
       model.page.value = "motion";

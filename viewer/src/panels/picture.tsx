@@ -1,13 +1,13 @@
 import { effect, type ReadonlySignal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { State } from "../core/core.ts";
+import { typed } from "../format/numbers.ts";
 import { runClock } from "../model/clock.ts";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
-import { NoWebGL, Stage } from "../stage/stage.ts";
-import { typed } from "./format.ts";
+import { Stage } from "../stage/stage.ts";
 
-/** The picture, with what to look at and what is wrong. */
+/** The picture, its caption, and error messages. */
 export function Picture({ model, palette }: { model: Model; palette: ReadonlySignal<Palette> }) {
   const place = useRef<HTMLDivElement>(null);
   const missing = useSignal<string | null>(null);
@@ -15,19 +15,16 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
     try {
       const stage = new Stage(place.current!, model, palette);
       const before = model.fitted.peek();
-      const forget = effect(() => {
+      const unsubscribe = effect(() => {
         if (model.fitted.value > before) stage.fit();
       });
       return () => {
-        forget();
+        unsubscribe();
         stage.dispose();
       };
     } catch (error) {
-      missing.value =
-        error instanceof NoWebGL
-          ? "This browser draws no 3-d pictures (WebGL 2 is missing or switched off). All numbers are there."
-          : words(error);
-      // The stage lets time pass; now nobody else does.
+      missing.value = words(error);
+      // Without a stage, which advances the time, a clock does.
       return runClock(model);
     }
   }, [model, palette]);
@@ -37,15 +34,15 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
         <div class="stage" ref={place} />
         {missing.value !== null && <p class="missing">{missing.value}</p>}
         <Strobe model={model} />
-        <Trouble model={model} />
+        <ErrorMessage model={model} />
       </div>
       {model.caption.value !== null && <p class="caption">{model.caption.value}</p>}
     </section>
   );
 }
 
-/** What is wrong with the scene, or with a file; the picture stays that of the last motion. */
-function Trouble({ model }: { model: Model }) {
+/** An error in the scene or in a file; the picture still shows the last motion. */
+function ErrorMessage({ model }: { model: Model }) {
   const problem = model.problem.value;
   if (problem === null) return null;
   return (
@@ -65,22 +62,22 @@ function Trouble({ model }: { model: Model }) {
   );
 }
 
-/** Pictures in a second of the clock, as most screens show them. */
-const PICTURES = 60;
+/** Frames per second of most screens. */
+const FRAME_RATE = 60;
 
-/** Says while time passes that the body turns too far from one picture to the next to be followed by eye. */
+/** Warns during playback if the body turns so far per frame that its rotation cannot be seen. */
 function Strobe({ model }: { model: Model }) {
   const row = model.row.value;
   if (!row || !model.playing.value) return null;
   const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
-  const faithful = (Math.PI / 2) * (PICTURES / rate);
+  const faithful = (Math.PI / 2) * (FRAME_RATE / rate);
   if (!(Math.abs(model.speed.value) > faithful)) return null;
   // One digit, rounded down.
   const power = 10 ** Math.floor(Math.log10(faithful));
   const most = typed(Math.floor(faithful / power) * power, 1);
   return (
     <p class="strobe" id="strobe">
-      Stroboscopic: more than a quarter turn from picture to picture. Faithful up to {most}×.
+      Stroboscopic: more than a quarter turn per frame. Faithful up to {most}×.
     </p>
   );
 }

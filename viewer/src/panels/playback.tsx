@@ -1,12 +1,18 @@
 import { useRef } from "preact/hooks";
 import type { About } from "../core/core.ts";
+import { typed } from "../format/numbers.ts";
+import { duration, timeUnit } from "../format/units.ts";
+import { IconButton, type IconName } from "../inputs/button.tsx";
+import { NumberField } from "../inputs/number.tsx";
 import { type Model, span } from "../model/model.ts";
-import { typed } from "./format.ts";
-import { Icon } from "./icons.tsx";
-import { faster, step } from "./keys.ts";
-import { trust } from "./facts.tsx";
-import { NumberField } from "./number.tsx";
-import { duration, timeUnit } from "./units.ts";
+import { methodOf } from "./facts.tsx";
+import { changeSpeed, step } from "./keys.ts";
+
+const STEPS: [id: string, label: string, press: string, icon: IconName, act: (model: Model) => void][] = [
+  ["restart", "To the start", "Home", "restart", (model) => model.toStart()],
+  ["step-back", "Step back", "←", "back", (model) => step(model, -1)],
+  ["step", "Step forward", "→", "forward", (model) => step(model, 1)],
+];
 
 /** Play, step, speed and time. */
 export function Playback({ model }: { model: Model }) {
@@ -16,44 +22,29 @@ export function Playback({ model }: { model: Model }) {
   return (
     <section class="playback" aria-label="Playback">
       <div class="line">
-        <button
+        <IconButton
           id="play"
           class="primary"
-          aria-label={playing ? "Pause" : "Play"}
-          title={`${playing ? "Pause" : "Play"} (Space)`}
+          label={playing ? "Pause" : "Play"}
+          press="Space"
+          icon={playing ? "pause" : "play"}
           onClick={() => (model.playing.value = !playing)}
-        >
-          <Icon name={playing ? "pause" : "play"} />
-        </button>
+        />
         <div class="buttons">
-          <button
-            id="restart"
-            aria-label="To the start"
-            title="To the start (Home)"
-            onClick={() => model.toStart()}
-          >
-            <Icon name="restart" />
-          </button>
-          <button id="step-back" aria-label="Step back" title="Step back (←)" onClick={() => step(model, -1)}>
-            <Icon name="back" />
-          </button>
-          <button id="step" aria-label="Step forward" title="Step forward (→)" onClick={() => step(model, 1)}>
-            <Icon name="forward" />
-          </button>
+          {STEPS.map(([id, label, press, icon, act]) => (
+            <IconButton key={id} id={id} label={label} press={press} icon={icon} onClick={() => act(model)} />
+          ))}
         </div>
         <TimeSlider model={model} about={about} />
         <TimeField model={model} about={about} />
-        <Trust about={about} />
+        <MethodBadge about={about} />
         <Speed model={model} />
       </div>
     </section>
   );
 }
 
-/**
- * A slider over one duration. A motion that is known beyond it turns the page: the slider then covers the next
- * duration, or any other that has the time.
- */
+/** A slider over one duration. Beyond the end of a motion that is known there, it covers the next duration. */
 function TimeSlider({ model, about }: { model: Model; about: About }) {
   const start = about.start.time;
   const first = useRef(start);
@@ -79,10 +70,10 @@ function TimeSlider({ model, about }: { model: Model; about: About }) {
 
 function TimeField({ model, about }: { model: Model; about: About }) {
   const unit = timeUnit(about.duration);
-  // Some thousand different times in a duration, each a decimal number.
+  // Enough decimals for several thousand different times in a duration.
   const decimals = Math.min(Math.max(0, 4 - Math.ceil(Math.log10(about.duration / unit.size / 1.6))), 20);
   const shown = typed(Number((model.time.value / unit.size).toFixed(decimals)), 15);
-  // Room for all times of a duration, so that nothing moves while time passes.
+  // Wide enough for all times of a duration, so that nothing moves during playback.
   const width = Math.max(4, (about.duration / unit.size).toFixed(decimals).length, shown.length);
   const [first, last] = span(about);
   const known = last < Number.MAX_VALUE ? `Known from ${duration(first)} to ${duration(last)}` : undefined;
@@ -104,11 +95,11 @@ function TimeField({ model, about }: { model: Model; about: About }) {
   );
 }
 
-/** Whether what is seen is exact. */
-function Trust({ about }: { about: About }) {
+/** Whether the motion is exact, stepped or recorded. */
+function MethodBadge({ about }: { about: About }) {
   return (
-    <span class={about.exact ? "badge exact" : "badge"} title={trust(about)} id="method">
-      {about.exact ? "exact" : about.method === "recorded" ? "recorded" : "in steps"}
+    <span class={about.exact ? "badge exact" : "badge"} title={methodOf(about)} id="method">
+      {about.exact ? "exact" : about.method === "recorded" ? "recorded" : "stepped"}
     </span>
   );
 }
@@ -118,15 +109,11 @@ function Speed({ model }: { model: Model }) {
   const shown = speed < 200 ? `${typed(speed, 3)}×` : `${duration(speed, 3, timeUnit(2 * speed))}/s`;
   return (
     <div class="field speed" role="group" aria-label="Speed">
-      <button id="slower" aria-label="Slower" title="Slower ([)" onClick={() => faster(model, -1)}>
-        <Icon name="minus" />
-      </button>
-      <output id="speed" title="Motion per second of the clock">
+      <IconButton id="slower" label="Slower" press="[" icon="minus" onClick={() => changeSpeed(model, -1)} />
+      <output id="speed" title="Seconds of motion per second of real time">
         {shown}
       </output>
-      <button id="faster" aria-label="Faster" title="Faster (])" onClick={() => faster(model, 1)}>
-        <Icon name="plus" />
-      </button>
+      <IconButton id="faster" label="Faster" press="]" icon="plus" onClick={() => changeSpeed(model, 1)} />
     </div>
   );
 }

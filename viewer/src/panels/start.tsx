@@ -1,30 +1,69 @@
+import { PLANES } from "../format/numbers.ts";
+import { DEGREE, rateUnit, timeUnit } from "../format/units.ts";
+import { around, type Range } from "../inputs/range.ts";
+import { Select } from "../inputs/select.tsx";
+import { Slider } from "../inputs/slider.tsx";
 import type { Controls } from "../vary/controls.ts";
-import { type Attitude, attitudeOf, type Spin } from "../vary/start.ts";
-import { around, type Range, Slider } from "./slider.tsx";
-import { DEGREE, rateUnit, timeUnit } from "./units.ts";
+import type { Attitude, Spin } from "../vary/start.ts";
 
-const PLANES = ["e₂∧e₃", "e₃∧e₁", "e₁∧e₂"];
 const CIRCLE: Range = { min: -Math.PI, max: Math.PI, scale: "linear" };
 const HALF: Range = { min: 0, max: Math.PI, scale: "linear" };
-/** From a thousandth of a degree, for what a small push comes to, to ninety. */
+/** From a thousandth of a degree, a small perturbation, to ninety degrees. */
 const OFF: Range = { min: DEGREE.size / 1000, max: Math.PI / 2, scale: "log", zero: true };
+const SENSES = ["", "−"].flatMap((sign, sense) =>
+  PLANES.map((plane, k) => [k + 3 * sense, `${sign}${plane}, about ${sign}e${"₁₂₃"[k]}`] as const),
+);
 
-/** How the motion starts and how long it is followed. */
+/** Controls of the initial state and of the duration. */
 export function StartPanel({ controls }: { controls: Controls }) {
   const start = controls.start.value;
   const about = controls.about.value;
   if (!start || !about) return null;
+  const { spin, rotor } = start;
+  const usual = Math.hypot(...about.start.omega_body) || (2 * Math.PI) / about.duration;
+  const attitude = start.attitude ?? controls.model.core.attitude(rotor);
+  const spinAngle = (name: keyof Spin, label: string, range: Range) => (
+    <Slider
+      id={name}
+      label={label}
+      value={spin[name]}
+      range={range}
+      unit={DEGREE}
+      onChange={(value) => controls.setStart({ ...start, spin: { ...spin, [name]: value } })}
+    />
+  );
+  const attitudeAngle = (name: keyof Attitude, label: string, range: Range) => (
+    <Slider
+      id={name}
+      label={label}
+      value={attitude[name]}
+      range={range}
+      unit={DEGREE}
+      onChange={(value) => controls.setStart({ ...start, attitude: { ...attitude, [name]: value } })}
+    />
+  );
   return (
     <>
-      <SpinControls
-        spin={start.spin}
-        usual={Math.hypot(...about.start.omega_body) || (2 * Math.PI) / about.duration}
-        onChange={(spin) => controls.setStart({ ...start, spin })}
+      <Select
+        id="plane"
+        label="Spin plane"
+        value={spin.plane}
+        options={SENSES}
+        onChange={(plane) => controls.setStart({ ...start, spin: { ...spin, plane } })}
       />
-      <AttitudeControls
-        attitude={start.attitude ?? attitudeOf(start.rotor)}
-        onChange={(attitude) => controls.setStart({ ...start, attitude })}
+      <Slider
+        id="rate"
+        label="Rate"
+        value={spin.rate}
+        range={{ min: usual / 100, max: usual * 10, scale: "log", zero: true }}
+        unit={rateUnit(usual)}
+        onChange={(rate) => controls.setStart({ ...start, spin: { ...spin, rate } })}
       />
+      {spinAngle("off", "Off-axis angle", OFF)}
+      {spinAngle("toward", "Off-axis direction", CIRCLE)}
+      {attitudeAngle("tilt", "Tilt of f₃ from e₃", HALF)}
+      {attitudeAngle("turn", "Turn about e₃", CIRCLE)}
+      {attitudeAngle("roll", "Roll about f₃", CIRCLE)}
       <Slider
         id="duration"
         label="Duration"
@@ -33,76 +72,6 @@ export function StartPanel({ controls }: { controls: Controls }) {
         unit={timeUnit(about.duration)}
         onChange={(duration) => controls.setDuration(duration)}
       />
-    </>
-  );
-}
-
-function SpinControls(props: { spin: Spin; usual: number; onChange: (spin: Spin) => void }) {
-  const { spin, usual, onChange } = props;
-  return (
-    <>
-      <div class="row">
-        <label for="plane">Spin in</label>
-        <select
-          id="plane"
-          value={spin.plane}
-          onChange={(event) => onChange({ ...spin, plane: Number(event.currentTarget.value) })}
-        >
-          {["", "−"].flatMap((sign, sense) =>
-            PLANES.map((plane, k) => (
-              <option value={k + 3 * sense} key={k + 3 * sense}>
-                {`${sign}${plane}, about ${sign}e${"₁₂₃"[k]}`}
-              </option>
-            )),
-          )}
-        </select>
-      </div>
-      <Slider
-        id="rate"
-        label="Rate"
-        value={spin.rate}
-        range={{ min: usual / 100, max: usual * 10, scale: "log", zero: true }}
-        unit={rateUnit(usual)}
-        onChange={(rate) => onChange({ ...spin, rate })}
-      />
-      <Slider
-        id="off"
-        label="Off that axis by"
-        value={spin.off}
-        range={OFF}
-        unit={DEGREE}
-        onChange={(off) => onChange({ ...spin, off })}
-      />
-      <Slider
-        id="toward"
-        label="In the direction"
-        value={spin.toward}
-        range={CIRCLE}
-        unit={DEGREE}
-        onChange={(toward) => onChange({ ...spin, toward })}
-      />
-    </>
-  );
-}
-
-/** The rotor of the start by three angles. */
-function AttitudeControls(props: { attitude: Attitude; onChange: (attitude: Attitude) => void }) {
-  const { attitude, onChange } = props;
-  const angle = (name: keyof Attitude, label: string, range: Range) => (
-    <Slider
-      id={name}
-      label={label}
-      value={attitude[name]}
-      range={range}
-      unit={DEGREE}
-      onChange={(value) => onChange({ ...attitude, [name]: value })}
-    />
-  );
-  return (
-    <>
-      {angle("tilt", "Tilt of f₃ from e₃", HALF)}
-      {angle("turn", "Turned about e₃", CIRCLE)}
-      {angle("roll", "Rolled about f₃", CIRCLE)}
     </>
   );
 }

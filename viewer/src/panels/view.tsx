@@ -1,4 +1,5 @@
 import { CAMERAS, type Shown, type ViewState } from "../document.ts";
+import { Select } from "../inputs/select.tsx";
 import type { Model } from "../model/model.ts";
 
 const THINGS: [keyof Shown, string][] = [
@@ -6,9 +7,9 @@ const THINGS: [keyof Shown, string][] = [
   ["labels", "Labels"],
   ["bodyFrame", "Body axes f₁ f₂ f₃"],
   ["spaceFrame", "Space axes e₁ e₂ e₃"],
-  ["omega", "Ω, as a disc"],
-  ["momentum", "L, as a disc"],
-  ["axial", "Axial vectors, as arrows"],
+  ["omega", "Ω as a disc"],
+  ["momentum", "L as a disc"],
+  ["axial", "Axial vectors as arrows"],
   ["trace", "Path of an axis"],
   ["polhode", "Polhode"],
   ["herpolhode", "Herpolhode"],
@@ -17,18 +18,18 @@ const THINGS: [keyof Shown, string][] = [
 ];
 
 const THEMES: [ViewState["theme"], string][] = [
-  ["auto", "As the machine"],
+  ["auto", "Same as the system"],
   ["light", "Light"],
   ["dark", "Dark"],
 ];
 
-/** What is drawn, from where, in which colours. */
+/** What is drawn, the camera and the colours. */
 export function ViewPanel({ model }: { model: Model }) {
   const shown = model.shown.value;
   return (
     <>
       <fieldset class="checks">
-        <legend>Shown</legend>
+        <legend>Show</legend>
         {THINGS.map(([thing, label]) => (
           <label class="check" key={thing}>
             <input
@@ -41,37 +42,24 @@ export function ViewPanel({ model }: { model: Model }) {
           </label>
         ))}
       </fieldset>
-      <div class="row">
-        <label for="camera">Camera</label>
-        <select
-          id="camera"
-          value={model.camera.value}
-          onChange={(event) => model.look({ camera: event.currentTarget.value as ViewState["camera"] })}
-        >
-          {CAMERAS.map((camera, k) => (
-            <option value={camera} key={camera}>
-              {`${k + 1}  ${camera}`}
-            </option>
-          ))}
-        </select>
-        <button id="fit" title="Fit all into the picture (F)" onClick={() => model.fit()}>
+      <Select
+        id="camera"
+        label="Camera"
+        value={model.camera.value}
+        options={CAMERAS.map((camera, k) => [camera, `${k + 1}  ${camera}`])}
+        onChange={(camera) => model.look({ camera })}
+      >
+        <button id="fit" title="Fit everything into the picture (F)" onClick={() => model.fit()}>
           Fit
         </button>
-      </div>
-      <div class="row">
-        <label for="theme">Colours</label>
-        <select
-          id="theme"
-          value={model.theme.value}
-          onChange={(event) => model.look({ theme: event.currentTarget.value as ViewState["theme"] })}
-        >
-          {THEMES.map(([theme, label]) => (
-            <option value={theme} key={theme}>
-              {label}
-            </option>
-          ))}
-        </select>
-      </div>
+      </Select>
+      <Select
+        id="theme"
+        label="Colours"
+        value={model.theme.value}
+        options={THEMES}
+        onChange={(theme) => model.look({ theme })}
+      />
     </>
   );
 }

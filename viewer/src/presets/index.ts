@@ -14,20 +14,19 @@ import racket from "./racket.toml?raw";
 import sleeping from "./sleeping.toml?raw";
 import waves from "./waves.toml?raw";
 
-/** A scene that the page knows, and how to look at it. */
+/** A built-in scene with its view and caption. */
 export interface Preset {
-  /** The name of its file. */
+  /** File name. */
   name: string;
   title: string;
   scene: string;
   /** Files that the scene names, in base64. */
   files?: Record<string, string>;
   view: Partial<ViewState>;
-  /** What to look at. */
   caption: string;
 }
 
-/** What the axis of a top draws. */
+/** The view of a top: the path of its axis, without the polhode. */
 const TOP: Partial<ViewState> = {
   speed: 0.5,
   shown: { gravity: true, trace: true, polhode: false, omega: false, momentum: true },
@@ -41,17 +40,17 @@ export const PRESETS: Preset[] = [
     files: { "t-handle.stl": handleMesh },
     view: { speed: 0.2, shown: { polhode: true, trace: true, omega: true, momentum: true } },
     caption:
-      "Spun about the axis of its middle moment, the handle turns over, again and again. L stays where it is; on the " +
-      "body, Ω leaves one end of the axis and arrives at the other along the polhode.",
+      "The handle spins about its intermediate axis and flips again and again. L is constant in space; in the body, Ω moves " +
+      "along the polhode from one end of the axis to the other.",
   },
   {
     name: "racket.toml",
-    title: "The tennis racket: a book",
+    title: "Tennis-racket theorem: a book",
     scene: racket,
     view: { speed: 0.5, shown: { polhode: true, trace: true, omega: true, momentum: true } },
     caption:
-      "About its longest or its shortest side a book spins steadily; about the middle one it turns over, however small " +
-      "the push off that axis. Choose where it spins under “Spin in”, and how far off by the slider.",
+      "A book spins steadily about its longest or its shortest side; about the middle one it flips, however small the " +
+      "perturbation. Choose the axis under “Spin plane” and the perturbation by “Off-axis angle”.",
   },
   {
     name: "poinsot.toml",
@@ -69,8 +68,8 @@ export const PRESETS: Preset[] = [
       },
     },
     caption:
-      "The ellipsoid of inertia rolls on a plane that never moves, at right angles to the axis of L. It touches where Ω is: " +
-      "the point draws the polhode on the body and the herpolhode on the plane.",
+      "The inertia ellipsoid rolls on a fixed plane perpendicular to the axis of L. The point of contact is the tip of Ω; it " +
+      "traces the polhode on the body and the herpolhode on the plane.",
   },
   {
     name: "free-top.toml",
@@ -78,8 +77,8 @@ export const PRESETS: Preset[] = [
     scene: symmetric,
     view: { speed: 0.1, shown: { polhode: true, herpolhode: true, omega: true, momentum: true } },
     caption:
-      "Two steady turns, one on either side of the rotor: R(t) = exp(−½Ωₗ t) R(0) exp(−½Ωᵣ t), handout eq. (4.35). " +
-      "The axis goes round L while the body turns about the axis.",
+      "The motion is a product of two steady rotations: R(t) = exp(−½Ωₗ t) R(0) exp(−½Ωᵣ t), handout eq. (4.35). The axis " +
+      "precesses about L while the body rotates about its axis.",
   },
   {
     name: "nutating-top.toml",
@@ -87,8 +86,8 @@ export const PRESETS: Preset[] = [
     scene: loops,
     view: TOP,
     caption:
-      "Let go with its axis moving backward, a heavy top draws loops. Put its spin less and less off the axis, and the " +
-      "loops close to cusps; turn the direction of that push to 90°, and they open to waves.",
+      "A heavy top that starts with its axis moving backward draws loops. Reduce “Off-axis angle”, and the loops become " +
+      "cusps; set “Off-axis direction” to 90°, and they become waves.",
   },
   {
     name: "cusps.toml",
@@ -96,14 +95,14 @@ export const PRESETS: Preset[] = [
     scene: cusps,
     view: TOP,
     caption:
-      "Let go at rest but for its spin, the axis falls, is led aside, rises, and stands still for a moment.",
+      "The top starts with spin alone. Its axis falls, is deflected sideways, rises, and stops for a moment.",
   },
   {
     name: "waves.toml",
     title: "Heavy top: waves",
     scene: waves,
     view: TOP,
-    caption: "Pushed forward a little as it is let go, the axis never stops: it goes round in waves.",
+    caption: "A top that starts with a small forward push never stops: its axis precesses in waves.",
   },
   {
     name: "sleeping.toml",
@@ -111,8 +110,8 @@ export const PRESETS: Preset[] = [
     scene: sleeping,
     view: { ...TOP, speed: 1 },
     caption:
-      "Faster than 2 √(m g l i₁)/i₃ a top stays upright: it sleeps. Lower its rate below 15.3 rad/s, or 2.44 rev/s, " +
-      "and it wakes up.",
+      "A top that spins faster than 2 √(m g l i₁)/i₃ is stable upright: it sleeps. Reduce the rate below 15.3 rad/s, or " +
+      "2.44 rev/s, and it falls.",
   },
   {
     name: "gyroscope.toml",
@@ -120,16 +119,15 @@ export const PRESETS: Preset[] = [
     scene: gyroscope,
     view: { ...TOP, speed: 1, shown: { ...TOP.shown, axial: false } },
     caption:
-      "A hundred turns in a second: the axis goes round the vertical at nearly m g l / (i₃ ω₃). Its nutation is too small " +
-      "to be seen; slow the spin and it shows.",
+      "At a hundred revolutions per second, the axis precesses about the vertical at nearly m g l / (i₃ ω₃). Its nutation is " +
+      "too small to be seen; reduce the spin to make it visible.",
   },
   {
     name: "feynman-plate.toml",
     title: "Feynman’s plate",
     scene: plate,
     view: { speed: 0.1, shown: { polhode: false, trace: true, omega: true, momentum: true } },
-    caption:
-      "A plate thrown with a wobble: the wobble goes round twice while the plate turns once, as Feynman saw in a cafeteria.",
+    caption: "A plate thrown with a wobble: it wobbles twice per revolution, as Feynman saw in a cafeteria.",
   },
   {
     name: "toutatis.toml",
@@ -137,17 +135,17 @@ export const PRESETS: Preset[] = [
     scene: toutatis,
     view: { speed: 86_400, shown: { polhode: true, herpolhode: true, trace: true, momentum: true } },
     caption:
-      "4179 Toutatis tumbles: it rolls about its long axis in 5.4 days, while that axis goes round L in 7.35. No two of its days are " +
-      "alike.",
+      "4179 Toutatis tumbles: it rotates about its long axis in 5.4 days, while that axis precesses about L in 7.35 days. No " +
+      "two of its days are alike.",
   },
 ];
 
-/** Whether a motion may play by itself: not where the machine's owner wants things still. */
-export function mayMove(): boolean {
+/** Whether a motion may start playing: not if the user prefers reduced motion. */
+export function mayAutoplay(): boolean {
   return !matchMedia("(prefers-reduced-motion: reduce)").matches;
 }
 
-/** Shows a preset, playing if it may. */
+/** Opens a preset and plays it, unless the user prefers reduced motion. */
 export function openPreset(model: Model, preset: Preset): void {
   const files: Files = new Map(Object.entries(preset.files ?? {}).map(([name, text]) => [name, bytes(text)]));
   model.open(preset.scene, { name: preset.name, files });
@@ -156,7 +154,7 @@ export function openPreset(model: Model, preset: Preset): void {
   model.shown.value = SHOWN;
   model.look({
     camera: "oblique",
-    playing: mayMove(),
+    playing: mayAutoplay(),
     ...preset.view,
   });
 }

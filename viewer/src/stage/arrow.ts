@@ -4,7 +4,7 @@ import { Ribbon, type RibbonStyle, type Screen } from "./ribbon.ts";
 
 const HEAD = { length: 0.1, radius: 0.028 };
 
-/** An arrow from the origin of its object: a line some pixels wide with a cone at its end. */
+/** An arrow from the origin of its object: a line of constant width in pixels, with a cone at its end. */
 export class Arrow {
   readonly object = new Group();
   private readonly shaft: Ribbon;
@@ -19,7 +19,7 @@ export class Arrow {
     this.object.add(this.shaft.object, this.head);
   }
 
-  /** Points along a vector of the object, in its length. */
+  /** Sets the arrow to a vector of the object. */
   point(along: Vector3): void {
     const length = along.length();
     this.object.visible = length > HEAD.length;

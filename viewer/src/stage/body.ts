@@ -1,26 +1,26 @@
 import { Color, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial } from "three";
+import type { Surface } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
 import type { Figure } from "./figure.ts";
 import type { Instant, Part } from "./part.ts";
-import { type Look, look, type Surface } from "./surface.ts";
+import { type Look, look } from "./surface.ts";
 
-/** Tints of faces: plain, the other quadrants, and the sides across axes 1, 2 and 3. */
+/** Tints of faces, as in `Surface`: two of alternating quadrants, and one for the sides across each axis. */
 const TINTS = 5;
 
-/** The body. Sides of a box and quadrants of what is round have tints of their own, so that one sees how it turns. */
+/** The body, tinted so that its rotation is visible. */
 export class Body implements Part {
   readonly inBody = new Group();
   private readonly materials = Array.from({ length: TINTS }, () => new MeshLambertMaterial());
   private readonly ink = inkOfEdges();
-  private drawn: { surface: Surface; tinted: Figure["tinted"]; look: Look } | null = null;
+  private drawn: { surface: Surface; look: Look } | null = null;
 
-  follow({ surface, tinted }: Figure): void {
-    const drawn = this.drawn;
-    if (drawn?.tinted === tinted && same(drawn.surface, surface)) return;
+  follow({ surface }: Figure): void {
+    if (this.drawn && same(this.drawn.surface, surface)) return;
     this.clear();
-    const fresh = look(surface, tinted === "plain" ? undefined : tinted === "sides" ? side : quadrant);
-    this.drawn = { surface, tinted, look: fresh };
+    const fresh = look(surface);
+    this.drawn = { surface, look: fresh };
     this.inBody.add(new Mesh(fresh.faces, this.materials), new LineSegments(fresh.edges, this.ink));
   }
 
@@ -38,7 +38,7 @@ export class Body implements Part {
   update(_: Instant, shown: Shown): void {
     this.inBody.visible = shown.body;
     for (const material of this.materials) {
-      // What is inside and behind shall be seen with Poinsot's construction.
+      // Transparent with Poinsot's construction, which is inside and behind it.
       if (material.transparent === shown.poinsot) continue;
       material.transparent = shown.poinsot;
       material.opacity = shown.poinsot ? 0.55 : 1;
@@ -60,7 +60,7 @@ export class Body implements Part {
   }
 }
 
-/** Edges lie in the faces: they are seen a little nearer, in the same place of the picture. */
+/** Edges lie in faces: they are drawn slightly nearer, at the same place in the picture. */
 function inkOfEdges(): LineBasicMaterial {
   const ink = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
   ink.onBeforeCompile = (shader) => {
@@ -72,26 +72,11 @@ function inkOfEdges(): LineBasicMaterial {
   return ink;
 }
 
-function side(normal: readonly number[]): number {
-  const sizes = normal.map(Math.abs);
-  return 2 + sizes.indexOf(Math.max(...sizes));
-}
-
-function quadrant(_: readonly number[], [x, y]: readonly number[]): number {
-  return x! * y! > 0 ? 1 : 0;
-}
-
 /** While a slider moves, motions follow each other fast, mostly of the same body. */
 function same(a: Surface, b: Surface): boolean {
-  return (
-    a.vertices.length === b.vertices.length &&
-    a.faces.length === b.faces.length &&
-    every(a.vertices, b.vertices) &&
-    every(a.faces, b.faces)
-  );
+  return equal(a.vertices, b.vertices) && equal(a.faces, b.faces) && equal(a.tints, b.tints);
 }
 
-function every(a: ArrayLike<number>, b: ArrayLike<number>): boolean {
-  for (let k = 0; k < a.length; k++) if (a[k] !== b[k]) return false;
-  return true;
+function equal(a: Float64Array | Uint32Array, b: Float64Array | Uint32Array): boolean {
+  return a.length === b.length && a.every((x: number, k: number) => x === b[k]);
 }

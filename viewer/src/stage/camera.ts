@@ -3,22 +3,22 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { CameraName } from "../document.ts";
 import { AXES } from "./rotor.ts";
 
-/** Degrees from bottom to top: a long lens, under which a figure looks as in a book. */
+/** Vertical angle of view in degrees: a long lens, with little perspective. */
 const LENS = 24;
-/** The radius of a ball that is wholly in view, in drawn units. */
+/** The radius of a ball that fits into view, in drawn units. */
 const FIT = 1.72;
-/** How near and far one may go, in units of the distance at which that ball fits. */
+/** Limits of the distance, in units of the distance at which that ball fits. */
 const NEAREST = 0.2;
 const FARTHEST = 4;
-/** Seconds that a camera takes to its place. */
+/** Duration of a move to a preset, in s. */
 const MOVE = 0.6;
-/** What an arrow key turns. */
+/** The angle of one press of an arrow key. */
 const STEP = (5 * Math.PI) / 180;
 
-/** From where 'oblique' looks: e1 points to the left and towards the viewer, e2 to the right, e3 up. */
+/** Direction of the preset 'oblique': e1 points left and towards the viewer, e2 right, e3 up. */
 const OBLIQUE = new Vector3(Math.cos(0.33) * Math.cos(0.6), Math.cos(0.33) * Math.sin(0.6), Math.sin(0.33));
 
-/** Three's spherical coordinates have their pole along y; here it is e3. */
+/** Three's spherical coordinates have their pole along y, ours along e3. */
 const TO_Y = new Quaternion().setFromUnitVectors(AXES[2], AXES[1]);
 const FROM_Y = TO_Y.clone().invert();
 
@@ -31,12 +31,12 @@ interface Move {
 }
 
 /**
- * Where the viewer stands: looking at the middle of the figure from a place that pointer and keys change. `home` is
- * asked for the place of the preset.
+ * The camera, which looks at the middle of the figure; pointer and keys move it. `home` is called to return to the
+ * preset.
  */
 export class Viewpoint {
   readonly camera = new PerspectiveCamera(LENS, 1, 0.1, 100);
-  /** How far space turns back so that the body stands still: from 0, not at all, to 1. */
+  /** How much space turns back under the body: from 0, not at all, to 1, where the body is at rest. */
   withBody = 0;
   private readonly controls: OrbitControls;
   private fit = 1;
@@ -57,11 +57,11 @@ export class Viewpoint {
     canvas.addEventListener("keydown", this.pressed);
   }
 
-  /** Goes to a preset; `momentum` is the axial vector of L. */
+  /** Moves to a preset; `momentum` is the axial vector of L. */
   go(name: CameraName, momentum: Vector3, atOnce: boolean): void {
     const to = this.spherical(direction(name, momentum).multiplyScalar(this.fit));
     const from = this.spherical(this.camera.position.clone().sub(this.controls.target));
-    // The shorter way round.
+    // The shorter way around.
     to.theta += 2 * Math.PI * Math.round((from.theta - to.theta) / (2 * Math.PI));
     const withTo = name === "with the body" ? 1 : 0;
     this.move = { from, to, withFrom: this.withBody, withTo, passed: atOnce ? MOVE : 0 };
@@ -69,11 +69,19 @@ export class Viewpoint {
     this.changed();
   }
 
+  /** Moves at once to an azimuth, from e1 towards e2, and an elevation above e1∧e2, in degrees. */
+  from(azimuth: number, elevation: number): void {
+    this.move = null;
+    const radians = Math.PI / 180;
+    // The zero of theta is the z axis, to which TO_Y turns −e2.
+    this.stand(new Spherical(this.fit, (90 - elevation) * radians, (azimuth + 90) * radians));
+  }
+
   get moving(): boolean {
     return this.move !== null;
   }
 
-  /** Moves on for some seconds. */
+  /** Advances a move by some seconds. */
   step(seconds: number): void {
     const { move } = this;
     if (!move) return;
@@ -92,7 +100,7 @@ export class Viewpoint {
     if (part === 1) this.move = null;
   }
 
-  /** The canvas has another form: what was in view stays in view. */
+  /** Adapts to a new size of the canvas: what was in view stays in view. */
   resize(width: number, height: number): void {
     const aspect = width / height;
     this.camera.aspect = aspect;
@@ -110,7 +118,7 @@ export class Viewpoint {
     this.stand(at);
   }
 
-  /** Looks at a point of space. */
+  /** Sets the point to look at. */
   look(at: Vector3): void {
     if (this.controls.target.equals(at)) return;
     this.camera.position.add(at).sub(this.controls.target);
@@ -156,7 +164,7 @@ export class Viewpoint {
   }
 }
 
-/** From where a preset looks, a unit vector of space. */
+/** The direction of a preset from the middle of the figure, a unit vector in space axes. */
 function direction(name: CameraName, momentum: Vector3): Vector3 {
   switch (name) {
     case "along e1":

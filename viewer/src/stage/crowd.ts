@@ -1,24 +1,25 @@
 import { BoxGeometry, Group, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
-import { type Motion, Problem } from "../core/core.ts";
+import { Problem } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
 import type { Palette } from "../palette.ts";
 import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part } from "./part.ts";
 import { quaternion } from "./rotor.ts";
 
-/** Bodies at most. */
+/** Maximum number of bodies. */
 const MOST = 1000;
 /** The length of a small body. */
 const SIZE = 0.06;
 
 /**
- * The bodies of an ensemble: each as a small copy with its own attitude, on the sphere around the nominal body in the
- * direction of its own axis. At first they lie on one another; as knowledge fades they spread over the sphere.
+ * The bodies of an ensemble: small boxes on the sphere around the nominal body, each with its own attitude and in the
+ * direction of its own axis. They start together and spread over the sphere.
  */
 export class Crowd implements Part {
   readonly inSpace = new Group();
   private readonly material = new MeshLambertMaterial({ emissiveIntensity: 0.15 });
   private bodies: InstancedMesh<BoxGeometry, MeshLambertMaterial> | null = null;
-  /** Why the bodies are not drawn. */
+  /** The reason why the bodies are not drawn. */
   problem: string | null = null;
   private motion: Motion | null = null;
   private axis = new Vector3();
@@ -58,7 +59,7 @@ export class Crowd implements Part {
     this.bodies.instanceMatrix.needsUpdate = true;
   }
 
-  /** The rotors of the bodies; none, and what is wrong in `problem`, where they could not be followed. */
+  /** The rotors of the bodies; none if their motion fails, with the reason in `problem`. */
   private rotors(motion: Motion, time: number): Float64Array {
     try {
       return motion.bodies(time, MOST);

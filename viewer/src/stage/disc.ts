@@ -9,22 +9,22 @@ import {
   Vector3,
 } from "three";
 import type { Shown } from "../document.ts";
+import { quantity } from "../format/numbers.ts";
 import type { Palette } from "../palette.ts";
 import { Arrow } from "./arrow.ts";
 import type { Figure } from "./figure.ts";
 import type { Label, Labels } from "./labels.ts";
-import { quantity } from "./numbers.ts";
 import type { Instant, Part } from "./part.ts";
 import { Ribbon, type Screen } from "./ribbon.ts";
 import { AXES } from "./rotor.ts";
 
-/** How a bivector is drawn: which it is, and the radius of its disc when it is as large as at the start. */
+/** The style of a bivector; `radius` is that of its disc at the start. */
 export interface DiscStyle {
   bivector: "omega" | "momentum";
   symbol: string;
   unit: string;
   radius: number;
-  /** Where on the rim its label is: so far to the right and up. */
+  /** The place of its label on the rim: right and up. */
   label: [number, number];
 }
 
@@ -43,15 +43,15 @@ export const MOMENTUM: DiscStyle = {
   label: [-1, -0.45],
 };
 
-/** Corners of a circle: so many that it is half a pixel off at most. */
+/** Corners of a circle: its error is at most half a pixel. */
 const ROUND = 72;
 const HEADS = 3;
-/** Turns in a second of the clock of the arrowheads on the rim. */
+/** Turns per second of the arrowheads on the rim. */
 const PACE = 0.08;
 
 /**
- * A bivector as what it is: a piece of a plane with a sense. The disc lies in the plane, its area grows with the size,
- * and arrowheads run around its rim in the sense of the bivector, in which the axial vector is the right-handed normal.
+ * A bivector as an oriented disc in its plane. The area is proportional to the size; arrowheads run around the rim in
+ * the sense of the bivector, of which the axial vector is the right-handed normal.
  */
 export class Disc implements Part {
   readonly inSpace = new Group();
@@ -96,11 +96,11 @@ export class Disc implements Part {
 
   follow(figure: Figure): void {
     this.reference = figure[this.style.bivector];
-    // Inside the sphere on which the axis of a top draws its path.
+    // Inside the sphere with the path of the axis of a top.
     this.radius = (figure.about.held ? 0.7 : 1) * this.style.radius;
-    // Moments without a mass are often ratios, of which L has no unit.
+    // Moments without a mass are often ratios: then L has no unit.
     this.valued = this.style.bivector === "omega" || figure.about.body.mass !== null;
-    // The arrow of ω ends on polhode and herpolhode; that of L beyond its disc.
+    // The arrow of ω ends on polhode and herpolhode, that of L outside its disc.
     this.arrowLength =
       this.style.bivector === "omega"
         ? (size) => size * figure.rate
@@ -152,7 +152,7 @@ export class Disc implements Part {
     this.label.dispose();
   }
 
-  /** At the point of the rim that is farthest towards its place on the screen; at the arrow where there is no disc. */
+  /** At the point of the rim in the direction of the label's side; without a disc, at the arrow. */
   private placeLabel({ right, up }: Instant, normal: Vector3, radius: number, disc: boolean): void {
     if (!disc) {
       this.label.side = null;

@@ -1,31 +1,29 @@
-import { Quaternion, Vector3 } from "three";
-import { type About, type Motion, ROW, State } from "../core/core.ts";
+import { Vector3 } from "three";
+import { type About, ROW, State, type Surface, type Triple } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
 import { firstRow, span } from "../model/model.ts";
-import { equivalent, spinningTop, surfaceOf } from "./solids.ts";
-import { AXES, quaternion, vector } from "./rotor.ts";
-import type { Surface } from "./surface.ts";
+import { AXES, vector } from "./rotor.ts";
 
-/** Length of the arrows f1, f2, f3, and radius of the sphere on which the tip of one of them draws its path. */
+/** Length of the arrows f1, f2, f3, and radius of the sphere with the path of one of their tips. */
 export const REACH = 1.25;
 
 /**
- * A motion as it is drawn. Lengths are in units of the body, the distance from the drawn origin to the farthest point
- * of its surface, so that a plate and an asteroid both fill the view. The drawn origin is the fixed point of a body
- * that is held, and the centre of mass of any other: the stage flies along with it.
+ * A motion in drawn units: lengths over the distance from the drawn origin to the farthest point of the surface, so
+ * that bodies of all sizes fill the view. The drawn origin is the fixed point of a held body, and the centre of mass of
+ * any other.
  */
 export interface Figure {
   motion: Motion;
   about: About;
-  /** The body's surface in body axes from the drawn origin, in drawn units, and how its faces are told apart. */
+  /** The surface of the body in body axes from the drawn origin, in drawn units. */
   surface: Surface;
-  tinted: "plain" | "sides" | "quadrants";
   /** The centre of mass from the drawn origin in body axes, in drawn units. */
   centre: Vector3;
   /** Unit vector in body axes whose path in space is drawn. */
   traced: Vector3;
   /** Drawn units of length for 1 rad/s: Poinsot's ellipsoid at the start reaches as far as the arrows f1, f2, f3. */
   rate: number;
-  /** |Ω| and |L| at the start, or the largest ones where there is none at the start. */
+  /** |Ω| and |L| at the start, or their largest values if the body starts at rest. */
   omega: number;
   momentum: number;
 }
@@ -37,13 +35,12 @@ export function figureOf(motion: Motion): Figure {
   const omega = largest(rows, State.omegaSpace);
   const momentum = largest(rows, State.momentumSpace);
   const arm = about.held ? armOf(about) : new Vector3();
-  const body = shape(motion, arm);
-  const size = Math.max(farthest(body.surface), arm.length()) || 1;
+  const surface = surfaceFrom(motion, arm);
+  const size = Math.max(farthest(surface), arm.length()) || 1;
   return {
     motion,
     about,
-    surface: scaled(body.surface, 1 / size),
-    tinted: body.tinted,
+    surface: { ...surface, vertices: surface.vertices.map((x) => x / size) },
     centre: arm.clone().divideScalar(size),
     traced: arm.length() > 0 ? arm.clone().normalize() : nearestAxis(vector(rows, State.omegaBody)),
     rate: REACH / (longestSemiAxis(about, rows) || omega || 1),
@@ -52,55 +49,19 @@ export function figureOf(motion: Motion): Figure {
   };
 }
 
-/** From the fixed point to the centre of mass. Where the law of the weight alone is said, its direction counts. */
+/** From the fixed point to the centre of mass; if only the heavy law is known, its vector. */
 function armOf({ body, heavy }: About): Vector3 {
   const centre = vector(body.center_of_mass);
   return centre.length() > 0 || !heavy ? centre : vector(heavy);
 }
 
-/** The body's surface from the drawn origin, in m; `arm` points from there to the centre of mass of a top. */
-function shape(motion: Motion, arm: Vector3): Pick<Figure, "surface" | "tinted"> {
+/** The surface from the drawn origin, m: the fixed point, the origin of body axes, or else the centre of mass. */
+function surfaceFrom(motion: Motion, arm: Vector3): Surface {
   const { body, held } = motion.about;
-  const still = new Quaternion();
-  const away = held ? new Vector3() : vector(body.center_of_mass).negate();
-  const mesh = motion.surface();
-  if (mesh) return { surface: moved(mesh, still, away), tinted: "plain" };
-  if (body.solid) {
-    const at = vector(body.solid_at).add(away);
-    const tinted = body.solid.kind === "box" ? "sides" : "quadrants";
-    return { surface: moved(surfaceOf(body.solid), still, at), tinted };
-  }
-  const frame = quaternion(body.frame);
-  if (arm.length() === 0) {
-    const solid = equivalent(body.moments);
-    const tinted = solid.kind === "box" ? "sides" : "quadrants";
-    return { surface: moved(surfaceOf(solid), frame, new Vector3()), tinted };
-  }
-  // A body that is held, of which moments alone are known: a top if it has an axis, else a box halfway up the arm.
-  const upright = AXES.findIndex(
-    (axis) => Math.abs(axis.clone().applyQuaternion(frame).dot(arm)) > 0.999 * arm.length(),
-  );
-  const [a, b] = body.moments.filter((_, k) => k !== upright);
-  if (upright >= 0 && Math.abs(a! - b!) < 1e-6 * Math.max(a!, b!)) {
-    const onto = new Quaternion().setFromUnitVectors(AXES[2], arm.clone().normalize());
-    return { surface: moved(spinningTop(arm.length()), onto, new Vector3()), tinted: "quadrants" };
-  }
-  const box = surfaceOf(equivalent(body.moments));
-  const size = (0.6 * arm.length()) / farthest(box);
-  return { surface: moved(scaled(box, size), frame, arm), tinted: "sides" };
-}
-
-function moved({ vertices, faces }: Surface, turn: Quaternion, by: Vector3): Surface {
-  const points = new Float32Array(vertices.length);
-  const point = new Vector3();
-  for (let at = 0; at < points.length; at += 3) {
-    vector(vertices, at, point).applyQuaternion(turn).add(by).toArray(points, at);
-  }
-  return { vertices: points, faces };
-}
-
-function scaled({ vertices, faces }: Surface, by: number): Surface {
-  return { vertices: Float32Array.from(vertices, (x) => x * by), faces };
+  const surface = motion.surface(arm.toArray());
+  // A surface that follows from the moments is about the centre of mass already.
+  const away: Triple = held || !(body.solid || body.mesh) ? [0, 0, 0] : body.center_of_mass;
+  return { ...surface, vertices: surface.vertices.map((x, k) => x - away[k % 3]!) };
 }
 
 function farthest({ vertices }: Surface): number {
@@ -116,7 +77,7 @@ function nearestAxis(omegaBody: Vector3): Vector3 {
   return AXES[sizes.indexOf(Math.max(...sizes)) as 0 | 1 | 2].clone();
 }
 
-/** A few states over the time for which the motion is known. */
+/** Some states over the duration of the motion. */
 function some(motion: Motion): Float64Array {
   const [first, last] = span(motion.about);
   const from = Math.max(first, motion.about.start.time);

@@ -54,7 +54,7 @@ abstract class Frame implements Part {
   }
 }
 
-/** Turns with the body. */
+/** The body frame. */
 export class BodyFrame extends Frame {
   readonly inBody = this.group;
 
@@ -75,7 +75,7 @@ export class BodyFrame extends Frame {
   }
 }
 
-/** Stays in space: thinner, dashed and paler. */
+/** The space frame: thinner, dashed and paler. */
 export class SpaceFrame extends Frame {
   readonly inSpace = this.group;
 

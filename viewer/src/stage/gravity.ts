@@ -14,7 +14,7 @@ export const STAND = 0.42;
 const WEIGHT = 0.75;
 const CIRCLES = 5;
 
-/** What belongs to a body that is held: the pivot, the weight, and the sphere on which its axis draws the locus. */
+/** For a held body: the pivot, the weight, and the sphere of the locus. */
 export class Gravity implements Part {
   readonly inSpace = new Group();
   readonly inBody = new Group();
@@ -82,7 +82,7 @@ export class Gravity implements Part {
   }
 }
 
-/** Circles of equal height and two great circles through the top. */
+/** Parallels and two meridians. */
 function sphereOf(screen: Screen): Ribbon[] {
   const circles: Ribbon[] = [];
   for (let k = 1; k <= CIRCLES; k++) {

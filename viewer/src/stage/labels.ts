@@ -3,16 +3,20 @@ import { type Camera, type Matrix4, type Vector2, Vector3 } from "three";
 /** CSS pixels. */
 const HEIGHT = 19;
 const GAP = 5;
-/** Labels have values on a canvas at least so wide. */
+/** The baseline below the top of a label, that of an index below it, and the width of the halo. */
+const BASELINE = 14;
+const DROP = 4;
+const HALO = 4;
+/** Labels have values on a canvas of at least this width. */
 const ROOMY = 520;
 const FAMILY = '"STIX Two Text", "Latin Modern Roman", Cambria, "Times New Roman", serif';
 const SIZES = { letter: 17, small: 13 };
-/** Measures texts; to ask the page for their width in each frame would lay it out anew. */
+/** Measures texts; measuring elements in each frame would cause a new layout. */
 const ruler = document.createElement("canvas").getContext("2d")!;
-/** Where a label goes that would lie on another: so many heights up or down. */
+/** Shifts of a label that would overlap another, in heights. */
 const PLACES = [0, -1, 1, -2, 2];
 
-/** A label of a point, in the italic letters of formulas with an index, and perhaps a value. */
+/** A label of a point: an italic symbol, with an index or a value. */
 export class Label {
   /** In space axes, in drawn units. */
   readonly at = new Vector3();
@@ -20,11 +24,14 @@ export class Label {
   private readonly value = document.createElement("span");
   private readonly symbolWidth: number;
   private valueWidth = 0;
-  /** On which side of its point it stands, right and up; null for that away from the centre. */
+  private color = "";
+  /** Its last place; null if it is hidden or there was no room. */
+  place: Point | null = null;
+  /** The side of its point that it is on, right and up; null for away from the centre. */
   side: Point | null = null;
 
   constructor(
-    symbol: string,
+    private readonly symbol: string,
     readonly style: { index?: number | string; rank: number },
     private readonly gone: (label: Label) => void,
   ) {
@@ -56,7 +63,7 @@ export class Label {
     this.valueWidth = value ? GAP + measured(value, `${SIZES.small}px`) : 0;
   }
 
-  /** The width; without its value where there is little room. */
+  /** Its width, without the value if `short`. */
   width(short: boolean): number {
     this.value.style.display = short ? "none" : "";
     return this.symbolWidth + (short ? 0 : this.valueWidth);
@@ -67,7 +74,31 @@ export class Label {
   }
 
   paint(color: string): void {
-    this.element.style.color = color;
+    this.element.style.color = this.color = color;
+  }
+
+  /** Draws the label at its last place, with a halo. */
+  draw(context: CanvasRenderingContext2D, background: string): void {
+    if (!this.place) return;
+    const write = (text: string, font: string, x: number, y: number): void => {
+      context.font = `${font} ${FAMILY}`;
+      context.strokeText(text, x, y);
+      context.fillText(text, x, y);
+    };
+    const { x, y } = this.place;
+    [context.strokeStyle, context.fillStyle] = [background, this.color];
+    [context.lineWidth, context.lineJoin] = [HALO, "round"];
+    const letter = `italic ${SIZES.letter}px`;
+    write(this.symbol, letter, x, y + BASELINE);
+    if (this.style.index !== undefined)
+      write(
+        String(this.style.index),
+        `${SIZES.small}px`,
+        x + measured(this.symbol, letter),
+        y + BASELINE + DROP,
+      );
+    if (this.value.style.display !== "none")
+      write(this.value.textContent ?? "", `${SIZES.small}px`, x + this.symbolWidth + GAP, y + BASELINE);
   }
 
   dispose(): void {
@@ -88,13 +119,14 @@ interface Box {
   bottom: number;
 }
 
-/** The layer of labels over the canvas. Those of low rank get their place first; who finds none is not seen. */
+/** The layer of labels over the canvas. Labels of low rank are placed first; those without room are hidden. */
 export class Labels {
   readonly element = document.createElement("div");
   private labels: Label[] = [];
+  private background = "";
 
   constructor() {
-    // What they say, the description of the canvas and the panels say too.
+    // The description of the canvas and the panels have the same content.
     this.element.setAttribute("aria-hidden", "true");
     this.element.style.cssText =
       "position: absolute; inset: 0; overflow: hidden; pointer-events: none; user-select: none; " +
@@ -111,11 +143,18 @@ export class Labels {
     return label;
   }
 
-  /** A halo of the background parts letters from lines behind them. */
+  /** A halo in the colour of the background separates letters from lines. */
   paint(background: string): void {
+    this.background = background;
     this.element.style.textShadow = [1, 1, 2, 2, 3, 3]
       .map((blur) => `0 0 ${blur}px ${background}`)
       .join(", ");
+  }
+
+  /** Draws the labels at their last places, in CSS pixels. */
+  draw(context: CanvasRenderingContext2D): void {
+    if (this.element.style.display === "none") return;
+    for (const label of this.labels) label.draw(context, this.background);
   }
 
   place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
@@ -125,12 +164,14 @@ export class Labels {
     const taken: Box[] = [];
     const centre = onScreen(new Vector3().setFromMatrixPosition(space), camera, width, height);
     for (const label of this.labels) {
+      label.place = null;
       if (label.hidden) continue;
       const point = onScreen(label.at.clone().applyMatrix4(space), camera, width, height);
       const box = free(around(point, centre, label.width(width < ROOMY), label.side), taken, width, height);
       label.element.style.visibility = box ? "" : "hidden";
       if (!box) continue;
       taken.push(box);
+      label.place = { x: box.left, y: box.top };
       label.element.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;
     }
   }
@@ -147,8 +188,7 @@ function onScreen(point: Vector3, camera: Camera, width: number, height: number)
 }
 
 /**
- * The box of a label beside a point. Without a side of its own it goes away from the centre, so far that the point is
- * not in it; else beyond the line through the point across that side.
+ * The box of a label beside a point: away from the centre until the point is outside, or on the given side.
  */
 function around(point: Point, centre: Point, width: number, side: Point | null): Box {
   let [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];

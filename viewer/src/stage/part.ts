@@ -3,7 +3,7 @@ import type { Shown } from "../document.ts";
 import type { Palette } from "../palette.ts";
 import type { Figure } from "./figure.ts";
 
-/** The state that is drawn. Bivectors are given by their axial vectors, in space axes unless the name says else. */
+/** The state to draw. Bivectors are given by their axial vectors, in space axes unless the name says otherwise. */
 export interface Instant {
   time: number;
   /** Body axes to space axes. */
@@ -15,16 +15,16 @@ export interface Instant {
   momentum: Vector3;
   /** 2T = Ω·L, J: twice the kinetic energy of a body without wheels. */
   doubleKinetic: number;
-  /** Where the screen's right and up point in space axes. */
+  /** The screen's right and up in space axes. */
   right: Vector3;
   up: Vector3;
-  /** Seconds of the clock for which the motion has played. */
+  /** Seconds for which the motion has played. */
   played: number;
 }
 
-/** One thing on the stage. It is told of a motion, then of colours, then of one state after the other. */
+/** A part of the picture: it gets a motion, colours, and then states. */
 export interface Part {
-  /** What stays in space, and what turns with the body. */
+  /** Objects in space axes, and in body axes. */
   readonly inSpace?: Object3D;
   readonly inBody?: Object3D;
   follow(figure: Figure): void;

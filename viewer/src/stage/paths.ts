@@ -9,20 +9,20 @@ import { Ribbon, type Screen } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
 import { rowsOf, thinned } from "./thinned.ts";
 
-/** Points of a path at most. */
+/** Maximum number of points of a path. */
 const POINTS = 10_000;
-/** Turns of the body that a tail lasts. */
+/** Duration of a tail, in turns of the body. */
 const TURNS = 8;
 const MOST_TURNS = 60;
-/** What is to come is drawn so much fainter than what was. */
+/** Opacity of the future path relative to the past. */
 const AHEAD = 0.22;
-/** The polhode lies on the ellipsoid; so much larger, it is seen on it. */
+/** Scale of the polhode, so that it is drawn over the ellipsoid on which it lies. */
 export const LIFTED = 1.004;
 
 /**
- * The path of an axis of the body in space, and those of ω: the herpolhode in space, the polhode in the body. States
- * are asked for at equal times in a stretch around the present, three tails long, and anew when the present leaves
- * its middle; between, the lines only fade elsewhere.
+ * The path of a body axis in space, and those of ω: the herpolhode in space, the polhode in the body. They are computed
+ * for a stretch of three tails around a multiple of the tail; while the present is next to that, only the fading
+ * changes.
  */
 export class Paths implements Part {
   readonly inSpace = new Group();
@@ -31,7 +31,7 @@ export class Paths implements Part {
   private readonly herpolhode: Ribbon;
   private readonly polhode: Ribbon;
   private figure: Figure | null = null;
-  /** How long a tail is, in s, that of the paths of ω, and the middle of the stretch. */
+  /** Duration of a tail in s, that of the paths of ω, and the middle of the stretch. */
   private tail = 1;
   private turns = 1;
   private middle = Number.NaN;
@@ -46,7 +46,7 @@ export class Paths implements Part {
     this.inBody.add(this.polhode.object);
   }
 
-  /** How many states the paths that are seen go through. */
+  /** Number of states of the visible paths. */
   get points(): number {
     const seen = (path: Ribbon) => path.object.visible && path.count > 0;
     const open = [this.trace, this.herpolhode, ...(this.closed ? [] : [this.polhode])].filter(seen).length;
@@ -57,7 +57,7 @@ export class Paths implements Part {
     this.figure = figure;
     this.middle = Number.NaN;
     this.tail = tailOf(figure);
-    // ω goes the same ways again and again.
+    // ω repeats the same curves.
     this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
     const period = figure.about.free?.period ?? null;
     this.closed = period !== null && within(figure, period);
@@ -78,7 +78,9 @@ export class Paths implements Part {
       ? [shown.trace, shown.herpolhode]
       : [shown.trace, shown.herpolhode, shown.polhode];
     if (!this.figure || !all.includes(true)) return;
-    if (!(Math.abs(time - this.middle) <= this.tail / 2)) this.ask(this.figure, time);
+    // The stretch depends on the time alone, so that equal times give equal pictures.
+    const middle = this.tail * Math.round(time / this.tail);
+    if (middle !== this.middle) this.ask(this.figure, middle);
     const since = time - this.middle;
     this.trace.fade(since / this.tail, AHEAD);
     this.herpolhode.fade(since / this.turns, AHEAD);
@@ -92,7 +94,7 @@ export class Paths implements Part {
   }
 
   private ask(figure: Figure, time: number): void {
-    // Times are whole multiples of one step, so that the next stretch goes through the same points.
+    // Times are multiples of one step, so that successive stretches have the same points.
     const [first, last] = span(figure.about);
     const step = Math.min(3 * this.tail, last - first) / POINTS;
     const from = Math.ceil(Math.max(first, time - 1.5 * this.tail) / step);
@@ -114,7 +116,7 @@ export class Paths implements Part {
   }
 }
 
-/** How long a tail is: of a free body some turns and a whole period; of a top as long as its path is resolved. */
+/** Duration of a tail: for a free body some turns and a period; for a top as long as its path is resolved. */
 function tailOf(figure: Figure): number {
   const { about } = figure;
   const turn = (2 * Math.PI) / figure.omega;
@@ -131,7 +133,7 @@ function tailOf(figure: Figure): number {
   return tail;
 }
 
-/** Whether a path of points so far apart bends little from one to the next, but for a cusp now and then. */
+/** Whether the path turns little between its points, except at cusps. */
 function resolved(figure: Figure, tail: number): boolean {
   const count = 600;
   const step = (3 * tail) / POINTS;
@@ -149,7 +151,7 @@ function resolved(figure: Figure, tail: number): boolean {
   return bent <= 0.02 * count;
 }
 
-/** Whether times from the start on are known for so long. */
+/** Whether the motion is known for a duration from its start. */
 function within(figure: Figure, duration: number): boolean {
   const { start } = figure.about;
   const [first, last] = span(figure.about);
@@ -181,7 +183,7 @@ function taken(rows: Float64Array, at: number, scale: number): Float64Array {
   return points;
 }
 
-/** A closed polhode: near a saddle ω lingers, then hurries, so times are halved until points lie near each other. */
+/** A closed polhode. The speed of ω varies greatly near a saddle, so intervals are halved until points are close. */
 function polhodeOf(figure: Figure, period: number): Float64Array {
   const near = 0.02;
   const start = figure.about.start.time;

@@ -20,9 +20,8 @@ const PLANE = 1.35;
 
 /**
  * Poinsot's construction. The ellipsoid x·I(x) = 2T of the body touches the plane with normal L at the distance 2T/|L|,
- * in the point ω, and rolls on it without slipping. With a torque T and L change, and so do ellipsoid and plane: then
- * they are those of the present, which still touch in ω. A wheel's momentum is in L but not in the ellipsoid, and they
- * would not touch; then nothing is drawn.
+ * at the point ω, and rolls on it without slipping. Under a torque, T and L change; the present ellipsoid and plane still
+ * touch at ω. With a wheel, whose momentum is in L but not in the ellipsoid, they would not touch: nothing is drawn.
  */
 export class Poinsot implements Part {
   readonly inBody = new Group();
@@ -86,7 +85,7 @@ export class Poinsot implements Part {
     this.inSpace.visible = seen;
     if (!seen) return;
     const axes = figure.about.body.moments.map((moment) => Math.sqrt(doubleKinetic / moment) * figure.rate);
-    // A rod has no moment about itself, and its ellipsoid is a tube without end.
+    // The ellipsoid of a rod, without a moment about its line, is an infinite tube.
     const [a, b, c] = axes.map((axis) => Math.min(axis, 10)) as [number, number, number];
     this.ellipsoid.scale.set(a, b, c);
     const size = momentum.length();

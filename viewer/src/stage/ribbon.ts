@@ -42,7 +42,7 @@ const VERTEX = /* glsl */ `
     vec2 going = direction((to.xy / to.w - middle) * screen);
     vec2 along2 = coming + going;
     vec2 tangent = dot(along2, along2) > 1e-3 ? normalize(along2) : direction(coming - going);
-    // At a bend the ribbon is wider along the bisector; at a cusp it would be without end.
+    // At a bend the ribbon is wider along the bisector, at a cusp infinitely wide: limited.
     float bend = max(dot(tangent, going), dot(tangent, coming));
     float miter = 1.0 / max(bend, 0.6);
     here.xy += vec2(-tangent.y, tangent.x) * along.x * miter * width / screen * here.w;
@@ -74,16 +74,16 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** Numbers for each vertex: the point, the side (−1 or 1) and the parameter. */
+/** Values per vertex: the point, the side (−1 or 1) and the parameter. */
 const STRIDE = 5;
-/** Of long lines, what is behind other things goes through so many points only. */
+/** Maximum number of points of hidden parts of a line. */
 const COARSE = 600;
 
 export interface RibbonStyle {
   /** CSS pixels. */
   width: number;
   opacity?: number;
-  /** How much is seen of what lies behind other things, of `opacity`. */
+  /** Opacity of hidden parts, relative to `opacity`. */
   behind?: number;
   /** Length of a dash and its gap, in units of the parameter. */
   dash?: number;
@@ -91,13 +91,13 @@ export interface RibbonStyle {
 }
 
 /**
- * A line some pixels wide: one strip of triangles, joined at the bends, so that translucent lines have no dark dots
- * where segments meet. Along the line runs a parameter, by which it can fade: from `now` back over one unit, and, as
- * faint as `ahead` says, forward over one.
+ * A line of constant width in pixels: one strip of triangles, joined at the bends, so that translucent lines have no
+ * dark dots between segments. It can fade with a parameter along the line: from `now` back over one unit, and with the
+ * opacity `ahead` forward over one.
  */
 export class Ribbon {
   readonly object = new Group();
-  /** How many points it has. */
+  /** Number of points. */
   count = 0;
   private readonly color = { value: new Color() };
   private readonly onto = { value: new Matrix4() };
@@ -106,7 +106,7 @@ export class Ribbon {
   private readonly fades = { value: false };
   private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[] = [];
   private parameters: ArrayLike<number> = [];
-  /** For each mesh how many points its strip goes on at a time. */
+  /** The step of each strip, in points. */
   private steps: number[] = [];
 
   constructor(screen: Screen, style: RibbonStyle) {
@@ -135,7 +135,7 @@ export class Ribbon {
       });
       const mesh = new Mesh(new BufferGeometry(), material);
       mesh.frustumCulled = false;
-      // One product here instead of one for each vertex.
+      // One matrix product here instead of one per vertex.
       mesh.onBeforeRender = (_, __, camera) => {
         this.onto.value
           .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
@@ -149,14 +149,14 @@ export class Ribbon {
     }
   }
 
-  /** Goes through points (n × 3); `parameters` are their numbers, or else the length of the line up to them. */
+  /** Sets the points (n × 3) and their parameters, by default the length of the line up to them. */
   set(points: ArrayLike<number>, options: { parameters?: ArrayLike<number>; closed?: boolean } = {}): void {
     const closed = options.closed ?? false;
     const points3 = points.length / 3;
     const count = points3 + (closed && points3 > 0 ? 1 : 0);
     const data = new Float32Array((count + 2) * 2 * STRIDE);
     let length = 0;
-    // One more point before the first and after the last: the strip looks at the neighbours of each.
+    // An additional point at each end: the shader needs the neighbours of each point.
     for (let row = 0; row < count + 2; row++) {
       const k = closed ? (row - 1 + points3) % points3 : Math.min(Math.max(row - 1, 0), count - 1);
       const last = closed ? (k + points3 - 1) % points3 : Math.max(k - 1, 0);
@@ -191,7 +191,7 @@ export class Ribbon {
     this.color.value.set(color);
   }
 
-  /** The parameter, growing along the line, at which it is strongest; only what is not faded away is drawn. */
+  /** Sets the increasing parameter at which the line is most opaque; only visible parts are drawn. */
   fade(now: number, ahead: number): void {
     this.fades.value = true;
     this.now.value = now;
@@ -213,7 +213,7 @@ export class Ribbon {
   }
 }
 
-/** A strip through every `step`-th point. Vertices see their neighbours in the same buffer, two before and after. */
+/** A strip through every `step`-th point. Neighbours are in the same buffer, two vertices before and after. */
 function strip(vertices: InterleavedBuffer, count: number, step: number): BufferGeometry {
   const geometry = new BufferGeometry();
   const pieces = Math.ceil((count - 1) / step);
@@ -227,12 +227,12 @@ function strip(vertices: InterleavedBuffer, count: number, step: number): Buffer
   geometry.setAttribute("along", new InterleavedBufferAttribute(vertices, 2, 2 * STRIDE + 3));
   geometry.setAttribute("after", new InterleavedBufferAttribute(vertices, 3, 4 * STRIDE));
   geometry.setIndex(new BufferAttribute(index, 1));
-  // Three would find it from more vertices than there are, for its order of drawing; the place of the object does.
+  // Needed for the drawing order only; computing it would read beyond the end of the buffer.
   geometry.boundingSphere = new Sphere();
   return geometry;
 }
 
-/** The first index at which growing numbers are above a bound. */
+/** The first index at which increasing numbers exceed a bound. */
 function firstAfter(numbers: ArrayLike<number>, bound: number): number {
   let [low, high] = [0, numbers.length];
   while (low < high) {

@@ -1,6 +1,6 @@
 import { Quaternion, Vector3 } from "three";
 
-/** A rotor (1, e2e3, e3e1, e1e2) as the quaternion that turns alike. */
+/** The quaternion of a rotor (1, e2e3, e3e1, e1e2). */
 export function quaternion(rotor: ArrayLike<number>, at = 0, into = new Quaternion()): Quaternion {
   return into.set(-rotor[at + 1]!, -rotor[at + 2]!, -rotor[at + 3]!, rotor[at]!);
 }

@@ -11,7 +11,8 @@ import {
   Vector3,
   WebGLRenderer,
 } from "three";
-import { type Motion, State } from "../core/core.ts";
+import { State } from "../core/core.ts";
+import type { Motion } from "../core/wasm.ts";
 import type { CameraName, Shown } from "../document.ts";
 import type { Model } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
@@ -29,24 +30,46 @@ import { Poinsot } from "./poinsot.ts";
 import type { Screen } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
 
-/** This browser draws nothing in three dimensions. */
-export class NoWebGL extends Error {}
+/** WebGL 2 is not available. */
+export class NoWebGL extends Error {
+  override message =
+    "No 3-d picture: WebGL 2 is missing or switched off in this browser. All values are shown.";
+}
 
-const LOST = "The graphics card has let go of the picture; it is drawn again as soon as that can be.";
+const LOST = "The graphics context was lost; the picture returns when the browser restores it.";
 
-/** The longest time that a frame lets pass: a page that was hidden goes on from where it was. */
+/** Options of a captured picture; width and height are in pixels. */
+export interface PictureOptions {
+  width: number;
+  height: number;
+  /** Pixels per CSS pixel, the unit of letters and lines. */
+  scale: number;
+  /** Seconds for which the motion has played: arrowheads run around the discs. */
+  played?: number;
+  /** Azimuth from e1 towards e2 and elevation above e1∧e2, in degrees; by default those of the model's camera. */
+  view?: [azimuth: number, elevation: number];
+  /** Texts at the top and at the bottom. */
+  title?: string;
+  note?: string;
+}
+
+/** The font of these texts, and their distance from the edges in CSS pixels. */
+const CAPTION = '15px "DejaVu Sans", "Liberation Sans", system-ui, sans-serif';
+const MARGIN = 16;
+
+/** The longest step in s, so that a page that was hidden continues where it was. */
 const LONGEST = 0.1;
 
 /**
- * The motion of a model, drawn in an element that it fills and follows in size. It draws when something has changed,
- * and lets the time of the model pass while it plays; a page at rest costs nothing.
+ * The picture of a model's motion, which fills its element. It draws when something has changed, and advances the time
+ * of the model while it plays.
  */
 export class Stage {
   private readonly canvas = document.createElement("canvas");
   private readonly message = document.createElement("p");
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  /** Space, which turns back under a camera that turns with the body. */
+  /** Space axes, which turn back under a camera that turns with the body. */
   private readonly space = new Group();
   private readonly turning = new Group();
   private readonly hemisphere = new HemisphereLight();
@@ -71,9 +94,9 @@ export class Stage {
   private drawn = 0;
   private spent = 0;
   private lost = false;
-  /** Whether the host has any size. */
+  /** Whether the host has a size. */
   private seen = false;
-  /** What a frame itself changes is in its picture. */
+  /** Whether a frame is being drawn: its own changes request no other. */
   private drawing = false;
 
   constructor(
@@ -85,7 +108,7 @@ export class Stage {
       antialias: true,
       powerPreference: "high-performance",
     });
-    if (!context) throw new NoWebGL("this browser draws no WebGL 2");
+    if (!context) throw new NoWebGL();
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.viewpoint = new Viewpoint(this.canvas, this.draw, this.fit);
     this.paths = new Paths(this.screen);
@@ -106,7 +129,7 @@ export class Stage {
       if (inBody) this.turning.add(inBody);
     }
     this.space.add(this.turning);
-    // The lamp goes with the viewer, over their left shoulder.
+    // The lamp moves with the camera, at its upper left.
     this.lamp.position.set(-3, 4, 6);
     this.viewpoint.camera.add(this.lamp, this.lamp.target);
     this.hemisphere.position.set(0, 0, 1);
@@ -132,20 +155,20 @@ export class Stage {
     this.viewpoint.dispose();
     for (const part of this.parts) part.dispose();
     this.renderer.dispose();
-    // Browsers keep but a few contexts; a notebook makes many stages.
+    // Browsers limit the number of contexts; a notebook has many stages.
     this.renderer.forceContextLoss();
     this.canvas.remove();
     this.labels.element.remove();
     this.message.remove();
   }
 
-  /** Goes back to the place of the model's camera, from where all is in view. */
+  /** Returns to the preset of the model's camera. */
   readonly fit = (): void => {
     this.fitting = true;
     this.draw();
   };
 
-  /** Puts canvas, labels and message into the host. */
+  /** Adds canvas, labels and message to the host. */
   private furnish(): void {
     const { canvas, host, message } = this;
     canvas.tabIndex = 0;
@@ -153,33 +176,33 @@ export class Stage {
     canvas.style.cssText =
       "position: absolute; inset: 0; width: 100%; height: 100%; outline-offset: -2px; cursor: grab";
     canvas.addEventListener("webglcontextlost", (event) => {
-      // Without this it would not come back.
+      // Allows the browser to restore the context.
       event.preventDefault();
       this.lost = true;
-      this.tell(LOST, true);
+      this.say(LOST, true);
       this.forget();
     });
     canvas.addEventListener("webglcontextrestored", () => {
       this.lost = false;
-      this.tell(null);
+      this.say(null);
       this.resize();
     });
     message.setAttribute("role", "status");
     message.style.cssText = "position: absolute; inset: auto 1rem 1rem; margin: 0; text-align: center";
     if (getComputedStyle(host).position === "static") host.style.position = "relative";
     host.append(canvas, this.labels.element, message);
-    this.tell(null);
+    this.say(null);
   }
 
   /** Shows a message, or none; `alone` hides the picture. */
-  private tell(message: string | null, alone = false): void {
+  private say(message: string | null, alone = false): void {
     this.message.textContent = message;
     this.message.style.display = message ? "" : "none";
     for (const element of [this.canvas, this.labels.element])
       element.style.visibility = alone ? "hidden" : "";
   }
 
-  /** Lets go of what the lost context held, of which the new one would not know. */
+  /** Releases the resources of the lost context. */
   private forget(): void {
     this.scene.traverse((object) => {
       if (!(object instanceof Mesh || object instanceof LineSegments)) return;
@@ -188,7 +211,7 @@ export class Stage {
     });
   }
 
-  /** Asks for one frame. */
+  /** Requests a frame. */
   private readonly draw = (): void => {
     if (this.request === 0 && !this.lost && !this.drawing) this.request = requestAnimationFrame(this.frame);
   };
@@ -201,10 +224,40 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.screen.value.set(width, height);
     this.viewpoint.resize(width, height);
-    // At once, for the canvas is empty now.
+    // At once: resizing has cleared the canvas.
     cancelAnimationFrame(this.request);
     this.frame(performance.now());
   };
+
+  /** Draws the present state with its labels at once, in any size. For stages whose host has none. */
+  picture(options: PictureOptions): HTMLCanvasElement {
+    const { width, height, scale, view, title = "", note = "" } = options;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [width, height];
+    const size = new Vector2(width / scale, height / scale);
+    if (!size.equals(this.screen.value)) {
+      this.renderer.setPixelRatio(1);
+      this.renderer.setSize(width, height, false);
+      this.screen.value.copy(size);
+      this.viewpoint.resize(width, height);
+    }
+    this.played = options.played ?? 0;
+    if (view) {
+      this.camera = this.model.camera.peek();
+      this.viewpoint.from(...view);
+    }
+    this.show();
+    const context = canvas.getContext("2d")!;
+    context.drawImage(this.canvas, 0, 0);
+    context.scale(scale, scale);
+    this.labels.draw(context);
+    context.fillStyle = this.palette.peek().text;
+    context.font = CAPTION;
+    const room = size.x - 2 * MARGIN;
+    context.fillText(title, MARGIN, MARGIN + 11, room);
+    context.fillText(note, MARGIN, size.y - MARGIN, room);
+    return canvas;
+  }
 
   private readonly frame = (now: number): void => {
     this.request = 0;
@@ -218,7 +271,7 @@ export class Stage {
         this.played += passed;
       }
       this.viewpoint.step(passed);
-      this.show();
+      if (this.seen) this.show();
     } finally {
       this.drawing = false;
     }
@@ -233,23 +286,22 @@ export class Stage {
     this.host.dataset.points = String(this.paths.points);
   };
 
-  /** Draws the present. */
+  /** Draws the present state. */
   private show(): void {
     const { model, renderer, viewpoint } = this;
-    if (!this.seen) return;
     const shown = model.shown.peek();
     this.follow();
     this.paint();
     const row = model.row.peek();
     this.space.visible = row !== null;
     if (row) {
-      // The camera first: space turns back, and labels face it, as it stands now.
+      // The camera first: space and labels depend on it.
       this.stand(vector(row, State.momentumSpace));
       const instant = this.instant(row);
       this.turning.quaternion.copy(instant.attitude);
       for (const part of this.parts) part.update(instant, shown);
       const { problem } = this.crowd;
-      this.tell(problem && `The other bodies are not drawn: ${problem}`);
+      this.say(problem && `The other bodies are not drawn: ${problem}`);
       const description = this.description(shown);
       if (this.canvas.ariaLabel !== description) this.canvas.ariaLabel = description;
     }
@@ -268,7 +320,7 @@ export class Stage {
     if (!motion || motion === this.motion) return;
     const figure = figureOf(motion);
     for (const part of this.parts) part.follow(figure);
-    // A top that stands is looked at above its tip.
+    // Look at an upright top above its tip.
     const start = quaternion(figure.about.start.rotor);
     const top = figure.traced.clone().applyQuaternion(start).z;
     this.viewpoint.look(new Vector3(0, 0, figure.about.held ? Math.max(0.2 * top, 0) : 0));
@@ -292,7 +344,7 @@ export class Stage {
     for (const part of this.parts) part.paint(palette);
   }
 
-  /** The camera of the model, when it is another than before or shall stand there again. */
+  /** Moves to the model's camera if it has changed or a fit was requested. */
   private stand(momentum: Vector3): void {
     const name = this.model.camera.peek();
     if (name === this.camera && !this.fitting) return;

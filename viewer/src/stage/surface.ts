@@ -1,36 +1,26 @@
 import { BufferAttribute, BufferGeometry, Float32BufferAttribute } from "three";
+import type { Surface } from "../core/core.ts";
 
-/** Triangles that share vertices: n × 3 and m × 3. */
-export interface Surface {
-  vertices: ArrayLike<number>;
-  faces: ArrayLike<number>;
-}
-
-/** Faces that meet at less than this look like one smooth surface, others have an edge between them. */
+/** Faces that meet at a smaller angle are shaded as one smooth surface; others have an edge between them. */
 const CREASE = Math.cos((35 * Math.PI) / 180);
 
-/** What a surface looks like: faces with normals, in one group for each tint, and the edges where it is sharp. */
+/** The geometry of a surface: faces with normals, in one group per tint, and its sharp edges. */
 export interface Look {
   faces: BufferGeometry;
   edges: BufferGeometry;
 }
 
-/** The look of a surface; `tint` gives each face a number from its normal and its centre. */
-export function look(
-  surface: Surface,
-  tint: (normal: readonly number[], centre: readonly number[]) => number = () => 0,
-): Look {
+export function look(surface: Surface): Look {
   const { vertices, faces } = surface;
   const normals = faceNormals(surface);
   const around = facesAround(surface);
-  const tints = facesByTint(surface, normals, tint);
   const positions = new Float32Array(3 * faces.length);
   const smooth = new Float32Array(3 * faces.length);
   const geometry = new BufferGeometry();
   let corner = 0;
-  for (const [number, ofTint] of tints.entries()) {
+  for (const [tint, ofTint] of facesByTint(surface, normals).entries()) {
     if (!ofTint) continue;
-    geometry.addGroup(corner, 3 * ofTint.length, number);
+    geometry.addGroup(corner, 3 * ofTint.length, tint);
     for (const f of ofTint) {
       for (let i = 0; i < 3; i++, corner++) {
         const v = faces[3 * f + i]!;
@@ -44,7 +34,7 @@ export function look(
         }
         const length = Math.hypot(x, y, z) || 1;
         smooth.set([x / length, y / length, z / length], 3 * corner);
-        positions.set([vertices[3 * v]!, vertices[3 * v + 1]!, vertices[3 * v + 2]!], 3 * corner);
+        positions.set(vertices.subarray(3 * v, 3 * v + 3), 3 * corner);
       }
     }
   }
@@ -53,21 +43,14 @@ export function look(
   return { faces: geometry, edges: sharpEdges(surface, normals, around) };
 }
 
-/** For each face its unit normal and its area, twice. */
+/** The unit normal of each face, and twice its area. */
 function faceNormals({ vertices, faces }: Surface): Float64Array {
   const normals = new Float64Array((faces.length / 3) * 4);
   for (let f = 0; f < faces.length / 3; f++) {
     const [a, b, c] = [3 * faces[3 * f]!, 3 * faces[3 * f + 1]!, 3 * faces[3 * f + 2]!];
-    const [ux, uy, uz] = [0, 1, 2].map((i) => vertices[b + i]! - vertices[a + i]!) as [
-      number,
-      number,
-      number,
-    ];
-    const [vx, vy, vz] = [0, 1, 2].map((i) => vertices[c + i]! - vertices[a + i]!) as [
-      number,
-      number,
-      number,
-    ];
+    const edge = (from: number, to: number, i: number) => vertices[to + i]! - vertices[from + i]!;
+    const [ux, uy, uz] = [edge(a, b, 0), edge(a, b, 1), edge(a, b, 2)];
+    const [vx, vy, vz] = [edge(a, c, 0), edge(a, c, 1), edge(a, c, 2)];
     const [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
     const area = Math.hypot(x, y, z);
     if (area > 0) normals.set([x / area, y / area, z / area, area], 4 * f);
@@ -75,7 +58,7 @@ function faceNormals({ vertices, faces }: Surface): Float64Array {
   return normals;
 }
 
-/** Which faces meet at each vertex: those of vertex v stand from start[v] to start[v + 1]. */
+/** The faces at each vertex: those of vertex v are at start[v] to start[v + 1]. */
 function facesAround({ vertices, faces }: Surface): { start: Uint32Array; faces: Uint32Array } {
   const start = new Uint32Array(vertices.length / 3 + 1);
   for (let k = 0; k < faces.length; k++) start[faces[k]! + 1]!++;
@@ -86,25 +69,13 @@ function facesAround({ vertices, faces }: Surface): { start: Uint32Array; faces:
   return { start, faces: around };
 }
 
-function facesByTint(
-  { vertices, faces }: Surface,
-  normals: Float64Array,
-  tint: (normal: readonly number[], centre: readonly number[]) => number,
-): number[][] {
-  const tints: number[][] = [];
-  for (let f = 0; f < faces.length / 3; f++) {
-    if (normals[4 * f + 3] === 0) continue;
-    const normal = [normals[4 * f]!, normals[4 * f + 1]!, normals[4 * f + 2]!];
-    const centre = [0, 1, 2].map(
-      (i) =>
-        (vertices[3 * faces[3 * f]! + i]! +
-          vertices[3 * faces[3 * f + 1]! + i]! +
-          vertices[3 * faces[3 * f + 2]! + i]!) /
-        3,
-    );
-    (tints[tint(normal, centre)] ??= []).push(f);
-  }
-  return tints;
+/** The faces of each tint, without those that have no area. */
+function facesByTint({ tints }: Surface, normals: Float64Array): number[][] {
+  const faces: number[][] = [];
+  tints.forEach((tint, f) => {
+    if (normals[4 * f + 3] !== 0) (faces[tint] ??= []).push(f);
+  });
+  return faces;
 }
 
 function sharpEdges(
@@ -120,7 +91,7 @@ function sharpEdges(
         const g = around.faces[k]!;
         if (g <= f || ![0, 1, 2].some((j) => faces[3 * g + j] === b)) continue;
         if (cosine(normals, f, g) >= CREASE) continue;
-        for (const v of [a, b]) points.push(vertices[3 * v]!, vertices[3 * v + 1]!, vertices[3 * v + 2]!);
+        for (const v of [a, b]) points.push(...vertices.subarray(3 * v, 3 * v + 3));
       }
     }
   }

@@ -1,13 +1,13 @@
-/** How far a line may be from what it stands for, in drawn units: a fifth of a pixel of the usual view. */
+/** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
 const NEAR = 1e-3;
-/** The longest piece, so that what changes along the line changes evenly. */
+/** The longest piece, so that fading along the line is even. */
 const LONGEST = 0.15;
 
-/** Which points (n × 3) of a smooth path a line needs: where it is nearly straight, few. */
+/** Indices of the points (n × 3) that a smooth line needs: few where it is nearly straight. */
 export function thinned(points: ArrayLike<number>): Uint32Array {
   const count = points.length / 3;
   const kept = [];
-  // The last point kept, and the way that the path goes there.
+  // The last kept point, and the direction of the path there.
   let last = 0;
   let way: [number, number, number] | null = null;
   for (let k = 0; k < count; k++) {
@@ -16,7 +16,7 @@ export function thinned(points: ArrayLike<number>): Uint32Array {
       way ??= direction(points, last, last + 1);
       if (!on) continue;
       const chord = distance(points, last, k);
-      // An arc of this chord that turns by this angle has so high a bow, 1/8 of their product.
+      // The height of an arc is 1/8 of its chord times its turn.
       const turn = way ? Math.hypot(on[0] - way[0], on[1] - way[1], on[2] - way[2]) : 2;
       if (chord < LONGEST && chord * turn < 8 * NEAR) continue;
       way = on;
@@ -27,7 +27,7 @@ export function thinned(points: ArrayLike<number>): Uint32Array {
   return Uint32Array.from(kept);
 }
 
-/** The rows of numbers (n × `width`) with these indices. */
+/** The rows (n × `width`) with these indices. */
 export function rowsOf(numbers: ArrayLike<number>, indices: Uint32Array, width: number): Float64Array {
   const rows = new Float64Array(indices.length * width);
   indices.forEach((k, row) => {

@@ -1,17 +1,17 @@
 import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { type About, State, type Triple } from "../core/core.ts";
+import { rateUnit, timeUnit } from "../format/units.ts";
 import { firstRow, type Model } from "../model/model.ts";
-import { type BodyChoice, bodyOf, bodyTable, spreadOf } from "./body.ts";
+import { type BodyChoice, bodyOf, bodyTable } from "./body.ts";
 import { type LawForm, type LawsChoice, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";
-import { rateUnit, timeUnit } from "../panels/units.ts";
 import { fields, table } from "./toml.ts";
 
 type Group = "body" | "start" | "laws" | "run";
 
 /**
- * What the sliders say. They begin with the scene as it was opened; each that is moved has its table of the scene
- * replaced, at most once in a frame.
+ * The values of the controls. They start from the scene as it was opened; a control that is changed replaces its table
+ * of the scene, at most once per frame.
  */
 export class Controls {
   /** Null where there is no scene to vary. */
@@ -25,29 +25,30 @@ export class Controls {
 
   private readonly touched = new Set<Group>();
   private frame = 0;
-  private readonly forget: () => void;
+  private readonly unsubscribe: () => void;
   private momentum = 0;
+  private size = 1;
 
-  constructor(private readonly model: Model) {
+  constructor(readonly model: Model) {
     this.about = computed(() => (model.scene.value === null ? null : model.opened.value));
     this.forms = computed(() => {
       const about = this.about.value;
-      return about ? lawsFor(about, this.momentum, sizeOf(about), this.byPivot.value) : [];
+      return about ? lawsFor(model.core.laws, about, this.momentum, this.size, this.byPivot.value) : [];
     });
-    this.forget = effect(() => {
+    this.unsubscribe = effect(() => {
       const about = model.opened.value;
       if (about) this.begin(about);
     });
   }
 
-  /** Whether gravity is said by a pivot in the body: for a solid, and for a mesh that is not held elsewhere. */
+  /** Whether gravity is given by a pivot in the body: for a solid, and for a mesh without a fixed point. */
   private readonly byPivot = computed(() => {
     const [about, body] = [this.about.value, this.body.value];
     if (!about || !body) return true;
     return body.form === "scene" ? about.body.mesh : body.form !== "masses";
   });
 
-  /** Whether the body may be given by its masses, or by a solid, although it is held: only gravity may act then. */
+  /** Whether the form of the body may change: a held body may have no laws but gravity. */
   readonly free = computed(() => {
     const about = this.about.value;
     return !about?.held || about.laws.every(({ name }) => name === "gravity" || name === "heavy");
@@ -68,7 +69,7 @@ export class Controls {
     this.change("laws");
   }
 
-  /** The laws of the scene, or those chosen here, which begin with the weight that the scene has. */
+  /** Takes the laws of the scene, or those chosen here, which include the weight if the body is held. */
   chooseLaws(from: LawsChoice["from"]): void {
     const laws = this.laws.value;
     const first = this.about.value?.held ? [this.forms.value[0]!.name] : [];
@@ -81,7 +82,7 @@ export class Controls {
   }
 
   dispose(): void {
-    this.forget();
+    this.unsubscribe();
     cancelAnimationFrame(this.frame);
   }
 
@@ -95,8 +96,10 @@ export class Controls {
     const moves =
       row && !about.held && row.subarray(State.position, State.velocity + 3).some((part) => part !== 0);
     this.momentum = row ? Math.hypot(...three(State.momentumSpace)) : 0;
+    const longest = Math.max(...(motion?.extents() ?? [1]), 2 * Math.hypot(...about.body.center_of_mass));
+    this.size = Number(longest.toPrecision(2));
     batch(() => {
-      this.body.value = bodyOf(about);
+      this.body.value = bodyOf(about, this.model.core);
       this.start.value = startOf(
         about,
         moves ? { position: three(State.position), velocity: three(State.velocity) } : null,
@@ -115,21 +118,22 @@ export class Controls {
     });
   }
 
-  /** The tables of all that was moved. */
+  /** The tables of everything that was changed. */
   private tables(): string {
     const about = this.about.value;
     const [body, start, laws] = [this.body.value, this.start.value, this.laws.value];
     if (!about || !body || !start) return "";
+    const { core } = this.model;
     const parts: string[] = [];
     if (this.touched.has("run")) parts.push(runFields(this.duration.value, about.samples));
     const chosen = this.touched.has("laws") && laws.from === "here";
     if (this.touched.has("body") && body.form !== "scene") {
-      parts.push(bodyTable(body));
+      parts.push(bodyTable(body, core));
       const moved = body.form === "masses" || !about.body.solid;
-      if (about.held && moved && !chosen) parts.push(this.weightAsBefore(about));
+      if (about.held && moved && !chosen) parts.push(this.sameWeight(about));
     } else if (chosen && laws.on.has("heavy")) {
-      // The weight acts on a body that is held at the origin of its axes, so its moments are said about that.
-      parts.push(bodyTable({ ...body, form: "masses" }));
+      // This law holds the body at the origin of its axes, so the moments must be about that point.
+      parts.push(bodyTable({ ...body, form: "masses" }, core));
     }
     if (this.touched.has("start")) parts.push(startTable(start, rateUnit(start.spin.rate)));
     if (chosen) {
@@ -140,23 +144,16 @@ export class Controls {
     return parts.join("\n");
   }
 
-  /** The weight of the scene for a body that is said anew: its moments are those about the fixed point. */
-  private weightAsBefore(about: About): string {
+  /** The weight of the scene for another body, whose moments are about the fixed point. */
+  private sameWeight(about: About): string {
     const on = new Set([this.forms.value[0]!.name]);
     return lawTables({ from: "here", on, values: {} }, this.forms.value, about);
   }
 }
 
-/** The duration, in as many samples as before: an interval need not divide it. */
+/** The duration with the same number of samples; `interval` is removed because it need not divide the duration. */
 function runFields(duration: number, samples: number): string {
   const unit = timeUnit(duration);
   const size = Number((duration / unit.size).toPrecision(12));
   return fields("run", { duration: `${size} ${unit.scene}`, samples, interval: {} });
-}
-
-/** About how large a body is, in m. */
-function sizeOf(about: About): number {
-  const spread = Math.max(...spreadOf(about.body.moments));
-  const arm = Math.hypot(...about.body.center_of_mass);
-  return Number(Math.max(Math.sqrt((12 * spread) / (about.body.mass ?? 1)), 2 * arm).toPrecision(2));
 }

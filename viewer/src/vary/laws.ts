@@ -1,27 +1,16 @@
-import type { About, Triple } from "../core/core.ts";
-import { around, type Range } from "../panels/slider.tsx";
-import { lengthUnit, si, timeUnit, type Unit } from "../panels/units.ts";
+import type { About, LawArgument, LawEntry, Triple } from "../core/core.ts";
+import { lengthUnit, si, timeUnit, type Unit } from "../format/units.ts";
+import { around, type Range } from "../inputs/range.ts";
 import { table } from "./toml.ts";
 
-/** What turns the body, as the controls have it: nothing but what the scene says, or laws that are chosen here. */
+/** The torque laws chosen in the controls: those of the scene, or those that are on here. */
 export interface LawsChoice {
   from: "scene" | "here";
-  /** The laws that are on. */
-  on: ReadonlySet<LawName>;
-  /** Each parameter by its law and name, in SI. */
+  /** The names of the laws that are on. */
+  on: ReadonlySet<string>;
+  /** Each parameter by its law and name, in SI units. */
   values: Record<string, number>;
 }
-
-export type LawName =
-  | "gravity"
-  | "heavy"
-  | "damping"
-  | "viscous_damping"
-  | "constant_body"
-  | "constant_space"
-  | "torsion_spring"
-  | "gyrostat"
-  | "gravity_gradient";
 
 export interface Parameter {
   name: string;
@@ -31,93 +20,107 @@ export interface Parameter {
   value: number;
 }
 
-/** A law that can be chosen, with parameters of the size that this body feels. */
+/** A law that can be chosen, with parameters of a size that suits the body. */
 export interface LawForm {
-  name: LawName;
+  name: string;
   label: string;
   parameters: Parameter[];
 }
 
-/** The axes of a law with one: a parameter of values 0, 1, 2. */
+/** The axis of a law that has one: a parameter of values 0, 1, 2. */
 export const AXIS = "axis";
 
+/** The parameter of a law that is a value without a table. */
+const VALUE = "value";
+
 /**
- * The laws for a body: gravity in terms of its pivot where `pivot` says that a change of it is understood, else of the
- * torque that the weight exerts. `size` is the body's in m.
+ * The laws that can be chosen for a body: gravity, given by its pivot if `byPivot` and else by the moment of the weight,
+ * and the laws of the registry whose arguments can be suggested from its motion. `size` is that of the body in m.
  */
-export function lawsFor(about: About, momentum: number, size: number, byPivot: boolean): LawForm[] {
+export function lawsFor(
+  registry: readonly LawEntry[],
+  about: About,
+  momentum: number,
+  size: number,
+  byPivot: boolean,
+): LawForm[] {
   const rate = Math.hypot(...about.start.omega_body) || 1;
   const moment = Math.max(...about.body.moments);
-  const turn = (2 * Math.PI) / rate;
   const spin = momentum || moment * rate;
+  const suggested = (argument: LawArgument): number | null => suggestion(argument, rate, moment, spin);
+  const others = registry.filter(
+    (law) => law.name !== "heavy" && required(law).every((x) => suggested(x) !== null),
+  );
+  const forms = others.map((law) => ({
+    name: law.name,
+    label: law.label,
+    parameters: required(law).flatMap((argument) => parametersOf(argument, neat(suggested(argument)!))),
+  }));
+  return [gravity(about, size, (spin * rate) / 20, byPivot), ...forms];
+}
+
+function required(law: LawEntry): LawArgument[] {
+  return law.arguments.filter((argument) => !argument.optional);
+}
+
+/** A value of an argument that changes the motion visibly but slowly; null if its unit says nothing about that. */
+function suggestion(
+  { unit, shape, period }: LawArgument,
+  rate: number,
+  moment: number,
+  spin: number,
+): number | null {
+  const turn = (2 * Math.PI) / rate;
+  if (period) return 10 * turn;
+  switch (unit) {
+    case "1/s":
+      return 0.02 / turn;
+    case "N m s":
+      return (0.02 * moment) / turn;
+    case "N m s^2":
+      return (0.02 * moment) / (turn * rate);
+    case "N m":
+      return shape === "bivector" ? (0.02 * spin) / turn : moment * rate ** 2;
+    case "kg m^2/s":
+      return spin / 2;
+    case "rad/s":
+      return rate / 20;
+    default:
+      return null;
+  }
+}
+
+function parametersOf(argument: LawArgument, value: number): Parameter[] {
+  const { name, field, period, unit, shape } = argument;
+  const label = period ? "Period" : name;
+  const shown = period ? timeUnit(value) : si(unit.replace("^2", "²"), unit);
+  const size = { name: period || field || VALUE, label, unit: shown, value, range: around(value, 50) };
+  if (shape !== "bivector" && shape !== "vector") return [size];
+  const range: Range = { min: 0, max: 2, scale: "linear" };
+  return [{ name: AXIS, label: "Plane", unit: si(""), value: 2, range }, size];
+}
+
+function gravity(about: About, size: number, moment: number, byPivot: boolean): LawForm {
+  const label = "Gravity, on a pivot";
   const parameter = (name: string, label: string, unit: Unit, value: number, range?: Range): Parameter => {
     return { name, label, unit, value, range: range ?? around(value, 50) };
   };
-  const axis = parameter(AXIS, "Plane", si(""), 2, { min: 0, max: 2, scale: "linear" });
-  const held = about.heavy ? Math.hypot(...about.heavy) : neat((spin * rate) / 20);
+  if (!byPivot) {
+    const held = about.heavy ? Math.hypot(...about.heavy) : neat(moment);
+    return { name: "heavy", label, parameters: [parameter("weight", "m g l", si("N m"), held)] };
+  }
   const sides: Range = { min: -size, max: size, scale: "linear" };
-  const pivot = pivotOf(about) ?? -size / 2;
-  const gravity: LawForm = byPivot
-    ? {
-        name: "gravity",
-        label: "Gravity, on a pivot",
-        parameters: [
-          parameter("acceleration", "Acceleration", si("m/s²", "m/s^2"), acceleration(about)),
-          {
-            name: "pivot",
-            label: "Pivot along e₃",
-            unit: lengthUnit(size),
-            value: pivot,
-            range: sides,
-          },
-        ],
-      }
-    : {
-        name: "heavy",
-        label: "Gravity, on a pivot",
-        parameters: [parameter("weight", "m g l", si("N m"), held)],
-      };
-  return [
-    gravity,
-    {
-      name: "damping",
-      label: "Damping −g L",
-      parameters: [parameter("rate", "g", si("1/s"), neat(0.02 / turn))],
-    },
-    {
-      name: "viscous_damping",
-      label: "Viscous damping −d Ω",
-      parameters: [parameter("size", "d", si("N m s"), neat((0.02 * moment) / turn))],
-    },
-    {
-      name: "constant_body",
-      label: "Constant, in the body",
-      parameters: [axis, parameter("size", "Size", si("N m"), neat((0.02 * spin) / turn))],
-    },
-    {
-      name: "constant_space",
-      label: "Constant, in space",
-      parameters: [axis, parameter("size", "Size", si("N m"), neat((0.02 * spin) / turn))],
-    },
-    {
-      name: "torsion_spring",
-      label: "Torsion spring −k Θ",
-      parameters: [parameter("stiffness", "k", si("N m/rad"), neat(moment * rate ** 2))],
-    },
-    {
-      name: "gyrostat",
-      label: "Wheel in the body",
-      parameters: [axis, parameter("momentum", "Its momentum", si("N m s"), neat(spin / 2))],
-    },
-    {
-      name: "gravity_gradient",
-      label: "Gravity gradient, on an orbit",
-      parameters: [parameter("period", "Period", timeUnit(10 * turn), neat(10 * turn))],
-    },
-  ];
+  return {
+    name: "gravity",
+    label,
+    parameters: [
+      parameter("acceleration", "Acceleration", si("m/s²", "m/s^2"), acceleration(about)),
+      parameter("pivot", "Pivot along e₃", lengthUnit(size), pivotOf(about) ?? -size / 2, sides),
+    ],
+  };
 }
 
-/** What the controls begin with. */
+/** The choice before any change. */
 export function noLaws(): LawsChoice {
   return { from: "scene", on: new Set(), values: {} };
 }
@@ -126,62 +129,46 @@ export const key = (law: LawForm, parameter: Parameter): string => `${law.name}.
 
 /** The tables `[torque]` and `[gravity]` of a choice made here. */
 export function lawTables(choice: LawsChoice, laws: LawForm[], about: About): string {
-  const torque: Record<string, number | string | number[] | { stiffness: number } | { period: number }> = {};
+  const torque: Parameters<typeof table>[1] = {};
   let gravity = table("gravity");
   for (const law of laws) {
     if (!choice.on.has(law.name)) continue;
-    const value = (name: string): number => {
-      const parameter = law.parameters.find((one) => one.name === name)!;
-      return choice.values[key(law, parameter)] ?? parameter.value;
-    };
-    const along = (size: number): number[] => [0, 1, 2].map((k) => (k === value(AXIS) ? size : 0));
-    switch (law.name) {
-      case "gravity":
-        gravity = table("gravity", {
-          acceleration: value("acceleration"),
-          pivot: [-about.body.solid_at[0], -about.body.solid_at[1], value("pivot")],
-        });
-        break;
-      case "heavy":
-        torque["heavy"] = unitVector(about.heavy).map((part) => part * value("weight"));
-        break;
-      case "damping":
-        torque["damping"] = value("rate");
-        break;
-      case "viscous_damping":
-        torque["viscous_damping"] = value("size");
-        break;
-      case "constant_body":
-      case "constant_space":
-        torque[law.name] = along(value("size"));
-        break;
-      case "torsion_spring":
-        torque["torsion_spring"] = { stiffness: value("stiffness") };
-        break;
-      case "gyrostat":
-        torque["gyrostat"] = along(value("momentum"));
-        break;
-      case "gravity_gradient":
-        torque["gravity_gradient"] = { period: value("period") };
-        break;
+    const values = new Map(
+      law.parameters.map((one) => [one.name, choice.values[key(law, one)] ?? one.value]),
+    );
+    const axis = values.get(AXIS);
+    const along = (size: number): number | number[] =>
+      axis === undefined ? size : [0, 1, 2].map((k) => (k === axis ? size : 0));
+    values.delete(AXIS);
+    if (law.name === "gravity") {
+      gravity = table("gravity", {
+        acceleration: values.get("acceleration")!,
+        pivot: [-about.body.solid_at[0], -about.body.solid_at[1], values.get("pivot")!],
+      });
+    } else if (law.name === "heavy") {
+      torque["heavy"] = unitVector(about.heavy).map((part) => part * values.get("weight")!);
+    } else if (values.has(VALUE)) {
+      torque[law.name] = along(values.get(VALUE)!);
+    } else {
+      torque[law.name] = Object.fromEntries([...values].map(([name, size]) => [name, along(size)]));
     }
   }
   return table("torque", torque) + gravity;
 }
 
-/** Where the fixed point is on e3: in the axes of the solid or mesh, or as far below the centre of mass. */
+/** The fixed point on e3 in the axes of the solid or mesh; else its distance below the centre of mass. */
 function pivotOf({ held, body }: About): number | null {
   const arm = Math.hypot(...body.center_of_mass);
   if (!held || arm === 0) return null;
   return body.solid || body.mesh ? -body.solid_at[2] : -arm;
 }
 
-/** A suggestion needs no more than two digits. */
+/** A number with two digits. */
 function neat(value: number): number {
   return Number(value.toPrecision(2));
 }
 
-/** Of gravity, from the weight that the motion tells; that of the Earth where there is none. */
+/** The acceleration of gravity by the weight of the motion, or that of the Earth. */
 function acceleration(about: About): number {
   const { heavy, body } = about;
   const arm = Math.hypot(...body.center_of_mass);

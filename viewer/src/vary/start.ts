@@ -1,33 +1,32 @@
 import type { About, Quadruple, Triple } from "../core/core.ts";
-import type { Unit } from "../panels/units.ts";
-import { DEGREE } from "../panels/units.ts";
+import { DEGREE, type Unit } from "../format/units.ts";
 import { table } from "./toml.ts";
 
-/** How a body starts, as the controls have it: spin, attitude, and where its centre of mass is. */
+/** The initial state chosen by the controls. */
 export interface StartChoice {
   spin: Spin;
-  /** Null while the scene's own rotor stands. */
+  /** Null while the rotor of the scene is unchanged. */
   attitude: Attitude | null;
   rotor: Quadruple;
-  /** Of the centre of mass, where forces move it. */
+  /** Position and velocity of the centre of mass, where forces move it. */
   path: { position: Triple; velocity: Triple } | null;
   /** s. */
   time: number;
 }
 
-/** Ω_B: mostly in one plane, and off it by an angle, toward the next plane or the one after. */
+/** Ω_B in spherical coordinates: an axis, a rate, and an angle from the axis towards the next one. */
 export interface Spin {
-  /** 0, 1, 2 for e2∧e3, e3∧e1, e1∧e2; three more for the other sense. */
+  /** 0, 1, 2 for e2∧e3, e3∧e1, e1∧e2; 3, 4, 5 for the opposite sense. */
   plane: number;
   /** rad/s. */
   rate: number;
-  /** rad. */
+  /** Angle from the axis, rad. */
   off: number;
-  /** rad. */
+  /** Direction of that angle, rad: 0 towards the next axis. */
   toward: number;
 }
 
-/** The rotor exp(−½ turn e1e2) exp(−½ tilt e2e3) exp(−½ roll e1e2): angles in rad. */
+/** The rotor exp(−½ turn e1e2) exp(−½ tilt e2e3) exp(−½ roll e1e2); angles in rad. */
 export interface Attitude {
   turn: number;
   tilt: number;
@@ -55,15 +54,7 @@ function spinOf(omega: Triple): Spin {
   };
 }
 
-/** The angles of a rotor. */
-export function attitudeOf([scalar, b1, b2, b3]: Quadruple): Attitude {
-  const tilt = 2 * Math.atan2(Math.hypot(b1, b2), Math.hypot(scalar, b3));
-  const sum = Math.atan2(-b3, scalar);
-  const difference = b1 === 0 && b2 === 0 ? sum : Math.atan2(-b2, -b1);
-  return { turn: wrapped(sum + difference), tilt, roll: wrapped(sum - difference) };
-}
-
-/** The table `[initial]`, in the words of the handout: the core does the algebra. */
+/** The table `[initial]`; the core evaluates its formulas. */
 export function startTable(start: StartChoice, rate: Unit): string {
   const { spin, attitude, rotor, path, time } = start;
   return table("initial", {
@@ -83,20 +74,15 @@ function spinFormula({ plane, rate, off, toward }: Spin, unit: Unit): string {
 }
 
 function rotorFormula({ turn, tilt, roll }: Attitude): string {
-  const turned = (by: number, plane: string): string => `exp(${angle(-by / 2)} ${plane})`;
-  return `${turned(turn, PLANES[2]!)} ${turned(tilt, PLANES[0]!)} ${turned(roll, PLANES[2]!)}`;
+  const rotor = (by: number, plane: string): string => `exp(${angle(-by / 2)} ${plane})`;
+  return `${rotor(turn, PLANES[2]!)} ${rotor(tilt, PLANES[0]!)} ${rotor(roll, PLANES[2]!)}`;
 }
 
 function angle(radians: number): string {
   return `${digits(radians / DEGREE.size)} deg`;
 }
 
-/** Without the last digits, which come from radians. */
+/** Twelve digits, which drops the rounding errors of the conversion from radians. */
 function digits(number: number): string {
   return String(Number(number.toPrecision(12)));
-}
-
-/** Between −π and π. */
-function wrapped(angle: number): number {
-  return angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 }

@@ -1,24 +1,24 @@
-/** Tables of scenes as text, from what the sliders say. */
+/** Tables of a scene as TOML text. */
 
-type Field = number | string | Field[] | { [name: string]: Field };
+type Field = number | string | readonly Field[] | { [name: string]: Field };
 
-/** `[name]` and its fields; with none, the empty table that takes away the scene's own. */
+/** `[name]` and its fields; without fields, an empty table, which removes that of the scene. */
 export function table(name: string, fields: Record<string, Field> = {}): string {
-  const lines = Object.entries(fields).map(([field, value]) => `${field} = ${written(value)}`);
+  const lines = Object.entries(fields).map(([field, value]) => `${field} = ${toml(value)}`);
   return [`[${name}]`, ...lines, ""].join("\n");
 }
 
-/** Fields of a table of which the others stay, to stand before any `[name]`; an empty one takes the scene's own away. */
+/** Single fields of a table as dotted keys, which must precede all tables; `{}` removes the field of the scene. */
 export function fields(name: string, values: Record<string, Field>): string {
   return Object.entries(values)
-    .map(([field, value]) => `${name}.${field} = ${written(value)}\n`)
+    .map(([field, value]) => `${name}.${field} = ${toml(value)}\n`)
     .join("");
 }
 
-function written(value: Field): string {
+function toml(value: Field): string {
   if (typeof value === "number") return String(value);
   if (typeof value === "string") return JSON.stringify(value);
-  if (Array.isArray(value)) return `[${value.map(written).join(", ")}]`;
-  const fields = Object.entries(value).map(([name, field]) => `${name} = ${written(field)}`);
+  if (value instanceof Array) return `[${value.map(toml).join(", ")}]`;
+  const fields = Object.entries(value).map(([name, field]) => `${name} = ${toml(field)}`);
   return `{ ${fields.join(", ")} }`;
 }

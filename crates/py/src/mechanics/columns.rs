@@ -1,16 +1,14 @@
-//! Arguments of laws: numbers for all bodies, or for each body of a batch its own.
+//! Arguments of laws: numbers shared by all bodies, or a row for each body of a batch.
 
-use super::made::Values;
 use crate::algebra::value::{self, Operand};
 use crate::support::arrays::{Rows, bad, numbers, place};
 use numpy::PyUntypedArrayMethods;
 use polhode_ga::product::Grades;
-use polhode_ga::{Bivector, Graded, Vector};
+use polhode_ga::{Graded, Vector};
 use polhode_rigid::laws::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
-use std::convert::Infallible;
 use std::fmt::Display;
 
 /// Values of `polhode._mechanics.parameters.Batch`: a row for each body.
@@ -20,7 +18,7 @@ pub(crate) struct Batch<'py> {
 }
 
 impl<'py> Batch<'py> {
-    /// A batch, if it is one.
+    /// The value as a batch, if it is one.
     pub fn of(value: &Bound<'py, PyAny>) -> PyResult<Option<Batch<'py>>> {
         static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
         if !value.is_instance(CLASS.import(value.py(), "polhode._mechanics.parameters", "Batch")?)? {
@@ -50,13 +48,22 @@ impl<'py> Batch<'py> {
     }
 }
 
-/// N numbers for all bodies, or N for each.
-pub(crate) struct Column<const N: usize>(Vec<[f64; N]>);
+/// Rows of numbers: one for all bodies, or one for each.
+pub(crate) struct Column {
+    numbers: Vec<f64>,
+    size: usize,
+}
 
-impl<const N: usize> Column<N> {
-    /// Those of a body.
-    pub fn of(&self, body: usize) -> [f64; N] {
-        self.0[if self.0.len() == 1 { 0 } else { body }]
+impl Column {
+    /// The numbers of a body.
+    pub fn of(&self, body: usize) -> &[f64] {
+        let first = if self.numbers.len() == self.size { 0 } else { body * self.size };
+        &self.numbers[first..first + self.size]
+    }
+
+    /// The three numbers of a body.
+    pub fn vector(&self, body: usize) -> Vector {
+        Vector(self.of(body).try_into().unwrap_or([f64::NAN; 3]))
     }
 }
 
@@ -68,16 +75,12 @@ pub(crate) struct Arguments<'a, 'py> {
 }
 
 impl<'a, 'py> Arguments<'a, 'py> {
-    /// Those of a law of this name.
-    pub fn of(name: &str, all: &'a Bound<'py, PyTuple>) -> PyResult<Arguments<'a, 'py>> {
-        let own: Vec<Bound<'py, PyAny>> = match name {
-            "formula" => {
-                let values: Values<'py> = all.get_item(2)?.extract()?;
-                values.into_iter().map(|(_, value)| value).collect()
-            }
-            _ => all.iter().collect(),
-        };
-        for argument in own {
+    /// The arguments; `values` are those that may be batches.
+    pub fn new(
+        all: &'a Bound<'py, PyTuple>,
+        values: impl IntoIterator<Item = Bound<'py, PyAny>>,
+    ) -> PyResult<Arguments<'a, 'py>> {
+        for argument in values {
             if let Some(batch) = Batch::of(&argument)? {
                 return Ok(Arguments { all, shape: batch.shape().to_vec() });
             }
@@ -85,50 +88,30 @@ impl<'a, 'py> Arguments<'a, 'py> {
         Ok(Arguments { all, shape: Vec::new() })
     }
 
-    /// The numbers of an argument.
-    pub fn column<const N: usize>(&self, which: usize) -> PyResult<Column<N>> {
+    /// The numbers of an argument, `size` for each body.
+    pub fn column(&self, which: usize, size: usize) -> PyResult<Column> {
         let argument = self.all.get_item(which)?;
-        if let Some(batch) = Batch::of(&argument)? {
-            if batch.shape() != self.shape || batch.rows.shape().last() != Some(&N) {
+        let numbers = match Batch::of(&argument)? {
+            Some(batch) if batch.shape() == self.shape && batch.rows.shape().last() == Some(&size) => {
+                numbers(&batch.rows)?.to_vec()
+            }
+            Some(batch) => {
                 return Err(bad(format!("rows of shape {:?} do not fit the law", batch.rows.shape())));
             }
-            return Ok(Column(numbers(&batch.rows)?.as_chunks::<N>().0.to_vec()));
+            None if size == 1 => vec![argument.extract()?],
+            None => argument.extract()?,
+        };
+        if numbers.len() % size != 0 || numbers.is_empty() && !self.shape.contains(&0) {
+            return Err(bad(format!("expected {size} numbers, got {}", numbers.len())));
         }
-        let row = argument.extract().or_else(|error| match (N, argument.extract()) {
-            (1, Ok(number)) => Ok([number; N]),
-            _ => Err(error),
-        });
-        Ok(Column(vec![row?]))
+        Ok(Column { numbers, size })
     }
 
     /// A law for each body, or one; an error names the body.
-    pub fn each<E: Display>(&self, make: impl Fn(usize) -> Result<Torque, E>) -> PyResult<Vec<Torque>> {
+    pub fn each<E: Display>(&self, law: impl Fn(usize) -> Result<Torque, E>) -> PyResult<Vec<Torque>> {
         let count = self.shape.iter().product();
-        let told = |body, error| bad(format!("{}{error}", place(body, &self.shape)));
-        (0..count).map(|body| make(body).map_err(|error| told(body, error))).collect()
-    }
-
-    /// The same where nothing can be wrong.
-    pub fn each_sound(&self, make: impl Fn(usize) -> Torque) -> PyResult<Vec<Torque>> {
-        self.each(|body| Ok::<_, Infallible>(make(body)))
-    }
-
-    /// The laws of a number.
-    pub fn each_number(&self, make: impl Fn(f64) -> Torque) -> PyResult<Vec<Torque>> {
-        let column: Column<1> = self.column(0)?;
-        self.each_sound(|body| make(column.of(body)[0]))
-    }
-
-    /// The laws of a vector.
-    pub fn each_vector(&self, make: impl Fn(Vector) -> Torque) -> PyResult<Vec<Torque>> {
-        let column = self.column(0)?;
-        self.each_sound(|body| make(Vector(column.of(body))))
-    }
-
-    /// The laws of a bivector.
-    pub fn each_bivector(&self, make: impl Fn(Bivector) -> Torque) -> PyResult<Vec<Torque>> {
-        let column = self.column(0)?;
-        self.each_sound(|body| make(Bivector(column.of(body))))
+        let failed = |body, error| bad(format!("{}{error}", place(body, &self.shape)));
+        (0..count).map(|body| law(body).map_err(|error| failed(body, error))).collect()
     }
 }
 

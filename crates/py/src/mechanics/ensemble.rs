@@ -2,8 +2,8 @@
 
 use super::bodies::Inertia;
 use super::columns::spread;
-use super::laws::Force;
-use super::made::{Made, interrupted};
+use super::forces_and_events::Force;
+use super::law_value::{LawValue, interrupted};
 use super::simulation::{Limits, method_of, run};
 use super::torque::Law;
 use crate::support::arrays::{Array, Rows, all_threads, bad, line, numbers, place};
@@ -53,7 +53,7 @@ pub(crate) fn simulate_many<'py>(
     if shape.contains(&0) || times.len() == 0 {
         return Err(bad("there is nothing to simulate"));
     }
-    let made: Vec<Py<Made>> = laws
+    let made: Vec<Py<LawValue>> = laws
         .iter()
         .map(|law| law.as_super().clone().unbind())
         .chain(forces.iter().map(|force| force.as_super().clone().unbind()))

@@ -1,8 +1,8 @@
 //! Simulation.
 
 use super::bodies::{Inertia, rotor};
-use super::laws::{Event, Force};
-use super::made::{Made, failed};
+use super::forces_and_events::{Event, Force};
+use super::law_value::{LawValue, failed};
 use super::motion::check_times;
 use super::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
@@ -68,7 +68,7 @@ fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
 pub(crate) struct Motion {
     motion: rigid::Motion,
     /// The laws and events, which keep what their functions raise.
-    made: Vec<Py<Made>>,
+    made: Vec<Py<LawValue>>,
 }
 
 #[pymethods]
@@ -124,7 +124,7 @@ impl Motion {
 /// Runs without the GIL, with progress and Ctrl-C.
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
-    made: &[Py<Made>],
+    made: &[Py<LawValue>],
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<T, SimulateError> + Send,
 ) -> PyResult<T> {
@@ -182,7 +182,7 @@ pub(crate) fn simulate<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Motion> {
     let (method, exact) = method_of(method)?;
-    let made: Vec<Py<Made>> = laws
+    let made: Vec<Py<LawValue>> = laws
         .iter()
         .map(|law| law.as_super().clone().unbind())
         .chain(forces.iter().map(|force| force.as_super().clone().unbind()))

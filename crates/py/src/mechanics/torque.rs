@@ -1,24 +1,26 @@
-//! Torque laws: values made of a name and arguments, and their torques.
+//! Torque laws by name and arguments, and the torque at a state.
 
 use super::bodies::{Inertia, rotor};
-use super::columns::{Arguments, Batch};
-use super::made::{
-    Asked, Known, Made, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
+use super::columns::{Arguments, Batch, Column};
+use super::law_value::{
+    Callback, Known, LawValue, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
+use polhode_ga::Bivector;
 use polhode_ga::formula::{Given, Input, canonical};
-use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::weight_moment;
+use polhode_rigid::laws::registry::{Entry, Kernel, torque};
 use polhode_rigid::laws::torque::{
-    Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque, total, wheel,
+    Axes, FormulaTorque, FunctionTorque, Kind, Orbit, Table, Torque, total, wheel,
 };
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// A torque law, or one for each body of a batch.
-#[pyclass(frozen, extends = Made, module = "polhode._native")]
+#[pyclass(frozen, extends = LawValue, module = "polhode._native")]
 pub(crate) struct Law {
     pub(crate) torques: Vec<Torque>,
     /// Shape of the batch.
@@ -26,16 +28,16 @@ pub(crate) struct Law {
 }
 
 impl Law {
-    /// A law that is made, with the name and the arguments that would make it.
+    /// A law that is known already, with its name and arguments.
     pub(crate) fn named(
         py: Python<'_>,
         torque: Torque,
         name: &str,
         arguments: Bound<'_, PyTuple>,
     ) -> PyResult<Py<Law>> {
-        let made = Made::new(name.to_owned(), arguments, Raised::default());
+        let value = LawValue::new(name.to_owned(), arguments, Raised::default());
         let law = Law { torques: vec![torque], shape: Vec::new() };
-        Py::new(py, PyClassInitializer::from(made).add_subclass(law))
+        Py::new(py, PyClassInitializer::from(value).add_subclass(law))
     }
 
     /// The law of a single body.
@@ -51,14 +53,14 @@ impl Law {
 
 #[pymethods]
 impl Law {
-    /// A law by its name in `polhode.torque`, its arguments as that module checked and spelled them.
+    /// A law by its name in `polhode.torque`, its arguments as that module has checked and converted them.
     #[new]
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Law>> {
         let raised = Raised::default();
-        let given = Arguments::of(&name, &arguments)?;
-        let law = Law { torques: made(&name, &given, &raised)?, shape: given.shape };
-        Ok(PyClassInitializer::from(Made::new(name, arguments, raised)).add_subclass(law))
+        let (torques, shape) = laws(&name, &arguments, &raised)?;
+        let law = Law { torques, shape };
+        Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(law))
     }
 
     /// The moments of the weight, rows (n, 3) in body axes, of a law that holds the body; none of others.
@@ -118,81 +120,65 @@ pub(crate) fn orbit_directions<'py>(
     table(py, numbers(&times)?.iter().map(|&time| orbit.place(time).0.0))
 }
 
-/// The laws of a name and arguments: one, or one for each body.
-fn made(name: &str, given: &Arguments<'_, '_>, raised: &Raised) -> PyResult<Vec<Torque>> {
-    let arguments = given.all;
-    match name {
-        "heavy" => given.each_vector(Torque::Heavy),
-        "gravity" => {
-            let (acceleration, mass) = (given.column(0)?, given.column(1)?);
-            let (center, pivot) = (given.column(2)?, given.column(3)?);
-            given.each_sound(|k| {
-                let ([acceleration], [mass]) = (acceleration.of(k), mass.of(k));
-                let arm = Vector(center.of(k)) - Vector(pivot.of(k));
-                Torque::Heavy(weight_moment(mass, acceleration, arm))
-            })
-        }
-        "gravity_gradient" => {
-            let (rate, eccentricity, anomaly) = (given.column(0)?, given.column(1)?, given.column(2)?);
-            given.each(|k| {
-                let ([n], [e], [m]) = (rate.of(k), eccentricity.of(k), anomaly.of(k));
-                Orbit::new(n, e, m).map(Torque::GravityGradient)
-            })
-        }
-        "constant_body" => given.each_bivector(Torque::ConstantBody),
-        "constant_space" => given.each_bivector(Torque::ConstantSpace),
-        "damping" => given.each_number(Torque::Damping),
-        "quadratic_damping" => given.each_number(Torque::QuadraticDamping),
-        "viscous_damping" => {
-            let along = given.column(0)?;
-            given.each_sound(|k| Torque::ViscousDamping(Gains::new(along.of(k))))
-        }
-        "magnetic" => {
-            let (dipole, field) = (given.column(0)?, given.column(1)?);
-            given
-                .each_sound(|k| Torque::Magnetic { dipole: Vector(dipole.of(k)), field: Vector(field.of(k)) })
-        }
-        "torsion_spring" => {
-            let (stiffness, rest) = (given.column(0)?, given.column(1)?);
-            given.each(|k| {
-                let [stiffness] = stiffness.of(k);
-                Rotor::from_components(rest.of(k)).map(|rest| Torque::TorsionSpring { stiffness, rest })
-            })
-        }
-        "gyrostat" => given.each_bivector(Torque::Wheel),
-        "pd_control" => {
-            let (stiffness, damping, target) = (given.column(0)?, given.column(1)?, given.column(2)?);
-            given.each(|k| {
-                let (stiffness, damping) = (Gains::new(stiffness.of(k)), Gains::new(damping.of(k)));
-                let target = Rotor::from_components(target.of(k));
-                target.map(|target| Torque::Control { stiffness, damping, target })
-            })
-        }
-        "larmor" => given.each_vector(Torque::Larmor),
-        "tabulated" => {
-            let (times, rows, frame, kind): (_, Vec<[f64; 3]>, String, String) = arguments.extract()?;
-            let kind = if kind == "cubic" { Kind::Cubic } else { Kind::Linear };
-            let rows = rows.into_iter().map(Bivector).collect();
-            Ok(vec![Torque::Tabulated(Arc::new(Table::new(times, rows, axes(&frame), kind).map_err(bad)?))])
-        }
-        "formula" => formulas(given),
-        "function" => {
-            let asked = Asked { call: sole(arguments)?, raised: raised.clone(), what: "torque" };
-            Ok(vec![Torque::Function(FunctionTorque::new(move |time, rotor, omega| {
-                asked.of(
-                    time,
-                    |py| (time, rotor_of(py, rotor)?, bivector_of(py, omega)?).into_pyobject(py),
-                    bivector,
-                )
-            }))])
-        }
-        _ => Err(bad(format!("no torque law is called {name}"))),
-    }
+/// The law of this name and these arguments, or one for each body.
+fn laws(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<(Vec<Torque>, Vec<usize>)> {
+    let values: Values<'_> = if name == "formula" { arguments.get_item(2)?.extract()? } else { Vec::new() };
+    let batches = arguments.iter().chain(values.iter().map(|(_, value)| value.clone()));
+    let given = Arguments::new(arguments, batches)?;
+    let laws = match (name, torque(name)) {
+        ("gravity", _) => gravity(&given)?,
+        ("formula", _) => formulas(&given, values)?,
+        ("function", _) => vec![function(sole(arguments)?, raised)],
+        (_, Some(Entry { kernel: Kernel::Table, .. })) => vec![tabulated(arguments)?],
+        (_, Some(entry)) => registered(entry, &given)?,
+        _ => return Err(bad(format!("{name} is not a torque law"))),
+    };
+    Ok((laws, given.shape))
+}
+
+/// A law of the registry, for each body.
+fn registered(entry: &'static Entry<Torque>, given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
+    let columns = entry.arguments.iter().enumerate();
+    let columns: Vec<Column> =
+        columns.map(|(k, argument)| given.column(k, argument.shape.size())).collect::<PyResult<_>>()?;
+    given.each(|body| {
+        let numbers: Vec<f64> = columns.iter().flat_map(|column| column.of(body)).copied().collect();
+        entry.check(&numbers)?;
+        entry.build(&numbers)
+    })
+}
+
+/// The weight of bodies: acceleration, mass, centre of mass and pivot.
+fn gravity(given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
+    let (acceleration, mass) = (given.column(0, 1)?, given.column(1, 1)?);
+    let (center, pivot) = (given.column(2, 3)?, given.column(3, 3)?);
+    given.each(|k| {
+        let arm = center.vector(k) - pivot.vector(k);
+        Ok::<_, Infallible>(Torque::Heavy(weight_moment(mass.of(k)[0], acceleration.of(k)[0], arm)))
+    })
+}
+
+fn tabulated(arguments: &Bound<'_, PyTuple>) -> PyResult<Torque> {
+    let (times, rows, frame, kind): (_, Vec<[f64; 3]>, String, String) = arguments.extract()?;
+    let kind = if kind == "cubic" { Kind::Cubic } else { Kind::Linear };
+    let rows = rows.into_iter().map(Bivector).collect();
+    Table::new(times, rows, axes(&frame), kind).map(|table| Torque::Tabulated(Arc::new(table))).map_err(bad)
+}
+
+fn function(call: Py<PyAny>, raised: &Raised) -> Torque {
+    let callback = Callback { call, raised: raised.clone(), what: "torque" };
+    Torque::Function(FunctionTorque::new(move |time, rotor, omega| {
+        callback.at(
+            time,
+            |py| (time, rotor_of(py, rotor)?, bivector_of(py, omega)?).into_pyobject(py),
+            bivector,
+        )
+    }))
 }
 
 /// A formula, compiled once, with the values of each body.
-fn formulas(given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
-    let (text, frame, values): (String, String, Values<'_>) = given.all.extract()?;
+fn formulas(given: &Arguments<'_, '_>, values: Values<'_>) -> PyResult<Vec<Torque>> {
+    let (text, frame): (String, String) = given.all.get_slice(0, 2).extract()?;
     let (mut first, mut own) = (Values::with_capacity(values.len()), Vec::new());
     for (name, value) in values {
         let Some(batch) = Batch::of(&value)? else {
@@ -203,11 +189,11 @@ fn formulas(given: &Arguments<'_, '_>) -> PyResult<Vec<Torque>> {
         own.push((canonical(&name).unwrap_or_else(|| name.clone()), batch.graded(&like)?));
         first.push((name, like));
     }
-    let made = |names, value: &mut Known<'_>| FormulaTorque::new(&text, axes(&frame), names, value);
-    let law = formula(given.all.py(), &text, &first, made)?;
-    given.each_sound(|k| {
+    let compile = |names, value: &mut Known<'_>| FormulaTorque::new(&text, axes(&frame), names, value);
+    let law = formula(given.all.py(), &text, &first, compile)?;
+    given.each(|k| {
         let value = |input: &Input| own.iter().find(|(name, _)| *name == input.name).map(|(_, rows)| rows[k]);
-        Torque::Formula(law.with_values(|input| value(input).map(Given::Value)))
+        Ok::<_, Infallible>(Torque::Formula(law.with_values(|input| value(input).map(Given::Value))))
     })
 }
 

@@ -4,7 +4,7 @@ use super::named;
 use crate::mechanics::bodies::Inertia;
 use crate::support::arrays::{Array, bad, line, table};
 use numpy::{PyArray1, PyArrayMethods};
-use polhode_rigid::laws::torque::{Argument, Torque};
+use polhode_rigid::laws::torque::Torque;
 use polhode_rigid::{body, scene};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -82,34 +82,25 @@ impl Draws {
     }
 }
 
-/// A law that all bodies have, or the name of one that each has for itself and its arguments, as arrays (n,) or
-/// (n, m).
+/// A law that all bodies share, or the name of one that differs from body to body and its arguments, as arrays (n,)
+/// or (n, m).
 fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
     }
-    let calls: Vec<(&str, Vec<Argument>)> = torques.iter().filter_map(Torque::call).collect();
-    let Some((name, first)) = calls.first() else { return Err(bad("a law without numbers varies")) };
-    let column = |k: usize| column(py, calls.iter().map(|(_, numbers)| &numbers[k]));
-    let columns: Vec<Array<'_>> = (0..first.len()).map(column).collect::<PyResult<_>>()?;
-    Ok((*name, PyTuple::new(py, columns)?).into_pyobject(py)?.into_any())
-}
-
-/// One argument of all bodies.
-fn column<'a, 'py>(py: Python<'py>, numbers: impl Iterator<Item = &'a Argument>) -> PyResult<Array<'py>> {
-    let (mut all, mut count, mut size) = (Vec::new(), 0, None);
-    for numbers in numbers {
-        count += 1;
-        match numbers {
-            Argument::One(x) => all.push(*x),
-            Argument::Row(row) => {
-                size = Some(row.len());
-                all.extend(row);
-            }
+    let own: Vec<_> = torques.iter().filter_map(Torque::registered).collect();
+    let Some(&(entry, _)) = own.first() else { return Err(bad("a law without numbers varies")) };
+    let mut first = 0;
+    let columns = entry.arguments.iter().map(|argument| {
+        let size = argument.shape.size();
+        let numbers: Vec<f64> =
+            own.iter().flat_map(|(_, numbers)| &numbers[first..first + size]).copied().collect();
+        first += size;
+        match size {
+            1 => Ok(line(py, numbers)),
+            _ => PyArray1::from_vec(py, numbers).reshape(vec![own.len(), size]),
         }
-    }
-    match size {
-        None => Ok(line(py, all)),
-        Some(size) => PyArray1::from_vec(py, all).reshape(vec![count, size]),
-    }
+    });
+    let columns: Vec<Array<'_>> = columns.collect::<PyResult<_>>()?;
+    Ok((entry.name, PyTuple::new(py, columns)?).into_pyobject(py)?.into_any())
 }

@@ -7,11 +7,11 @@ use crate::mechanics::bodies::Body;
 use crate::mechanics::torque::Law;
 use crate::support::arrays::{Array, bad, line, table};
 use draws::Draws;
+use polhode_ga::Bivector;
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
-use polhode_ga::{Bivector, Vector};
-use polhode_rigid::laws::force::Force;
-use polhode_rigid::laws::torque::{Argument, Axes, Kind, Torque};
+use polhode_rigid::laws::registry::{Entry, TABLE};
+use polhode_rigid::laws::torque::{Axes, Kind, Torque};
 use polhode_rigid::scene::Push;
 use polhode_rigid::{Diagnostic, Size, Solid, TriangleMesh, scene};
 use pyo3::create_exception;
@@ -92,14 +92,14 @@ pub(crate) fn scene_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Option<(Arra
     read.map(|mesh| Ok((table(py, mesh.vertices().iter().map(|v| v.0))?, mesh.faces().to_vec()))).transpose()
 }
 
-/// A law with the call of `polhode.torque` that would make it.
+/// A law with its name in `polhode.torque` and its arguments.
 pub(crate) fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
     let (name, arguments) = match &torque {
         Torque::Tabulated(table) => {
             let times = PyTuple::new(py, table.times())?;
             let rows = PyTuple::new(py, table.torques().iter().map(|Bivector([x, y, z])| (*x, *y, *z)))?;
             let kind = if table.kind == Kind::Cubic { "cubic" } else { "linear" };
-            ("tabulated", (times, rows, axes(table.axes), kind).into_pyobject(py)?)
+            (TABLE, (times, rows, axes(table.axes), kind).into_pyobject(py)?)
         }
         Torque::Formula(law) => {
             let known = law.known().map(|(name, given)| Ok((name, known(py, given)?)));
@@ -107,15 +107,10 @@ pub(crate) fn named(py: Python<'_>, torque: Torque) -> PyResult<Py<Law>> {
             ("formula", (law.text(), axes(law.axes()), known).into_pyobject(py)?)
         }
         _ => {
-            let Some((name, numbers)) = torque.call() else {
-                return Err(PyValueError::new_err("a scene has no functions of Python's"));
+            let Some((entry, numbers)) = torque.registered() else {
+                return Err(PyValueError::new_err("a scene has no Python functions"));
             };
-            let argument = |argument: &Argument| match argument {
-                Argument::One(x) => Ok(x.into_pyobject(py)?.into_any()),
-                Argument::Row(row) => Ok(PyTuple::new(py, row)?.into_any()),
-            };
-            let arguments = numbers.iter().map(argument).collect::<PyResult<Vec<_>>>()?;
-            (name, PyTuple::new(py, arguments)?)
+            (entry.name, split(py, entry, &numbers)?)
         }
     };
     Law::named(py, torque, name, arguments)
@@ -136,18 +131,19 @@ fn known(py: Python<'_>, given: Given) -> PyResult<Bound<'_, PyAny>> {
     }
 }
 
-/// The call of `polhode.force` that makes a force.
+/// The arguments of a law from their numbers.
+fn split<'py, T>(py: Python<'py>, entry: &Entry<T>, numbers: &[f64]) -> PyResult<Bound<'py, PyTuple>> {
+    let argument = |(_, own): (_, &[f64])| match own {
+        [x] => Ok(x.into_pyobject(py)?.into_any()),
+        own => Ok(PyTuple::new(py, own)?.into_any()),
+    };
+    PyTuple::new(py, entry.split(numbers).map(argument).collect::<PyResult<Vec<_>>>()?)
+}
+
+/// The name of a force in `polhode.force` and its arguments.
 fn pushed<'py>(py: Python<'py>, push: &Push) -> PyResult<(&'static str, Bound<'py, PyTuple>)> {
-    let row = |Vector(v): Vector| line(py, v.to_vec());
-    Ok(match &push.force {
-        Force::Constant(force) => ("constant", (row(*force),).into_pyobject(py)?),
-        Force::Body(force) => ("thrust", (row(*force), push.at.map(row)).into_pyobject(py)?),
-        Force::Drag(k) => ("drag", (*k,).into_pyobject(py)?),
-        Force::QuadraticDrag(k) => ("quadratic_drag", (*k,).into_pyobject(py)?),
-        Force::Spring(k, anchor) => ("spring", (*k, row(*anchor)).into_pyobject(py)?),
-        Force::Central(mu) => ("central", (*mu,).into_pyobject(py)?),
-        Force::Formula(_) | Force::Function(_) => {
-            return Err(PyValueError::new_err("a scene has no such force"));
-        }
-    })
+    let Some((entry, numbers)) = push.registered() else {
+        return Err(PyValueError::new_err("a scene has no such force"));
+    };
+    Ok((entry.name, split(py, entry, &numbers)?))
 }

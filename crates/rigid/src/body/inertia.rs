@@ -85,6 +85,22 @@ impl Inertia {
         Ok(Inertia { matrix, moments, frame })
     }
 
+    /// The map of a body with the second moments `∫x_k² dm` along axes that a rotor takes to body axes.
+    pub fn from_second_moments([a, b, c]: [f64; 3], axes: Rotor) -> Result<Inertia, BodyError> {
+        Ok(Inertia::from_principal_moments([b + c, c + a, a + b])?.rotated(axes))
+    }
+
+    /// The second moments `∫x_k² dm`, and the axes: along the body axes where these are principal, up to rounding, and
+    /// otherwise along the principal axes, with the rotor that takes them to body axes.
+    pub fn second_moments(&self) -> ([f64; 3], Option<Rotor>) {
+        let m = &self.matrix;
+        let largest = self.moments.into_iter().fold(0.0, f64::max);
+        let aligned = [m[0][1], m[1][2], m[0][2]].iter().all(|x| x.abs() <= 1e-12 * largest);
+        let moments = if aligned { [m[0][0], m[1][1], m[2][2]] } else { self.moments };
+        let half = 0.5 * moments.iter().sum::<f64>();
+        (moments.map(|moment| (half - moment).max(0.0)), (!aligned).then_some(self.frame))
+    }
+
     /// `I(B)`: the angular momentum of a body with angular velocity `B`.
     pub fn apply(&self, b: Bivector) -> Bivector {
         Bivector(from_fn(|i| (0..3).map(|j| self.matrix[i][j] * b.0[j]).sum()))

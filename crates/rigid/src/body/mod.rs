@@ -11,6 +11,7 @@
 pub mod inertia;
 pub mod mesh;
 pub mod solids;
+pub mod surface;
 
 use crate::error::BodyError;
 use crate::numerics::sum::{Sum, SymmetricSum};

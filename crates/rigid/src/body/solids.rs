@@ -105,6 +105,27 @@ impl Solid {
         }
     }
 
+    /// The solid of a kind, by its name in scenes, that fills a box of these side lengths; None for an unknown name.
+    pub fn filling(kind: &str, [x, y, z]: [f64; 3]) -> Option<Solid> {
+        let [radius, mean] = [0.25 * (x + y), (x + y + z) / 3.0];
+        Some(match kind {
+            "box" => Solid::Box { lengths: [x, y, z] },
+            "ellipsoid" => Solid::Ellipsoid { semi_axes: [0.5 * x, 0.5 * y, 0.5 * z] },
+            "sphere" => Solid::Sphere { radius: 0.5 * mean },
+            "hollow_sphere" => Solid::HollowSphere { outer_radius: 0.5 * mean, inner_radius: 0.375 * mean },
+            "cylinder" => Solid::Cylinder { radius, height: z },
+            "cone" => Solid::Cone { radius, height: z },
+            "capsule" => Solid::Capsule { radius, height: (z - 2.0 * radius).max(0.1 * radius) },
+            "rod" => Solid::Rod { length: x.max(y).max(z) },
+            "disc" => Solid::Disc { radius },
+            "torus" => {
+                let minor_radius = (0.5 * z).min(radius / 3.0);
+                Solid::Torus { major_radius: radius - minor_radius, minor_radius }
+            }
+            _ => return None,
+        })
+    }
+
     /// The solid as a body, its centre of mass on the axis e3.
     pub fn body(self, amount: Amount) -> Result<Body, BodyError> {
         self.check()?;

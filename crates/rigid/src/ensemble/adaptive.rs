@@ -8,7 +8,7 @@ use super::body_run::Seat;
 use super::crew::{Crew, Member, SIDE_BY_SIDE};
 use super::laws::{Laws, Nothing};
 use crate::error::SimulateError;
-use crate::laws::forcing::Exert;
+use crate::laws::forcing::Forcing;
 use crate::laws::torque::Torque;
 use crate::methods::classical::Bodies;
 use crate::methods::runge_kutta::{DOP853, Points, step};
@@ -154,7 +154,7 @@ impl<'a, const W: usize, const F: bool> Deck<'a, W, F> {
 
     /// Rounds until a lane is empty that was not. Whether to go on.
     #[inline(always)]
-    fn rounds<E: Exert<W, F>>(
+    fn rounds<E: Forcing<W, F>>(
         &mut self,
         crew: &Crew<'a>,
         torques: &[Vec<Torque>; W],

@@ -3,7 +3,7 @@
 //! Laws of one kind whose parameters add up become one. What all bodies share at a time, as an orbit or a table, is
 //! evaluated once for all, and not again while the time stays.
 
-use crate::laws::forcing::{Exert, Place};
+use crate::laws::forcing::{Forcing, Place};
 use crate::laws::formula::{Formula, Formulas};
 use crate::laws::torque::lanes::{Three, gradient, quadratic, seen, turn_from};
 use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Free bodies without wheels.
 pub(super) struct Nothing;
 
-impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
+impl<const W: usize, const F: bool> Forcing<W, F> for Nothing {
     const ACTS: bool = false;
 
     #[inline(always)]
@@ -34,7 +34,7 @@ impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
 /// Nothing but weights and damping, without wheels: what stays in registers.
 pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
 
-impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
@@ -56,7 +56,7 @@ pub(super) struct Gradient<const W: usize, const F: bool> {
     orbits: Orbits<W>,
 }
 
-impl<const W: usize, const F: bool> Exert<W, F> for Gradient<W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
@@ -151,86 +151,72 @@ struct Latest<'t> {
     torque: [f64; 3],
 }
 
-/// The numbers of each lane, for values of `N` numbers.
-fn rows<const N: usize, const W: usize, const F: bool>(
-    each: &[&Torque; W],
-    of: impl Fn(&Torque) -> Option<[f64; N]>,
-) -> [Lanes<W, F>; N] {
-    let mut rows = [Lanes::ZERO; N];
-    for (l, law) in each.iter().enumerate() {
-        // A body without this law has it with zeros.
-        let numbers = of(law).unwrap_or([0.0; N]);
-        for k in 0..N {
-            rows[k].0[l] = numbers[k];
+/// The numbers of a law that lanes compute; none of another.
+fn numbers(law: &Torque) -> Vec<f64> {
+    match law {
+        Torque::Heavy(v) | Torque::Larmor(v) => v.0.to_vec(),
+        Torque::ConstantBody(b) | Torque::ConstantSpace(b) => b.0.to_vec(),
+        Torque::QuadraticDamping(k) => vec![*k],
+        Torque::ViscousDamping(d) => d.entries().to_vec(),
+        Torque::Magnetic { dipole, field } => [dipole.0, field.0].concat(),
+        Torque::TorsionSpring { stiffness, rest } => {
+            [&Gains::new([*stiffness; 3]).entries()[..], &rest.components()].concat()
         }
+        Torque::Control { stiffness, damping, target } => {
+            [&stiffness.entries()[..], &target.components(), &damping.entries()].concat()
+        }
+        _ => Vec::new(),
     }
-    rows
 }
 
-fn square<const W: usize, const F: bool>(rows: [Lanes<W, F>; 9]) -> [Three<W, F>; 3] {
-    let [a, b, c, d, e, f, g, h, i] = rows;
-    [[a, b, c], [d, e, f], [g, h, i]]
+/// The lanes of N numbers, from the first on.
+fn lanes<const N: usize, const W: usize, const F: bool>(
+    each: &[Vec<f64>; W],
+    first: usize,
+) -> [Lanes<W, F>; N] {
+    let mut lanes = [Lanes::ZERO; N];
+    for (l, numbers) in each.iter().enumerate() {
+        // A body without this law has it with zeros.
+        for (lane, x) in lanes.iter_mut().zip(numbers.iter().skip(first)) {
+            lane.0[l] = *x;
+        }
+    }
+    lanes
+}
+
+fn square<const W: usize, const F: bool>(each: &[Vec<f64>; W], first: usize) -> [Three<W, F>; 3] {
+    array::from_fn(|row| lanes(each, first + 3 * row))
+}
+
+/// The formula of a law that is computed by one.
+fn formula_of(law: &Torque) -> Option<&Formula> {
+    match law {
+        Torque::Formula(law) => Some(law.formula()),
+        Torque::Registered(law) => Some(law.torque.formula()),
+        _ => None,
+    }
 }
 
 impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
     /// The same law of each body as one in lanes; a controller is a spring and a damper. Damping and wheels are with the
     /// bodies.
     fn new(each: [&'t Torque; W], gyrostats: &[Gyrostat; W]) -> Vec<Law<'t, W, F>> {
-        let three = |of: fn(&Torque) -> Option<[f64; 3]>| rows(&each, of);
-        let spring = |of: fn(&Torque) -> Option<(Gains, Rotor)>| Law::Spring {
-            stiffness: square(rows(&each, |law| Some(of(law)?.0.entries()))),
-            rest: rows(&each, |law| Some(of(law)?.1.components())),
-        };
+        let own: [Vec<f64>; W] = each.map(numbers);
         let law = match each[0] {
             Torque::Damping(_) | Torque::Wheel(_) => return Vec::new(),
-            Torque::Heavy(_) => {
-                Law::Heavy(three(|law| if let Torque::Heavy(c) = law { Some(c.0) } else { None }))
-            }
+            Torque::Heavy(_) => Law::Heavy(lanes(&own, 0)),
             Torque::GravityGradient(_) => Orbits::new(each).map_or(Law::Other(each), Law::GravityGradient),
-            Torque::ConstantBody(_) => {
-                Law::ConstantBody(three(
-                    |law| if let Torque::ConstantBody(n) = law { Some(n.0) } else { None },
-                ))
-            }
-            Torque::ConstantSpace(_) => {
-                Law::ConstantSpace(three(
-                    |law| {
-                        if let Torque::ConstantSpace(n) = law { Some(n.0) } else { None }
-                    },
-                ))
-            }
-            Torque::QuadraticDamping(_) => Law::QuadraticDamping(
-                rows(&each, |law| if let Torque::QuadraticDamping(k) = law { Some([*k]) } else { None })[0],
-            ),
-            Torque::ViscousDamping(_) => Law::ViscousDamping(square(rows(&each, |law| {
-                if let Torque::ViscousDamping(d) = law { Some(d.entries()) } else { None }
-            }))),
-            Torque::Magnetic { .. } => Law::Magnetic {
-                dipole: three(
-                    |law| if let Torque::Magnetic { dipole, .. } = law { Some(dipole.0) } else { None },
-                ),
-                field: three(
-                    |law| if let Torque::Magnetic { field, .. } = law { Some(field.0) } else { None },
-                ),
-            },
-            Torque::TorsionSpring { .. } => spring(|law| match law {
-                Torque::TorsionSpring { stiffness, rest } => Some((Gains::new([*stiffness; 3]), *rest)),
-                _ => None,
-            }),
+            Torque::ConstantBody(_) => Law::ConstantBody(lanes(&own, 0)),
+            Torque::ConstantSpace(_) => Law::ConstantSpace(lanes(&own, 0)),
+            Torque::QuadraticDamping(_) => Law::QuadraticDamping(lanes::<1, W, F>(&own, 0)[0]),
+            Torque::ViscousDamping(_) => Law::ViscousDamping(square(&own, 0)),
+            Torque::Magnetic { .. } => Law::Magnetic { dipole: lanes(&own, 0), field: lanes(&own, 3) },
+            Torque::TorsionSpring { .. } => Law::Spring { stiffness: square(&own, 0), rest: lanes(&own, 9) },
             Torque::Control { .. } => {
-                let pull = spring(|law| match law {
-                    Torque::Control { stiffness, target, .. } => Some((*stiffness, *target)),
-                    _ => None,
-                });
-                let damping = rows(&each, |law| match law {
-                    Torque::Control { damping, .. } => Some(damping.entries()),
-                    _ => None,
-                });
-                return vec![pull, Law::ViscousDamping(square(damping))];
+                let spring = Law::Spring { stiffness: square(&own, 0), rest: lanes(&own, 9) };
+                return vec![spring, Law::ViscousDamping(square(&own, 13))];
             }
-            Torque::Larmor(_) => {
-                Law::Larmor(three(|law| if let Torque::Larmor(b) = law { Some(b.0) } else { None }))
-            }
+            Torque::Larmor(_) => Law::Larmor(lanes(&own, 0)),
             Torque::Tabulated(table) => {
                 let same =
                     |law: &&Torque| matches!(law, Torque::Tabulated(other) if Arc::ptr_eq(table, other));
@@ -240,13 +226,11 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                     Law::Other(each)
                 }
             }
-            Torque::Formula(first) => {
-                let mut formulas: [&Formula; W] = [first.formula(); W];
-                for l in 0..W {
-                    let Torque::Formula(law) = each[l] else { return vec![Law::Other(each)] };
-                    formulas[l] = law.formula();
-                }
-                let formulas = Formulas::new(formulas, gyrostats);
+            Torque::Formula(_) | Torque::Registered(_) => {
+                let known = each.map(formula_of);
+                let formulas = known[0].filter(|_| known.iter().all(Option::is_some)).and_then(|first| {
+                    Formulas::new(known.map(|formula| formula.unwrap_or(first)), gyrostats)
+                });
                 formulas.map_or(Law::Other(each), |formulas| Law::Formula(Box::new(formulas)))
             }
             Torque::Function(_) => Law::Other(each),
@@ -456,7 +440,7 @@ fn term<const K: usize, const W: usize, const F: bool>(
     fastest(Term::<K, W, F> { law, moments, wheel, at })
 }
 
-impl<const W: usize, const F: bool> Exert<W, F> for Laws<'_, W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {

@@ -3,7 +3,7 @@
 use super::advance::{Advance, Steps, Stretch};
 use super::crew::{Member, SIDE_BY_SIDE as W};
 use super::laws::{Acting, Laws, Nothing};
-use crate::laws::forcing::Exert;
+use crate::laws::forcing::Forcing;
 use crate::methods::classical::{self, Bodies, State};
 use crate::methods::splitting::turns::{Spin, Turns};
 use crate::state::phase::{Gyrostat, Phase};
@@ -124,7 +124,7 @@ struct OnComponents<'a, E, const F: bool> {
     state: &'a mut State<7, W, F>,
 }
 
-impl<E: Exert<W, F>, const F: bool> Steps for OnComponents<'_, E, F> {
+impl<E: Forcing<W, F>, const F: bool> Steps for OnComponents<'_, E, F> {
     #[inline(always)]
     fn walk(&mut self, times: &[f64]) {
         // Copies, which the compiler may keep in registers.

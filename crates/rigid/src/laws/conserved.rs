@@ -1,4 +1,4 @@
-//! What a set of laws leaves constant.
+//! Conserved quantities of a set of torque laws.
 //!
 //! With `m = I(Ω) + h` the momentum in principal axes, h that of a wheel, Euler's equations are
 //! `m' = m x ω + N` in axial vectors. From them:
@@ -58,7 +58,7 @@ struct Field {
 }
 
 impl Conserved {
-    /// What a set of laws leaves constant, for a motion that begins there.
+    /// The quantities that a set of laws conserves, for a motion with this start.
     pub fn under(body: &Gyrostat, torques: &[Torque], start: &Phase) -> Vec<Conserved> {
         let acting: Vec<&Torque> = torques.iter().filter(|t| acts(t)).collect();
         let keeps_size = acting.iter().all(|t| matches!(t, Torque::Larmor(_)));
@@ -132,8 +132,8 @@ impl Conserved {
         }
     }
 
-    /// The size against which a change counts: that of the terms that make it up, or what the energy lets
-    /// them become where the start is at rest.
+    /// The scale of relative changes: the size of its terms, or what the energy allows them to reach for a start at
+    /// rest.
     pub fn scale(self, body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
         let kinetic = body.kinetic(start.momentum);
         let range: f64 = torques.iter().map(|t| t.potential_range()).sum();
@@ -159,7 +159,7 @@ pub fn energy(body: &Gyrostat, torques: &[Torque], state: &Phase) -> f64 {
     body.kinetic(state.momentum) + torques.iter().filter_map(|t| t.potential(body, state)).sum::<f64>()
 }
 
-/// Whether a law turns the body at all; a wheel belongs to the body.
+/// Whether a law exerts a torque at all; a wheel belongs to the body.
 fn acts(torque: &Torque) -> bool {
     let nothing = Vector::default();
     match torque {
@@ -172,14 +172,16 @@ fn acts(torque: &Torque) -> bool {
         Torque::ViscousDamping(gains) => !gains.is_zero(),
         Torque::TorsionSpring { stiffness, .. } => *stiffness != 0.0,
         Torque::Control { stiffness, damping, .. } => !(stiffness.is_zero() && damping.is_zero()),
+        Torque::Registered(law) => law.size != 0.0,
         Torque::Tabulated(_) | Torque::Formula(_) | Torque::Function(_) => true,
     }
 }
 
-/// Whether all the work of a law is in its potential. `ω·(L x b)` vanishes where L and ω are parallel.
+/// Whether the law does no work beyond its potential. `ω·(L x b)` vanishes where L and ω are parallel.
 fn is_conservative(torque: &Torque, body: &Gyrostat) -> bool {
     match torque {
         Torque::Heavy(_) | Torque::Magnetic { .. } | Torque::TorsionSpring { .. } => true,
+        Torque::Registered(law) => law.potential.is_some(),
         Torque::Larmor(_) => body.wheel == Default::default() && (0..3).all(|k| is_symmetric(body, k)),
         _ => false,
     }
@@ -191,11 +193,12 @@ fn axis(torque: &Torque) -> Option<Vector> {
         Torque::Heavy(_) => Some(E3),
         Torque::Magnetic { field, .. } => Some(*field),
         Torque::Larmor(b) => Some(*b),
+        Torque::Registered(law) => law.axis,
         _ => None,
     }
 }
 
-/// The axis that all laws have, of length 1; e3 rather than −e3.
+/// The unit axis that all laws share; e3 rather than −e3.
 fn shared_axis(acting: &[&Torque]) -> Option<Vector> {
     let first = axis(acting.first()?)?;
     let shared = acting.iter().all(|t| axis(t).is_some_and(|other| are_parallel(first, other)));
@@ -213,8 +216,7 @@ fn is_symmetric(body: &Gyrostat, axis: usize) -> bool {
     (a - b).abs() <= ROUNDING * a.max(b)
 }
 
-/// The symmetry axis of a body, if no law has a torque about it. A sphere has any: that of the laws, or of
-/// the wheel.
+/// The symmetry axis of a body, if no law has a torque about it. For a sphere, the axis of the laws or of the wheel.
 fn spin_axis(body: &Gyrostat, acting: &[&Torque]) -> Option<Vector> {
     let own = |torque: &Torque| match torque {
         Torque::Heavy(c) => Some(*c),
@@ -287,13 +289,13 @@ impl Plane {
         ([w[i], w[j], w[normal]], weight, [g[i], g[j], g[normal]])
     }
 
-    /// What the squares of rates and `c/i3` are at most, for the largest kinetic energy.
+    /// A bound of the squares of rates and of `c/i3`, for the largest kinetic energy.
     fn square_rate(self, body: &Gyrostat, kinetic: f64) -> f64 {
         (2.0 * kinetic + self.field.c.norm()) / body.moments[self.normal]
     }
 }
 
-/// Jacobi's integral: one circular orbit, and no other law but those with a potential and the axis e3.
+/// Jacobi's integral: one circular orbit, and otherwise only laws with a potential and the axis e3.
 fn jacobi(acting: &[&Torque]) -> Option<Conserved> {
     let mut rate = None;
     for torque in acting {

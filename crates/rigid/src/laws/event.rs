@@ -1,4 +1,4 @@
-//! Events along a motion: when a quantity passes zero.
+//! Events along a motion: zero crossings of a quantity.
 
 use super::formula::Formula;
 use crate::error::TorqueError;
@@ -6,11 +6,11 @@ use crate::state::carried::Carried;
 use crate::state::point::{Function, Point};
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// What passes zero. Vectors and bivectors of the body are in body axes.
+/// The quantity of an event. Vectors and bivectors of the body are in body axes.
 #[derive(Clone, Debug)]
 pub enum Quantity {
-    /// `(R a ~R)·n − level`, with a direction a of the body and n of space: an axis of the body crosses a plane or
-    /// reaches an angle.
+    /// `(R a ~R)·n − level`, with directions a of the body and n of space: an axis of the body crosses a plane or reaches
+    /// an angle.
     Axis {
         /// Of the body.
         body: Vector,
@@ -35,22 +35,22 @@ pub enum Quantity {
     },
     /// A formula.
     Formula(Formula),
-    /// What a function of the caller's returns.
+    /// A function of the caller.
     Function(Function<f64>),
 }
 
-/// What to look for along a motion.
+/// An event of a motion.
 #[derive(Clone, Debug)]
 pub struct Event {
-    /// What passes zero.
+    /// The quantity that crosses zero.
     pub quantity: Quantity,
-    /// Only upwards in the direction of time in which the motion is followed, only downwards, or both.
+    /// Only rising or only falling crossings, in the direction in which the motion is computed, or both.
     pub direction: Option<Direction>,
     /// Whether the motion ends there.
     pub terminal: bool,
 }
 
-/// Which way a quantity passes zero.
+/// The direction of a crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From below.
@@ -110,7 +110,7 @@ impl Event {
     }
 }
 
-/// The crossing between two values, if there is one. A value that is zero at the start has been counted before.
+/// The crossing between two values, if any. A zero at the first value belongs to the interval before.
 pub(crate) fn crossing(before: f64, after: f64) -> Option<Direction> {
     if before < 0.0 && after >= 0.0 {
         Some(Direction::Rising)
@@ -121,12 +121,12 @@ pub(crate) fn crossing(before: f64, after: f64) -> Option<Direction> {
     }
 }
 
-/// How far above zero, relative to how far it falls, a parabola through three values may turn where the quantity itself
-/// may yet reach zero.
+/// How far above zero, relative to its depth, the vertex of a parabola through three values may lie for the quantity to
+/// be examined further.
 const DOUBT: f64 = 0.1;
 
-/// Where a quantity that has one sign at three successive times has the other between them, and its value there: near
-/// the vertex of the parabola through the three, and of the narrower ones that follow.
+/// A time between three at which a quantity has one sign where it has the other, and its value there: near the vertex of
+/// the parabola through the three values, and of narrower ones that follow.
 pub(crate) fn dip<E>(
     mut points: [(f64, f64); 3],
     mut function: impl FnMut(f64) -> Result<f64, E>,
@@ -179,7 +179,7 @@ pub(crate) fn dip<E>(
     Ok(None)
 }
 
-/// Where in (low, high) a function passes zero, to the spacing `least`: false position with the Illinois rule, guarded by
+/// The root of a function in (low, high) to the spacing `least`, by false position with the Illinois rule, safeguarded by
 /// bisection. `at_low` and `at_high` differ in sign.
 pub(crate) fn root<E>(
     (mut low, mut high): (f64, f64),

@@ -12,8 +12,8 @@ use polhode_ga::{Rotor, Vector};
 pub enum Force {
     /// Constant in space, in N.
     Constant(Vector),
-    /// Constant in body axes, in N: a thruster's. Where it does not act along a line through the centre of mass it
-    /// exerts a torque too, [`super::torque::Torque::ConstantBody`].
+    /// Constant in body axes, in N, as of a thruster. Off the centre of mass it exerts a torque too,
+    /// [`super::torque::Torque::ConstantBody`].
     Body(Vector),
     /// `−k v`, k in N s/m.
     Drag(f64),
@@ -25,11 +25,26 @@ pub enum Force {
     Central(f64),
     /// A formula, in space, in N.
     Formula(Formula),
-    /// What a function of the caller's returns, in space, in N.
+    /// A function of the caller, in space, in N.
     Function(Function<Vector>),
 }
 
-/// A mass in kg and what moves it.
+/// A force, and the point of the body at which it acts, in body axes, in metres; the centre of mass by default.
+#[derive(Clone, Debug)]
+pub struct Push {
+    /// The force.
+    pub force: Force,
+    /// The point, of a thrust alone.
+    pub at: Option<Vector>,
+}
+
+impl From<Force> for Push {
+    fn from(force: Force) -> Push {
+        Push { force, at: None }
+    }
+}
+
+/// The mass and the forces of a moving body.
 #[derive(Clone, Debug)]
 pub struct Translation {
     /// In kg.
@@ -39,7 +54,7 @@ pub struct Translation {
 }
 
 impl Force {
-    /// The same force with its body components seen from other body axes: `x' = ~F x F`.
+    /// The same force with its body components in other body axes: `x' = ~F x F`.
     pub fn in_axes(self, frame: Rotor) -> Force {
         match self {
             Force::Body(force) => Force::Body(frame.reverse().apply(force)),
@@ -76,14 +91,16 @@ impl Force {
                 let force = law.value(at)?;
                 if !force.0.iter().all(|x| x.is_finite()) {
                     let Vector(force) = force;
-                    return Err(TorqueError(format!("the force that the function returned is {force:?}")));
+                    return Err(TorqueError(format!(
+                        "the force that the function returned is {force:?}; it must be finite"
+                    )));
                 }
                 force
             }
         })
     }
 
-    /// How fast it lets a body of this mass change its way, in 1/s, where that is known: a scale for steps. 0 elsewhere.
+    /// The rate in 1/s at which the velocity of a body of this mass changes, a scale for steps; 0 if it is unknown.
     fn rate(&self, mass: f64, start: &Center) -> f64 {
         match self {
             Force::Drag(k) => k.abs() / mass,

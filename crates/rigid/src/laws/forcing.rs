@@ -1,4 +1,4 @@
-//! What turns bodies and moves them, as methods of steps ask for it: side by side in lanes, or alone.
+//! Torques and accelerations as steppers evaluate them: of bodies in lanes, or of one body.
 
 use super::force::Translation;
 use super::torque::{Torque, exerted};
@@ -9,10 +9,10 @@ use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// Where bodies are, side by side.
+/// States of bodies in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place<const W: usize, const F: bool> {
-    /// From principal axes to space; |R| is 1 up to what a step leaves.
+    /// From principal axes to space; |R| is 1 up to the error of a step.
     pub rotor: [Lanes<W, F>; 4],
     /// In principal axes, rad/s.
     pub omega: [Lanes<W, F>; 3],
@@ -20,22 +20,22 @@ pub(crate) struct Place<const W: usize, const F: bool> {
     pub time: Lanes<W, F>,
 }
 
-/// What turns bodies side by side, and moves them.
-pub(crate) trait Exert<const W: usize, const F: bool> {
-    /// Whether there are torques at all, a wheel or damping.
+/// Torques and accelerations of bodies in lanes.
+pub(crate) trait Forcing<const W: usize, const F: bool> {
+    /// Whether there are torques, wheels or damping at all.
     const ACTS: bool;
 
     /// Whether there may be wheels.
     const WHEELS: bool = true;
 
-    /// The torque in principal axes at a point of the motion, without the part `−g I(Ω)` and that of a wheel.
+    /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 
-    /// The acceleration in space of a centre of mass whose place and velocity are given.
+    /// The acceleration in space of a centre of mass with this position and velocity.
     fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
 }
 
-/// What acts on a single body: the first failure to say how, after which nothing is asked.
+/// Forcing of a single body. After the first failure, which is kept, no law is evaluated.
 pub(crate) struct Alone<'a> {
     body: &'a Gyrostat,
     torques: &'a [Torque],
@@ -69,7 +69,7 @@ impl<'a> Alone<'a> {
     }
 }
 
-impl Exert<1, false> for Alone<'_> {
+impl Forcing<1, false> for Alone<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {

@@ -1,8 +1,9 @@
-//! What acts on a body, what a motion conserves and where it is interrupted.
+//! Torque laws, forces, conserved quantities and events.
 
 pub mod conserved;
 pub mod event;
 pub mod force;
 pub(crate) mod forcing;
 pub mod formula;
+pub mod registry;
 pub mod torque;

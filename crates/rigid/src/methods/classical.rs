@@ -12,7 +12,7 @@
 
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{Alone, Exert, Place};
+use crate::laws::forcing::{Alone, Forcing, Place};
 use crate::laws::torque::Torque;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -76,7 +76,7 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
 
 /// One step of length h.
 #[inline(always)]
-pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
     exert: &mut E,
     y: &mut State<N, W, F>,
@@ -115,7 +115,7 @@ fn moved<const N: usize, const W: usize, const F: bool>(
 // Lanes are best copied one by one: a copy of memory takes them out of their registers.
 #[allow(clippy::manual_memcpy)]
 #[inline(always)]
-fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
     exert: &mut E,
     y: &State<N, W, F>,

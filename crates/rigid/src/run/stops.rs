@@ -120,6 +120,7 @@ fn is_to_be_sampled(law: &Torque) -> bool {
 pub(crate) fn aliasing(law: &Torque, step: f64) -> String {
     let what = match law {
         Torque::Formula(formula) => format!("the torque `{}`", formula.text()),
+        Torque::Registered(law) => format!("the torque {}", law.name),
         Torque::Function(_) => "the torque of a function".to_owned(),
         _ => "a torque".to_owned(),
     };

@@ -1,15 +1,15 @@
-//! The table `[body]`: what turns.
+//! The table `[body]`.
 
 use super::reader::{Form, Reader, Table, Value};
 use crate::body::solids::{Amount, Solid};
 use crate::units::{self, Quantity};
 use polhode_ga::Vector;
 
-/// What a scene says of its body.
+/// The body of a scene.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum BodySpec {
-    /// A closed surface in a file beside the scene; `length_unit` is that of its coordinates, in metres.
+    /// A closed surface in a mesh file; `length_unit` is that of its coordinates, in metres.
     Mesh { file: String, length_unit: f64, amount: Amount },
     /// A uniform solid.
     Solid { solid: Solid, amount: Amount },
@@ -21,7 +21,7 @@ pub enum BodySpec {
 
 const AMOUNTS: [&str; 2] = ["density", "mass"];
 
-/// Every size of a solid, in metres.
+/// All dimensions of solids, in metres.
 const SIZES: [&str; 9] = [
     "lengths",
     "semi_axes",
@@ -34,7 +34,7 @@ const SIZES: [&str; 9] = [
     "minor_radius",
 ];
 
-/// The solids and the sizes that make each.
+/// The solids and their dimensions.
 const SOLIDS: [(&str, &[&str]); 10] = [
     ("box", &["lengths"]),
     ("ellipsoid", &["semi_axes"]),
@@ -90,7 +90,7 @@ fn mesh(reader: &mut Reader, table: &Table) -> Option<BodySpec> {
     Some(BodySpec::Mesh { file: file?, length_unit: length_unit?.unwrap_or(1.0), amount: amount? })
 }
 
-/// A unit by its name, `mm`, or a length, `25.4 mm`.
+/// A unit of length, `mm`, or a length, `25.4 mm`.
 fn length_unit(reader: &mut Reader, value: &Value) -> Option<f64> {
     match value.get_ref().as_str() {
         Some(name) if name.starts_with(char::is_alphabetic) => {
@@ -116,9 +116,9 @@ fn solid(reader: &mut Reader, table: &Table) -> Option<Solid> {
         "ellipsoid" => return Some(Solid::Ellipsoid { semi_axes: lengths("semi_axes")? }),
         _ => {}
     }
-    // Every size is read before the first missing one ends it, so that all are reported.
+    // Read all dimensions before returning at the first missing one, so that all errors are reported.
     let read = |name: &&str| match *name {
-        // A hollow sphere may be full.
+        // A hollow sphere may have an inner radius of 0.
         "inner_radius" => reader.field(table, name, |reader, value| reader.quantity(value, Quantity::Length)),
         _ => reader.field(table, name, length),
     };

@@ -1,4 +1,4 @@
-//! From what a scene says of its body to the body.
+//! Builds the body and the laws of a scene.
 
 use super::{BodySpec, Gravity, Law, Scene};
 use crate::body::Body;
@@ -12,7 +12,7 @@ use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Rotor, Vector};
 use std::path::Path;
 
-/// Where meshes come from, by their paths: relative ones from the scene's folder.
+/// Loads a mesh by its path; relative paths start at the folder of the scene.
 pub type MeshSource<'a> = &'a dyn Fn(&Path) -> Result<TriangleMesh, MeshError>;
 
 impl Gravity {
@@ -24,13 +24,13 @@ impl Gravity {
 }
 
 impl Scene {
-    /// The body and what turns it, ready to move. Under gravity the body is shifted so that the fixed
-    /// point is the origin of its axes; then `c = m g (centre of mass)`.
+    /// The body and its torque laws. Under gravity the body is shifted so that the fixed point is the origin of its axes;
+    /// then `c = m g (centre of mass)`.
     pub fn build(&self) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
         self.build_with(&TriangleMesh::read)
     }
 
-    /// The same, with a mesh got from elsewhere: `mesh` is given its path. A browser has no files.
+    /// The same with another source of meshes, as in a browser, which has no files.
     pub fn build_with(&self, mesh: MeshSource<'_>) -> Result<(Body, Vec<Law>), Vec<Diagnostic>> {
         let body = self.body_with(mesh)?;
         let mut laws = self.torques.clone();
@@ -56,8 +56,8 @@ impl Scene {
         Ok((body, laws))
     }
 
-    /// The weight of `heavy` must act at the centre of mass. Moments without a centre of mass are those about the fixed
-    /// point, and leave it open.
+    /// The weight of `heavy` must act at the centre of mass. Moments without a centre of mass are about the fixed point and
+    /// leave it open.
     fn check_weight(&self, body: &Body) -> Result<(), Vec<Diagnostic>> {
         let open = match self.body {
             BodySpec::Moments { center_of_mass, .. } | BodySpec::Inertia { center_of_mass, .. } => {
@@ -71,7 +71,7 @@ impl Scene {
             {
                 let (Vector([a, b, c]), Vector([x, y, z])) = (c, body.center_of_mass);
                 let message = format!(
-                    "({a}, {b}, {c}) N m is not m g times the centre of mass, which is ({x}, {y}, {z}) m from the fixed point; use [gravity] with a pivot, or give the moments about the fixed point and no centre of mass"
+                    "({a}, {b}, {c}) N m is not m g times the centre of mass, which is ({x}, {y}, {z}) m from the fixed point; use [gravity] with a pivot, or give the moments about the fixed point without a centre of mass"
                 );
                 return Err(vec![self.diagnose("torque.heavy", message)]);
             }
@@ -84,10 +84,10 @@ impl Scene {
         self.body_with(&TriangleMesh::read)
     }
 
-    /// The body; what no body can have is reported at the field that says it.
+    /// The body; impossible properties are reported at their field.
     ///
-    /// A free motion is the same for every mass, so a body given by its inertia alone has 1 kg; under
-    /// gravity the mass must be said.
+    /// A free motion does not depend on the mass, so a body given by its inertia alone has 1 kg; under gravity the mass is
+    /// required.
     fn body_with(&self, mesh: MeshSource<'_>) -> Result<Body, Vec<Diagnostic>> {
         let body = match &self.body {
             BodySpec::Mesh { amount, .. } => self.mesh_body(mesh, *amount),
@@ -110,7 +110,7 @@ impl Scene {
         self.gravity.is_some() || self.torques.iter().any(|law| matches!(law.torque, Torque::Heavy(_)))
     }
 
-    /// The field that says what the body is.
+    /// The field that gives the body.
     fn shape_field(&self) -> &'static str {
         match self.body {
             BodySpec::Mesh { .. } => "body.mesh",
@@ -120,12 +120,12 @@ impl Scene {
         }
     }
 
-    /// Whether the file tells the mass, or what it follows from.
+    /// Whether the file gives the mass, or values that determine it.
     pub fn tells_mass(&self) -> bool {
         !matches!(self.body, BodySpec::Moments { mass: None, .. } | BodySpec::Inertia { mass: None, .. })
     }
 
-    /// The solid that the scene says.
+    /// The solid of the scene, if any.
     pub fn solid(&self) -> Option<Solid> {
         match self.body {
             BodySpec::Solid { solid, .. } => Some(solid),
@@ -171,7 +171,7 @@ impl Scene {
         body.map_err(|error| self.body_error(&error, field, None))
     }
 
-    /// The error at the field that causes it, `field` if no other does.
+    /// The error at the field that causes it, by default `field`.
     fn body_error(&self, error: &BodyError, field: &str, amount: Option<Amount>) -> Diagnostic {
         let cause = match (error, amount) {
             (BodyError::Mass(_), Some(Amount::Mass(_))) => "body.mass",

@@ -1,4 +1,4 @@
-//! The names of a scene, and the values and laws of the formulas that use them.
+//! Names that a scene defines, and formulas that use them.
 
 use crate::laws::torque::{Axes, FormulaTorque, given_names};
 use crate::units::Source;
@@ -10,14 +10,14 @@ use polhode_ga::formula::{
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What the formulas of a scene may use.
+/// The names and values that formulas of a scene may use.
 #[derive(Default)]
 pub struct Formulas {
     pub names: Names,
     values: BTreeMap<String, Graded>,
 }
 
-/// What is wrong with a formula, and where in its text, in bytes.
+/// An error in a formula, and its bytes in the text.
 pub struct Wrong {
     pub message: String,
     pub span: Range<usize>,
@@ -29,7 +29,7 @@ impl From<Error> for Wrong {
     }
 }
 
-/// The place in the text as it was written.
+/// The error at its place in the original text.
 fn placed(source: &Source, wrong: Wrong) -> Wrong {
     Wrong { span: source.place(wrong.span), message: wrong.message }
 }
@@ -75,7 +75,7 @@ impl Formulas {
         let failed =
             |message: &str, Span { start, end }| Wrong { message: message.to_owned(), span: start..end };
         let Some(runner) = Runner::new(&program) else {
-            return Err(failed("no formula of 3-d space", Span::default()));
+            return Err(failed("not a formula of 3-d space", Span::default()));
         };
         let values = runner
             .value(&inputs)
@@ -87,7 +87,7 @@ impl Formulas {
         Ok(value)
     }
 
-    /// The formula with numbers in SI units for its quantities; it has parameters, if it is a function's.
+    /// The formula with its quantities as numbers in SI units; `parameters` are those of a function.
     fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Wrong> {
         let known = |name: String| self.names.get(&name).is_some() || parameters.contains(&name);
         let is_name = |word: &str| canonical(word).is_some_and(known);

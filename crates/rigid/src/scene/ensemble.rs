@@ -10,10 +10,11 @@
 //! ```
 
 use super::initial::Initial;
-use super::parameters::{Limit, PARAMETERS, Parameter};
+use super::parameters::{PARAMETERS, Parameter};
 use super::reader::{Reader, Table, Value};
 use super::spread::{self, FORMS, Shape, Spread};
 use super::{Gravity, Law};
+use crate::laws::registry::Limit;
 use crate::units::Quantity;
 use std::f64::consts::PI;
 use toml::de::DeValue;
@@ -262,7 +263,11 @@ fn fields(
         PARAMETERS.iter().filter(|parameter| parameter.law == law).collect();
     let names: Vec<&'static str> = parameters.iter().map(|parameter| parameter.field).collect();
     reader.only(table, &names);
-    reader.at_most_one(table, &["rate", "period"]);
+    // A rate and its period are one number of the law.
+    let same = parameters.chunk_by(|a, b| a.at == b.at);
+    for names in same {
+        reader.at_most_one(table, &names.iter().map(|parameter| parameter.field).collect::<Vec<_>>());
+    }
     let given = parameters.into_iter().filter_map(|parameter| Some((parameter, table.get(parameter.field)?)));
     given.map(|(parameter, value)| spread_of(reader, table, value, parameter, nominal)).collect()
 }

@@ -1,4 +1,4 @@
-//! The table `[define]` and the formulas of a scene.
+//! The table `[define]`, and formulas in scenes.
 //!
 //! ```toml
 //! [define]
@@ -19,14 +19,14 @@ use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Vector};
 use toml::de::DeValue;
 
-/// Reads `[define]`: values and functions, each of which may use those before it.
+/// Reads `[define]`: values and functions, which may use earlier ones.
 pub fn read(reader: &mut Reader, table: &Table) {
     let mut fields: Vec<_> = table.fields.iter().collect();
     fields.sort_by_key(|(key, _)| key.span().start);
     for (key, value) in fields {
         let head: &str = key.get_ref();
         let Ok((name, parameters)) = heading(head) else {
-            let message = "what is defined is a name, `θ`, or a function in quotes, `\"V(x)\"`";
+            let message = "expected a name, `θ`, or a function in quotes, `\"V(x)\"`";
             reader.report(key.span(), message);
             continue;
         };
@@ -63,7 +63,7 @@ pub fn value_of(reader: &mut Reader, value: &Value) -> Option<Graded> {
     }
 }
 
-/// The components that a formula has in these grades, of which it may have no others but zeros.
+/// The components of a formula in these grades; all others must be zero.
 pub fn components<const N: usize>(
     reader: &mut Reader,
     value: &Value,
@@ -99,7 +99,7 @@ pub fn bivector(reader: &mut Reader, value: &Value, quantity: Quantity) -> Optio
     }
 }
 
-/// The law that a formula is, of what `[define]` and the motion give.
+/// The torque law of a formula, with the names of `[define]` and of the motion.
 pub fn torque(reader: &mut Reader, value: &Value, axes: Axes) -> Option<FormulaTorque> {
     let text = reader.string(value)?;
     match reader.formulas.torque(text, axes) {
@@ -111,7 +111,7 @@ pub fn torque(reader: &mut Reader, value: &Value, axes: Axes) -> Option<FormulaT
     }
 }
 
-/// Reports what is wrong with a formula at its place in the file, where its text stands there as it is.
+/// Reports an error in a formula at its place in the file, if the file has its text verbatim.
 fn report(reader: &mut Reader, value: &Value, text: &str, wrong: Wrong) {
     let span = value.span();
     // Quotes are one byte long, or three.

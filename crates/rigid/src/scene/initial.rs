@@ -1,4 +1,4 @@
-//! The table `[initial]`: how the body stands and moves at the beginning.
+//! The table `[initial]`: the initial state.
 
 use super::formulas;
 use super::reader::{Form, Reader, Table, Value};
@@ -6,14 +6,15 @@ use crate::state::center::Center;
 use crate::units::Quantity;
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, MathError, Rotor, Vector};
+use std::borrow::Cow;
 use toml::de::DeValue;
 
-/// The axes in which a spin is given.
+/// The axes of a spin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpinFrame {
-    /// Turning with the body.
+    /// Body axes.
     Body,
-    /// At rest.
+    /// Space axes.
     Space,
 }
 
@@ -31,7 +32,7 @@ const SPINS: [Form; 4] = [
     Form { field: "formula", with: &[] },
 ];
 
-/// How the body stands and moves at the beginning.
+/// The initial state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Initial {
     /// The rotor that carries body axes to space axes.
@@ -42,7 +43,7 @@ pub struct Initial {
     pub spin_frame: SpinFrame,
     /// The centre of mass, or the fixed point if there is one, in space.
     pub center: Center,
-    /// When the body is there, in s.
+    /// The initial time in s.
     pub time: f64,
 }
 
@@ -72,8 +73,8 @@ pub fn read(reader: &mut Reader, table: &Table) -> Option<Initial> {
     })
 }
 
-/// An attitude in any of its forms, in a table of this title.
-pub fn attitude(reader: &mut Reader, value: &Value, title: &'static str) -> Option<Rotor> {
+/// An attitude in any of its forms; `title` names its table in messages.
+pub fn attitude(reader: &mut Reader, value: &Value, title: impl Into<Cow<'static, str>>) -> Option<Rotor> {
     if let DeValue::String(_) = value.get_ref() {
         let components = formulas::components(reader, value, Grades::EVEN, "a rotor")?;
         return checked(reader, value, Rotor::from_components(components));
@@ -107,7 +108,7 @@ fn checked(reader: &mut Reader, value: &Value, rotor: Result<Rotor, MathError>) 
     rotor.map_err(|error| reader.report(value.span(), error.to_string())).ok()
 }
 
-/// The bivector that a formula is.
+/// The bivector value of a formula.
 fn bivector(reader: &mut Reader, value: &Value) -> Option<Bivector> {
     formulas::components(reader, value, Grades::BIVECTOR, "a bivector").map(Bivector)
 }
@@ -142,7 +143,7 @@ fn plane(reader: &mut Reader, value: &Value) -> Option<Bivector> {
         DeValue::String(_) => bivector(reader, value)?.0,
         DeValue::Array(_) => reader.numbers(value)?,
         _ => {
-            let message = "a plane is a string or an array, expected one such as `\"e1e2\"` or `[0, 0, 1]`";
+            let message = "expected a plane as a string or an array, such as `\"e1e2\"` or `[0, 0, 1]`";
             reader.report(value.span(), message);
             return None;
         }
@@ -151,13 +152,13 @@ fn plane(reader: &mut Reader, value: &Value) -> Option<Bivector> {
     if plane.is_none() {
         reader.report(
             value.span(),
-            "a bivector of size zero spans no plane, expected one such as `\"e1e2\"` or `[0, 0, 1]`",
+            "a zero bivector does not define a plane, expected one such as `\"e1e2\"` or `[0, 0, 1]`",
         );
     }
     plane
 }
 
-/// The direction of finite components; scaled first, so that no square leaves the range.
+/// The unit bivector of finite components; scaled first to avoid overflow.
 fn unit(components: [f64; 3]) -> Option<Bivector> {
     let largest = components.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let scaled = Bivector(components.map(|x| x / largest));

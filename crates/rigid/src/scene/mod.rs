@@ -1,4 +1,4 @@
-//! Scene files: a body, how it starts and how long it runs, as a person writes it in TOML.
+//! Scene files in TOML: a body, its initial state, the laws, and the run.
 //!
 //! ```toml
 //! title = "optional text"
@@ -20,7 +20,7 @@
 //!                                                  # rotation_vector = [3]; the identity if left out
 //!                                                  # or attitude = "exp(-θ/2 e1∧e2)", a formula
 //! spin = { plane = "e2e3", rate = "5 rev/s" }      # or vector = [3]; bivector = [3]; formula = "…"; frame = "space"
-//! time = "0 s"               # when the run begins, for laws that depend on time; 0 if left out
+//! time = "0 s"               # the initial time, for laws that depend on time; 0 by default
 //!
 //! [gravity]                  # optional: along −e3 of space, the body held at a fixed point
 //! acceleration = "9.81 m/s^2"
@@ -30,7 +30,7 @@
 //! damping = "0.1 /s"
 //! torque_body = "-k Ω_B"     # a formula; or torque_space
 //!
-//! [force]                    # optional: what moves the centre of mass
+//! [force]                    # optional: forces on the centre of mass
 //! drag = "0.1 N s/m"
 //!
 //! [run]
@@ -56,9 +56,8 @@
 //! torque.magnetic.dipole = { normal = ["1 mA m^2", 0, 0] }
 //! ```
 //!
-//! A bare number is in SI units, a string carries its own. Everything wrong with a file is reported at
-//! once, each with its line and column; what turns out impossible later finds its place through
-//! [`Scene::diagnose`].
+//! A bare number is in SI units, a string has a unit. All errors in a file are reported at once, each with its line and
+//! column; [`Scene::diagnose`] gives later errors their place.
 
 mod body;
 mod build;
@@ -79,15 +78,16 @@ mod spread;
 mod tests;
 mod torques;
 
+pub use crate::laws::force::Push;
+pub use crate::laws::registry::Limit;
 use crate::state::center::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;
 pub use draws::{DrawError, Drawn};
 pub use ensemble::{Attitudes, Ensemble, Varied};
-pub use forces::Push;
 pub use initial::SpinFrame;
-pub use parameters::{Limit, Parameter};
+pub use parameters::Parameter;
 use polhode_ga::diagnostic::Diagnostic;
 use polhode_ga::{Bivector, Rotor, Vector};
 use reader::{Reader, Table, Value};
@@ -100,37 +100,37 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 pub use torques::Law;
 
-/// A larger file is no scene.
+/// Maximum size of a scene file in bytes.
 const LARGEST_FILE: u64 = 10_000_000;
-/// Nobody reads more errors at a time.
+/// Maximum number of reported errors.
 const MOST_REPORTED: usize = 100;
 
-/// What a scene file says, in SI units.
+/// A scene file in SI units.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// What the scene shows.
+    /// The title.
     pub title: Option<String>,
     /// The body.
     pub body: BodySpec,
-    /// The rotor that carries body axes to space axes at the beginning.
+    /// The initial rotor from body axes to space axes.
     pub attitude: Rotor,
-    /// The angular velocity at the beginning, in rad/s, in the axes of `spin_frame`.
+    /// The initial angular velocity in rad/s, in the axes of `spin_frame`.
     pub spin: Bivector,
     /// The axes of `spin`.
     pub spin_frame: SpinFrame,
-    /// The centre of mass, or the fixed point if there is one, at the beginning.
+    /// The initial centre of mass, or fixed point if there is one.
     pub center: Center,
-    /// The time of the beginning, in s.
+    /// The initial time in s.
     pub time: f64,
     /// Uniform gravity on a body held at a point.
     pub gravity: Option<Gravity>,
-    /// What else turns the body, in the order of the file.
+    /// The other torque laws, in the order of the file.
     pub torques: Vec<Law>,
-    /// What moves the centre of mass, in the order of the file.
+    /// The forces, in the order of the file.
     pub forces: Vec<Push>,
-    /// For how long, and how.
+    /// The duration, the output times and the method.
     pub run: Run,
-    /// How many bodies, and in what they differ, if there are more than the one.
+    /// The number of bodies and their distributions, of an ensemble.
     pub ensemble: Option<Ensemble>,
     /// The file, from which paths in it are relative.
     pub path: PathBuf,
@@ -148,7 +148,7 @@ pub struct Gravity {
 }
 
 impl Scene {
-    /// Reads the file; on failure everything that is wrong with it, in the order of the file.
+    /// Reads a file; the errors are all that the file has, in its order.
     pub fn read(path: &Path) -> Result<Scene, Vec<Diagnostic>> {
         let bytes = read_file(path).map_err(|problem| vec![Diagnostic::of_file(path, problem)])?;
         match std::str::from_utf8(&bytes) {
@@ -174,9 +174,9 @@ impl Scene {
             let span = error.span().unwrap_or(0..0);
             vec![diagnose(span, error.message())]
         })?;
-        // What is missing from the file as a whole is missing at its end.
+        // Missing tables are reported at the end of the file.
         let end = text.trim_end().len();
-        let root = Table { title: "the file", span: end..end, fields: root.get_ref() };
+        let root = Table { title: "the file".into(), span: end..end, fields: root.get_ref() };
         let mut reader = Reader::default();
         let scene = read_scene(&mut reader, &root, path, text);
         let mut problems = reader.problems;
@@ -194,8 +194,7 @@ impl Scene {
         }
     }
 
-    /// An error about the field of this dotted name, `initial.spin.rate`, or about the innermost table
-    /// on the way to it that the file has.
+    /// An error at the field of this dotted name, `initial.spin.rate`, or at the innermost enclosing table of the file.
     pub fn diagnose(&self, field: &str, message: impl Into<String>) -> Diagnostic {
         let mut span = 0..0;
         if let Ok(root) = DeTable::parse(&self.text) {
@@ -209,12 +208,12 @@ impl Scene {
         Diagnostic::at(&self.path, &self.text, span, message)
     }
 
-    /// The output times, in s: those of [`Run::offsets`] after the beginning.
+    /// The output times in s: the initial time plus [`Run::offsets`].
     pub fn times(&self) -> Vec<f64> {
         self.run.offsets().into_iter().map(|offset| self.time + offset).collect()
     }
 
-    /// The angular velocity at the beginning in body axes: `Ω_B = ~R Ω_S R`.
+    /// The initial angular velocity in body axes: `Ω_B = ~R Ω_S R`.
     pub fn omega_body(&self) -> Bivector {
         match self.spin_frame {
             SpinFrame::Body => self.spin,
@@ -264,7 +263,7 @@ fn read_scene(reader: &mut Reader, root: &Table, path: &Path, text: &str) -> Opt
     })
 }
 
-/// A table that every scene has.
+/// A required table.
 fn section<'t>(reader: &mut Reader, root: &Table<'t>, name: &str, title: &'static str) -> Option<Table<'t>> {
     let Some(value) = root.get(name) else {
         reader.report(root.span.clone(), format!("missing table {title}"));
@@ -283,7 +282,7 @@ fn gravity(reader: &mut Reader, value: &Value) -> Option<Gravity> {
     Some(Gravity { acceleration: acceleration?, pivot: pivot?.unwrap_or_default() })
 }
 
-/// The bytes of a file that is small enough, or what is wrong with it.
+/// The bytes of a file, at most [`LARGEST_FILE`].
 fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let cannot = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),

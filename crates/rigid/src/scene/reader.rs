@@ -1,22 +1,23 @@
-//! Walks a TOML tree and collects everything that is wrong with it.
+//! Reads a TOML tree and collects all errors with their places.
 
 use super::definitions::Formulas;
 use crate::units::{self, Quantity};
 use polhode_ga::diagnostic::{alternatives, list, nearest, quote};
+use std::borrow::Cow;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Whole numbers beyond 2⁵³ are not all floating-point numbers.
+/// Integers beyond 2⁵³ are not all representable as floats.
 const LARGEST_INTEGER: i128 = 1 << 53;
 
 /// A value in the file.
 pub type Value<'t> = Spanned<DeValue<'t>>;
 
-/// A table in the file: `title` is what a message calls it.
+/// A table in the file; `title` is its name in messages.
 #[derive(Clone)]
 pub struct Table<'t> {
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     pub span: Range<usize>,
     pub fields: &'t DeTable<'t>,
 }
@@ -26,13 +27,13 @@ impl<'t> Table<'t> {
         self.fields.get(name)
     }
 
-    /// Where the field's name stands.
+    /// The place of the name of a field.
     pub fn name_span(&self, name: &str) -> Option<Range<usize>> {
         self.fields.get_key_value(name).map(|(key, _)| key.span())
     }
 }
 
-/// One of several ways to say something: the field that chooses it, and the fields that go with it.
+/// One of several forms of a table: the field that selects it, and the fields that belong to it.
 pub struct Form {
     pub field: &'static str,
     pub with: &'static [&'static [&'static str]],
@@ -44,12 +45,12 @@ impl Form {
     }
 }
 
-/// Reads a file.
+/// The reader of a scene file.
 #[derive(Default)]
 pub struct Reader {
-    /// What is wrong so far, with the bytes of the file that show it.
+    /// The errors so far, with their bytes in the file.
     pub problems: Vec<(Range<usize>, String)>,
-    /// What formulas may use.
+    /// The names that formulas may use.
     pub formulas: Formulas,
 }
 
@@ -71,7 +72,12 @@ impl Reader {
         self.report(value.span(), format!("expected {expected}, found {found}"));
     }
 
-    pub fn table<'t>(&mut self, value: &'t Value<'t>, title: &'static str) -> Option<Table<'t>> {
+    pub fn table<'t>(
+        &mut self,
+        value: &'t Value<'t>,
+        title: impl Into<Cow<'static, str>>,
+    ) -> Option<Table<'t>> {
+        let title = title.into();
         match value.get_ref() {
             DeValue::Table(fields) => Some(Table { title, span: value.span(), fields }),
             _ => {
@@ -81,7 +87,7 @@ impl Reader {
         }
     }
 
-    /// What `read` makes of the field; a missing one is reported at the table.
+    /// Reads a field; a missing one is reported at the table.
     pub fn field<'t, T>(
         &mut self,
         table: &Table<'t>,
@@ -95,7 +101,7 @@ impl Reader {
         read(self, value)
     }
 
-    /// What `read` makes of the field: `Some(None)` without it, `None` when it is wrong.
+    /// Reads an optional field: `Some(None)` without it, `None` if it is wrong.
     pub fn optional<'t, T>(
         &mut self,
         table: &Table<'t>,
@@ -108,7 +114,7 @@ impl Reader {
         }
     }
 
-    /// Reports every field of the table that is not among the known ones.
+    /// Reports every unknown field of the table.
     pub fn only(&mut self, table: &Table, known: &[&str]) {
         for (key, value) in table.fields.iter() {
             let name: &str = key.get_ref();
@@ -118,7 +124,7 @@ impl Reader {
             let what = if value.get_ref().is_table() { "table" } else { "field" };
             let message = match name.split_once('.') {
                 Some((table, _)) if known.contains(&table) => {
-                    format!("in quotes this is a single name; write {name} without")
+                    format!("quotes make this a single name; write {name} without quotes")
                 }
                 _ => unknown(what, name, known),
             };
@@ -126,7 +132,7 @@ impl Reader {
         }
     }
 
-    /// The one of the fields that is there. Reports a second one where it stands.
+    /// The field that is present; reports a second one at its place.
     pub fn at_most_one(&mut self, table: &Table, names: &[&'static str]) -> Option<&'static str> {
         let span = |name: &'static str| table.name_span(name).map(|span| (span.start, span.end, name));
         let mut given: Vec<_> = names.iter().filter_map(|name| span(name)).collect();
@@ -138,7 +144,7 @@ impl Reader {
         Some(first)
     }
 
-    /// The one of the fields that is there. Reports none at the table, and a second one where it stands.
+    /// The field that is present; reports a missing one at the table, and a second one at its place.
     pub fn exactly_one(&mut self, table: &Table, names: &[&'static str]) -> Option<&'static str> {
         let given = self.at_most_one(table, names);
         if given.is_none() {
@@ -148,7 +154,7 @@ impl Reader {
         given
     }
 
-    /// The field that chooses a form. Reports the fields that do not go with it, `always` excepted.
+    /// The field that selects a form; reports fields of other forms, except `always`.
     pub fn form(&mut self, table: &Table, forms: &[Form], always: &[&'static str]) -> Option<&'static str> {
         let choices: Vec<&'static str> = forms.iter().map(|form| form.field).collect();
         let mut followers: Vec<&'static str> = forms.iter().flat_map(Form::followers).collect();
@@ -168,7 +174,7 @@ impl Reader {
         Some(chosen)
     }
 
-    /// Reports the field, if it is there, as one that does not go with `owner`.
+    /// Reports the field, if present, as one that does not belong to `owner`.
     pub fn misplaced(&mut self, table: &Table, field: &str, owner: &str, own: &[&str]) {
         let Some(span) = table.name_span(field) else { return };
         let remedy = match own {
@@ -204,7 +210,7 @@ impl Reader {
         self.within(value, "the integer is beyond 2^53")
     }
 
-    /// An integer that is not too large, of which this is said otherwise.
+    /// An integer; `beyond` is the message for one that is too large.
     fn within(&mut self, value: &Value, beyond: &str) -> Option<i128> {
         let DeValue::Integer(integer) = value.get_ref() else {
             self.wrong_type(value, "a whole number");
@@ -260,13 +266,13 @@ impl Reader {
         }
     }
 
-    /// A quantity that is more than zero.
+    /// A positive quantity.
     pub fn positive(&mut self, value: &Value, expected: Quantity) -> Option<f64> {
         let number = self.quantity(value, expected)?;
         self.check_positive(value, number)
     }
 
-    /// The number if it is more than zero.
+    /// Reports a number that is not positive.
     pub fn check_positive(&mut self, value: &Value, number: f64) -> Option<f64> {
         if number <= 0.0 {
             self.report(value.span(), format!("must be more than 0, found {number}"));
@@ -275,7 +281,7 @@ impl Reader {
         Some(number)
     }
 
-    /// An array of N things, each read by `read`.
+    /// An array of N items.
     pub fn array<const N: usize, T: Copy + Default>(
         &mut self,
         value: &Value,
@@ -301,7 +307,7 @@ impl Reader {
         complete.then_some(array)
     }
 
-    /// An array of any length, each of its things read by `read`.
+    /// An array of any length.
     pub fn list<T>(
         &mut self,
         value: &Value,
@@ -312,7 +318,7 @@ impl Reader {
             self.wrong_type(value, &format!("an array of {what}"));
             return None;
         };
-        // All are read, so that all that is wrong is reported.
+        // Read all items, so that all errors are reported.
         let read: Vec<Option<T>> = items.iter().map(|item| read(self, item)).collect();
         read.into_iter().collect()
     }
@@ -328,7 +334,7 @@ impl Reader {
     }
 }
 
-/// `` unknown field `x` `` and what was probably meant.
+/// `` unknown field `x` `` and the nearest known name.
 fn unknown(what: &str, name: &str, known: &[&str]) -> String {
     let expected = match nearest(name, known.iter().copied()) {
         Some(near) => format!("`{near}`"),

@@ -92,7 +92,7 @@ pub fn read(reader: &mut Reader, table: &Table, method: Option<&Table>) -> Optio
 /// The fields of `[run]` and `[method]` that choose how to integrate; none in both.
 fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Choice> {
     let none = DeTable::new();
-    let own = Table { title: "[method]", span: run.span.clone(), fields: &none };
+    let own = Table { title: "[method]".into(), span: run.span.clone(), fields: &none };
     let own = method.unwrap_or(&own);
     reader.only(own, &["name", "step", "rtol", "atol", "max_step", "max_steps"]);
     for (field, same) in [("name", "method"), ("step", "step"), ("rtol", "rtol")] {

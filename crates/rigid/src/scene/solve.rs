@@ -1,4 +1,4 @@
-//! From a scene that is built to what there is to solve.
+//! The problem and the options of a scene.
 
 use super::{Law, Scene};
 use crate::body::Body;
@@ -10,10 +10,10 @@ use crate::run::{Options, Problem};
 use polhode_ga::Vector;
 
 impl Scene {
-    /// The inertia that rules the rotation of a body that [`Scene::build`] made: about the fixed point, where there
-    /// is one, which is then the origin of its axes.
+    /// The inertia for the rotation of a body of [`Scene::build`]: about the fixed point, if there is one, which is then the
+    /// origin of its axes.
     pub fn ruling_inertia(&self, body: &Body) -> Inertia {
-        // `build` has refused a body for which there is none.
+        // `build` has rejected a body for which there is none.
         if self.is_held() {
             body.inertia_about(Vector::default()).unwrap_or(body.inertia)
         } else {
@@ -21,7 +21,7 @@ impl Scene {
         }
     }
 
-    /// The motion of that body under the laws made with it, and under the forces.
+    /// The motion of that body under its torque laws and the forces.
     pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
         let laws = laws.iter().map(|law| law.torque.clone());
         let torques: Vec<Torque> = laws.chain(self.thrust_torques(body)).collect();
@@ -30,8 +30,7 @@ impl Scene {
             .starting_at(self.time)
     }
 
-    /// Where the origin that the scene speaks of is in the axes of the built body: under gravity the pivot becomes
-    /// their origin.
+    /// The origin of the axes of the scene in those of the built body, whose origin under gravity is the pivot.
     pub fn shift(&self) -> Vector {
         self.gravity.map_or(Vector::default(), |gravity| -gravity.pivot)
     }
@@ -41,7 +40,7 @@ impl Scene {
         self.forces.iter().map(|push| push.force.clone()).collect()
     }
 
-    /// The torques of thrusts that do not act at the centre of mass: `(x − c) ∧ F`.
+    /// The torques of thrusts off the centre of mass: `(x − c) ∧ F`.
     pub fn thrust_torques<'a>(&'a self, body: &'a Body) -> impl Iterator<Item = Torque> + 'a {
         self.forces.iter().filter_map(move |push| match (&push.force, push.at) {
             (Force::Body(thrust), Some(at)) => {
@@ -51,7 +50,7 @@ impl Scene {
         })
     }
 
-    /// How to solve it. Both tolerances measure the same scaled difference, so the larger one rules.
+    /// The options. Both tolerances bound the same scaled difference, so the larger one applies.
     pub fn options(&self) -> Options {
         let choice = &self.run.choice;
         let rtol = choice.rtol.into_iter().chain(choice.atol).reduce(f64::max);

@@ -1,7 +1,7 @@
 //! How numbers spread about those that a scene gives.
 
-use super::parameters::Limit;
 use super::reader::{Reader, Table, Value};
+use crate::laws::registry::Limit;
 use crate::random::{LARGEST_NORMAL, exp, normal, uniform};
 use crate::units::Quantity;
 use std::array::from_fn;
@@ -88,7 +88,7 @@ impl Spread {
         for (number, width) in numbers.iter().zip(self.widths) {
             for end in self.reach(*number, width) {
                 if let Some(why) = limit.refuses(end) {
-                    let message = format!("may draw {end:.2e}, but {why}; make it narrower");
+                    let message = format!("may draw {end:.2e}, but it {why}; make it narrower");
                     return reader.report(span, message);
                 }
             }
@@ -110,7 +110,7 @@ pub struct Shape {
 /// The table of a spread.
 pub fn table<'t>(reader: &mut Reader, value: &'t Value<'t>, example: &str) -> Option<Table<'t>> {
     match value.get_ref() {
-        DeValue::Table(fields) => Some(Table { title: "the table", span: value.span(), fields }),
+        DeValue::Table(fields) => Some(Table { title: "the table".into(), span: value.span(), fields }),
         _ => {
             reader.wrong_type(value, example);
             None

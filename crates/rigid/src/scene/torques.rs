@@ -1,4 +1,4 @@
-//! The table `[torque]`: what turns the body. Its fields are laws, which add up.
+//! The table `[torque]`: torque laws, which add up.
 //!
 //! ```toml
 //! [torque]
@@ -10,53 +10,25 @@
 use super::reader::{Reader, Table, Value};
 use super::{formulas, initial};
 use crate::error::TorqueError;
-use crate::laws::torque::{self, Axes, Gains, Kind, Orbit, Torque};
+use crate::laws::registry::{Argument, Entry, Kernel, Shape, TORQUES};
+use crate::laws::torque::{self, Axes, Kind, Torque};
 use crate::units::Quantity;
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::Bivector;
+use polhode_ga::product::Grades;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use toml::de::DeValue;
 
-/// A law, and its formula as it stands in the file, if it is one.
+/// A torque law, and its text in the file if it is a formula.
 #[derive(Clone, Debug)]
 pub struct Law {
-    /// The field of `[torque]` that says it, or `gravity`.
+    /// Its field in `[torque]`, or `gravity`.
     pub name: &'static str,
     /// The law.
     pub torque: Torque,
     /// The formula, whose numbers may have units.
     pub formula: Option<String>,
 }
-
-/// Reads one law.
-type Read = fn(&mut Reader, &Value) -> Option<Torque>;
-
-/// Every law but the formulas, in the order in which messages name them.
-const LAWS: [(&str, Read); 13] = [
-    ("damping", |reader, value| reader.quantity(value, Quantity::DecayRate).map(Torque::Damping)),
-    ("quadratic_damping", |reader, value| {
-        not_negative(reader, value, Quantity::QuadraticRotaryDamping).map(Torque::QuadraticDamping)
-    }),
-    ("viscous_damping", |reader, value| {
-        gains(reader, value, Quantity::RotaryDamping).map(Torque::ViscousDamping)
-    }),
-    ("gravity_gradient", gravity_gradient),
-    ("constant_body", |reader, value| {
-        formulas::bivector(reader, value, Quantity::Torque).map(Torque::ConstantBody)
-    }),
-    ("constant_space", |reader, value| {
-        formulas::bivector(reader, value, Quantity::Torque).map(Torque::ConstantSpace)
-    }),
-    ("magnetic", magnetic),
-    ("torsion_spring", torsion_spring),
-    ("gyrostat", |reader, value| {
-        formulas::bivector(reader, value, Quantity::AngularMomentum).map(Torque::Wheel)
-    }),
-    ("pd_control", pd_control),
-    ("larmor", |reader, value| formulas::vector(reader, value, Quantity::AngularRate).map(Torque::Larmor)),
-    ("tabulated", tabulated),
-    ("heavy", |reader, value| formulas::vector(reader, value, Quantity::Torque).map(Torque::Heavy)),
-];
 
 /// The fields that are formulas, which may stand before the first table too.
 pub const FORMULAS: [(&str, Axes); 2] = [("torque_body", Axes::Body), ("torque_space", Axes::Space)];
@@ -75,12 +47,12 @@ pub fn read(reader: &mut Reader, root: &Table, table: Option<&Table>) -> Option<
         }
     }
     if let Some(table) = table {
-        let names = LAWS.iter().map(|(name, _)| *name).chain(FORMULAS.iter().map(|(name, _)| *name));
+        let names = TORQUES.iter().map(|entry| entry.name).chain(FORMULAS.iter().map(|(name, _)| *name));
         reader.only(table, &names.collect::<Vec<_>>());
-        for (name, read) in LAWS {
-            if let Some(value) = table.get(name) {
-                let torque = read(reader, value);
-                laws.push((value.span().start, torque.map(|torque| Law { name, torque, formula: None })));
+        for entry in &TORQUES {
+            if let Some(value) = table.get(entry.name) {
+                let law = law(reader, value, entry);
+                laws.push((value.span().start, law));
             }
         }
     }
@@ -94,87 +66,85 @@ fn formula(reader: &mut Reader, value: &Value, name: &'static str, axes: Axes) -
     Some(Law { name, torque: Torque::Formula(law), formula: Some(written) })
 }
 
-fn not_negative(reader: &mut Reader, value: &Value, quantity: Quantity) -> Option<f64> {
-    let number = reader.quantity(value, quantity)?;
-    if number < 0.0 {
-        reader.report(value.span(), format!("must not be negative, found {number}"));
-        return None;
-    }
-    Some(number)
-}
-
-/// One number, or three along the body axes; none negative.
-fn gains(reader: &mut Reader, value: &Value, quantity: Quantity) -> Option<Gains> {
-    let along = match value.get_ref() {
-        DeValue::Array(_) => {
-            reader.array(value, "numbers", |reader, item| not_negative(reader, item, quantity))?
+fn law(reader: &mut Reader, value: &Value, entry: &'static Entry<Torque>) -> Option<Law> {
+    let torque = match entry.kernel {
+        Kernel::Table => tabulated(reader, value, entry)?,
+        _ => {
+            let numbers = arguments(reader, value, entry)?;
+            placed(reader, value, entry.check(&numbers).and_then(|()| entry.build(&numbers)))?
         }
-        _ => [not_negative(reader, value, quantity)?; 3],
     };
-    Some(Gains::new(along))
+    Some(Law { name: entry.name, torque, formula: None })
 }
 
-fn gravity_gradient(reader: &mut Reader, value: &Value) -> Option<Torque> {
-    let table = &reader.table(value, "`gravity_gradient`")?;
-    reader.only(table, &["rate", "period", "eccentricity", "mean_anomaly"]);
-    let rate = match reader.exactly_one(table, &["rate", "period"])? {
-        "rate" => reader.field(table, "rate", |reader, value| reader.quantity(value, Quantity::AngularRate)),
-        _ => reader
-            .field(table, "period", |reader, value| reader.positive(value, Quantity::Time))
-            .map(|period| TAU / period),
-    };
-    let eccentricity = reader.optional(table, "eccentricity", |reader, value| {
-        let number = reader.number(value)?;
-        if !(0.0..1.0).contains(&number) {
-            let message = format!("must be at least 0 and below 1 for an orbit that returns, found {number}");
-            reader.report(value.span(), message);
+/// The numbers of all arguments of a law: its value, or the fields of its table.
+pub fn arguments<T>(reader: &mut Reader, value: &Value, entry: &Entry<T>) -> Option<Vec<f64>> {
+    if let [argument] = entry.arguments
+        && argument.field.is_empty()
+    {
+        return one(reader, value, argument);
+    }
+    let table = &reader.table(value, format!("`{}`", entry.name))?;
+    let periods = entry.arguments.iter().map(|argument| argument.period).filter(|name| !name.is_empty());
+    let fields: Vec<_> = entry.arguments.iter().map(|argument| argument.field).chain(periods).collect();
+    reader.only(table, &fields);
+    // All are read, so that all that is wrong is reported.
+    let numbers: Vec<Option<Vec<f64>>> =
+        entry.arguments.iter().map(|argument| of_field(reader, table, argument)).collect();
+    Some(numbers.into_iter().collect::<Option<Vec<_>>>()?.concat())
+}
+
+/// The numbers of an argument in a field of a table; its default values without the field.
+fn of_field(reader: &mut Reader, table: &Table, argument: &Argument) -> Option<Vec<f64>> {
+    let Argument { field, period, .. } = *argument;
+    if !period.is_empty() && reader.exactly_one(table, &[field, period])? == period {
+        let seconds = |reader: &mut Reader, value: &_| reader.positive(value, Quantity::Time);
+        return reader.field(table, period, seconds).map(|seconds| vec![TAU / seconds]);
+    }
+    match (table.get(field), argument.default) {
+        (None, Some(default)) => Some(default.to_vec()),
+        _ => reader.field(table, field, |reader, value| one(reader, value, argument)),
+    }
+}
+
+/// The numbers of one argument.
+fn one(reader: &mut Reader, value: &Value, argument: &Argument) -> Option<Vec<f64>> {
+    let scalar = |reader: &mut Reader, value: &Value| {
+        let number = match argument.quantity {
+            Some(quantity) => reader.quantity(value, quantity),
+            None => reader.number(value),
+        }?;
+        if let Some(why) = argument.limit.refuses(number) {
+            reader.report(value.span(), format!("{why}, found {number}"));
             return None;
         }
         Some(number)
-    });
-    let anomaly =
-        reader.optional(table, "mean_anomaly", |reader, value| reader.quantity(value, Quantity::Angle));
-    let orbit = Orbit::new(rate?, eccentricity?.unwrap_or(0.0), anomaly?.unwrap_or(0.0));
-    placed(reader, value, orbit).map(Torque::GravityGradient)
+    };
+    match (argument.shape, argument.quantity) {
+        (Shape::Vector, None) => match value.get_ref() {
+            DeValue::String(_) => {
+                formulas::components(reader, value, Grades(0b0010), "a vector").map(|v: [f64; 3]| v.to_vec())
+            }
+            _ => reader.numbers(value).map(|v: [f64; 3]| v.to_vec()),
+        },
+        (Shape::Vector, Some(quantity)) => formulas::vector(reader, value, quantity).map(|v| v.0.to_vec()),
+        (Shape::Bivector, Some(quantity)) => {
+            formulas::bivector(reader, value, quantity).map(|b| b.0.to_vec())
+        }
+        (Shape::Gains, _) => match value.get_ref() {
+            DeValue::Array(_) => reader.array(value, "numbers", scalar).map(|along: [f64; 3]| along.to_vec()),
+            _ => Some(vec![scalar(reader, value)?; 3]),
+        },
+        (Shape::Rotor, _) => {
+            let rotor = initial::attitude(reader, value, format!("`{}`", argument.field))?;
+            Some(rotor.components().to_vec())
+        }
+        _ => Some(vec![scalar(reader, value)?]),
+    }
 }
 
-fn magnetic(reader: &mut Reader, value: &Value) -> Option<Torque> {
-    let table = &reader.table(value, "`magnetic`")?;
-    reader.only(table, &["dipole", "field"]);
-    let mut read =
-        |name, quantity| reader.field(table, name, |reader, value| formulas::vector(reader, value, quantity));
-    let (dipole, field): (Option<Vector>, Option<Vector>) =
-        (read("dipole", Quantity::MagneticDipole), read("field", Quantity::MagneticField));
-    Some(Torque::Magnetic { dipole: dipole?, field: field? })
-}
-
-fn torsion_spring(reader: &mut Reader, value: &Value) -> Option<Torque> {
-    let table = &reader.table(value, "`torsion_spring`")?;
-    reader.only(table, &["stiffness", "rest"]);
-    let stiffness = reader
-        .field(table, "stiffness", |reader, value| reader.quantity(value, Quantity::TorsionalStiffness));
-    let rest = attitude(reader, table, "rest", "`rest`");
-    Some(Torque::TorsionSpring { stiffness: stiffness?, rest: rest? })
-}
-
-fn pd_control(reader: &mut Reader, value: &Value) -> Option<Torque> {
-    let table = &reader.table(value, "`pd_control`")?;
-    reader.only(table, &["kp", "kd", "target"]);
-    let mut read = |name, quantity| reader.field(table, name, |reader, value| gains(reader, value, quantity));
-    let (stiffness, damping) =
-        (read("kp", Quantity::TorsionalStiffness), read("kd", Quantity::RotaryDamping));
-    let target = attitude(reader, table, "target", "`target`");
-    Some(Torque::Control { stiffness: stiffness?, damping: damping?, target: target? })
-}
-
-/// The attitude in this field, the identity without it.
-fn attitude(reader: &mut Reader, table: &Table, name: &str, title: &'static str) -> Option<Rotor> {
-    let read = reader.optional(table, name, |reader, value| initial::attitude(reader, value, title));
-    Some(read?.unwrap_or(Rotor::IDENTITY))
-}
-
-fn tabulated(reader: &mut Reader, value: &Value) -> Option<Torque> {
-    let table = &reader.table(value, "`tabulated`")?;
+fn tabulated(reader: &mut Reader, value: &Value, entry: &Entry<Torque>) -> Option<Torque> {
+    let table = &reader.table(value, format!("`{}`", entry.name))?;
     reader.only(table, &["times", "torques", "frame", "kind"]);
     let times = reader.field(table, "times", |reader, value| {
         reader.list(value, "times", |reader, item| reader.quantity(item, Quantity::Time))
@@ -189,11 +159,11 @@ fn tabulated(reader: &mut Reader, value: &Value) -> Option<Torque> {
     let axes = if frame? == Some("space") { Axes::Space } else { Axes::Body };
     let kind = if kind? == Some("cubic") { Kind::Cubic } else { Kind::Linear };
     let rows: Vec<Bivector> = torques?;
-    let made = torque::Table::new(times?, rows, axes, kind);
-    placed(reader, value, made).map(|table| Torque::Tabulated(Arc::new(table)))
+    placed(reader, value, torque::Table::new(times?, rows, axes, kind))
+        .map(|table| Torque::Tabulated(Arc::new(table)))
 }
 
-/// What is made of a value, or why nothing is, at its place.
-fn placed<T>(reader: &mut Reader, value: &Value, made: Result<T, TorqueError>) -> Option<T> {
-    made.map_err(|error| reader.report(value.span(), error.to_string())).ok()
+/// Reports an error at the place of a value.
+pub fn placed<T>(reader: &mut Reader, value: &Value, result: Result<T, TorqueError>) -> Option<T> {
+    result.map_err(|error| reader.report(value.span(), error.to_string())).ok()
 }

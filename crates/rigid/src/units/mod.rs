@@ -58,11 +58,13 @@ pub enum Quantity {
     GravitationalParameter,
     MagneticDipole,
     MagneticField,
+    Area,
+    Pressure,
 }
 
 impl Quantity {
     /// Every quantity, in the order of the enum.
-    pub const ALL: [Quantity; 22] = [
+    pub const ALL: [Quantity; 24] = [
         Quantity::Length,
         Quantity::Mass,
         Quantity::Time,
@@ -85,6 +87,8 @@ impl Quantity {
         Quantity::GravitationalParameter,
         Quantity::MagneticDipole,
         Quantity::MagneticField,
+        Quantity::Area,
+        Quantity::Pressure,
     ];
 
     /// Its unit in SI, which a bare number has; one value as a person might write it; its powers of metre,
@@ -119,6 +123,8 @@ impl Quantity {
             }
             Quantity::MagneticDipole => ("A m^2", "0.2 A m^2", [2, 0, 0, 0, 1], "a magnetic dipole"),
             Quantity::MagneticField => ("T", "30 uT", [0, 1, -2, 0, -1], "a magnetic field"),
+            Quantity::Area => ("m^2", "2 m^2", [2, 0, 0, 0, 0], "an area"),
+            Quantity::Pressure => ("N/m^2", "4.56 uN/m^2", [-1, 1, -2, 0, 0], "a pressure"),
         }
     }
 

@@ -4,11 +4,10 @@ pub mod crowd;
 
 use crate::rows::{ROW, rows};
 use crowd::Crowd;
-use polhode_ga::Vector;
 use polhode_rigid::body::mesh::{MeshError, MeshFormat, MeshProblem};
 use polhode_rigid::run::{Motion, Problem, Progress};
 use polhode_rigid::scene::Law;
-use polhode_rigid::{Body, Diagnostic, Scene, SimulateError, TriangleMesh};
+use polhode_rigid::{Body, Diagnostic, Scene, SimulateError, Surface, TriangleMesh};
 use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::path::Path;
@@ -31,7 +30,8 @@ pub struct Opened {
     pub problem: Problem,
     /// The motion.
     pub motion: Motion,
-    mesh: Option<TriangleMesh>,
+    /// The surface of the body in body axes, if it is a mesh or a solid.
+    pub surface: Option<Surface>,
     crowd: OnceCell<Result<Crowd, String>>,
 }
 
@@ -50,8 +50,7 @@ impl Opened {
         let read = OnceCell::new();
         let source = |path: &Path| read.get_or_init(|| mesh_among(files, path)).clone();
         let (body, laws) = scene.build_with(&source).map_err(|problems| told(&problems))?;
-        // `build_with` has read it without an error.
-        let mesh = scene.mesh_with(&source).and_then(Result::ok).map(|mesh| mesh.moved(scene.shift()));
+        let surface = surface_of(&scene, &source);
         let problem = scene.problem(&body, &laws);
         let motion = problem.simulate(&scene.times(), scene.options(), &mut |_: Progress| go_on());
         let motion = motion.map_err(|error| match error {
@@ -60,7 +59,7 @@ impl Opened {
                 .to_owned(),
             error => error.to_string(),
         })?;
-        Ok(Opened { scene, body, laws, problem, motion, mesh, crowd: OnceCell::new() })
+        Ok(Opened { scene, body, laws, problem, motion, surface, crowd: OnceCell::new() })
     }
 
     /// Rows of states at any times; exact motions know them all within their horizon, others those of their run.
@@ -72,11 +71,6 @@ impl Opened {
         states.map(|states| rows(&states)).map_err(|error| error.to_string())
     }
 
-    /// The surface of the body, in body axes, if it is a mesh.
-    pub fn mesh(&self) -> Option<&TriangleMesh> {
-        self.mesh.as_ref()
-    }
-
     /// Rotors of the first bodies of the ensemble at a time, at most `count`.
     pub fn bodies(&self, time: f64, count: usize, go_on: GoOn) -> Result<Vec<[f64; 4]>, String> {
         let crowd = self.crowd.get_or_init(|| Crowd::new(self, count, go_on));
@@ -84,11 +78,18 @@ impl Opened {
     }
 }
 
-/// The surface of the mesh that a scene names, moved as its body; nothing where it names none or it cannot be read.
-pub fn surface(text: &str, name: &str, files: &Files) -> Option<TriangleMesh> {
+/// The surface of the mesh or the solid of a scene, in body axes; None if it has neither or cannot be read.
+pub fn surface(text: &str, name: &str, files: &Files) -> Option<Surface> {
     let scene = Scene::parse(text, Path::new(name)).ok()?;
-    let mesh = scene.mesh_with(&|path: &Path| mesh_among(files, path))?.ok()?;
-    Some(mesh.moved(scene.shift()))
+    surface_of(&scene, &|path: &Path| mesh_among(files, path))
+}
+
+fn surface_of(scene: &Scene, source: &dyn Fn(&Path) -> Result<TriangleMesh, MeshError>) -> Option<Surface> {
+    let surface = match scene.solid() {
+        Some(solid) => Surface::of_solid(solid),
+        None => Surface::of_mesh(&scene.mesh_with(source)?.ok()?),
+    };
+    Some(surface.transformed(|x| x + scene.shift()))
 }
 
 /// The mesh in one of the files.
@@ -105,9 +106,4 @@ fn mesh_among(files: &Files, path: &Path) -> Result<TriangleMesh, MeshError> {
             "the page was not given this file; open it along with the scene".into(),
         )),
     }
-}
-
-/// Coordinates of the vertices, three each.
-pub fn vertices(mesh: &TriangleMesh) -> Vec<f64> {
-    mesh.vertices().iter().flat_map(|Vector(x)| *x).collect()
 }

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from polhode import _native
+from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.result import Failure
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import kind_of
@@ -19,26 +20,6 @@ from polhode._support.extras import optional
 
 # Bytes of a chunk, what is read or written at once.
 _CHUNK = 1 << 20
-
-# Name and unit of each argument of a law, as a variable of the file.
-_ARGUMENTS: dict[str, tuple[tuple[str, str], ...]] = {
-    "heavy": (("heavy", "N m"),),
-    "gravity_gradient": (
-        ("gravity_gradient_rate", "rad/s"),
-        ("gravity_gradient_eccentricity", "1"),
-        ("gravity_gradient_mean_anomaly", "rad"),
-    ),
-    "constant_body": (("constant_body", "N m"),),
-    "constant_space": (("constant_space", "N m"),),
-    "damping": (("damping", "1/s"),),
-    "quadratic_damping": (("quadratic_damping", "N m s^2"),),
-    "viscous_damping": (("viscous_damping", "N m s"),),
-    "magnetic": (("magnetic_dipole", "A m^2"), ("magnetic_field", "T")),
-    "torsion_spring": (("torsion_spring_stiffness", "N m"), ("torsion_spring_rest", "1")),
-    "gyrostat": (("gyrostat", "kg m^2/s"),),
-    "pd_control": (("pd_control_kp", "N m"), ("pd_control_kd", "N m s"), ("pd_control_target", "1")),
-    "larmor": (("larmor", "rad/s"),),
-}
 
 
 def bytes_of_file(scene: Scene) -> int:
@@ -207,10 +188,11 @@ class EnsembleFile:
             if isinstance(law, _native.Law):
                 continue
             name, arguments = law
-            for (label, units), values in zip(_ARGUMENTS[name], arguments, strict=True):
+            for argument, values in zip(TORQUES[name].arguments, arguments, strict=True):
                 dims = () if values.ndim == 1 else ("axis" if values.shape[1] == 3 else "quaternion",)
                 text = f"of the torque law {name}, as drawn"
-                self._grow(rows, label, dims, _wxyz(values), units, text)
+                label = "_".join(filter(None, (name, argument.field)))
+                self._grow(rows, label, dims, _wxyz(values), argument.unit, text)
 
     def end(self) -> None:
         """Write what is known after the last body, be it the last of all or the last before a stop."""

@@ -1,7 +1,7 @@
 //! Torques, forces and events that are formulas: `-c ∧ (~R e3 R)`.
 //!
-//! A formula is read, compiled and checked once: the grades of its value, by what it is made of, must be those of what
-//! it stands for. Then it is run like any formula on single values, on what the motion gives for its names.
+//! A formula is compiled and its grades are checked once. Then it is evaluated on the values that the motion defines for
+//! its names.
 
 pub(crate) mod side_by_side;
 
@@ -9,7 +9,8 @@ pub(crate) use side_by_side::Formulas;
 
 use super::torque::Axes;
 use crate::error::TorqueError;
-use crate::state::phase::Gyrostat;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::formula::{
     Error, Given, Input, Meaning, Names, Program, Runner, Space, Span, Type, compile, parse,
@@ -23,18 +24,18 @@ use std::sync::Arc;
 
 const VECTOR: Grades = Grades(0b0010);
 
-/// What the value of a formula stands for.
+/// The meaning of the value of a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// A torque in these axes.
     Torque(Axes),
     /// A force in space.
     Force,
-    /// A number that passes zero at an event.
+    /// A number that crosses zero at an event.
     Event,
 }
 
-/// What the motion gives to a formula.
+/// The names that the motion defines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Motion {
     Rotor,
@@ -49,20 +50,20 @@ pub(crate) enum Motion {
     Mass,
 }
 
-/// Where an input comes from.
+/// The source of an input.
 #[derive(Clone, Copy, Debug)]
 enum Source {
     Motion(Motion),
     Known(Given),
 }
 
-/// A formula on what a motion gives.
+/// A formula evaluated along a motion.
 #[derive(Clone)]
 pub struct Formula {
     compiled: Arc<Compiled>,
     /// For each input of the program.
     sources: Arc<[Source]>,
-    /// From the axes of the motion to those of the body.
+    /// The rotor from the axes of the motion to those of the body.
     frame: Rotor,
 }
 
@@ -75,7 +76,7 @@ struct Compiled {
     result: usize,
 }
 
-/// The names that the motion gives. `Ω` is the angular velocity in the axes of a torque.
+/// The names that the motion defines. `Ω` is the angular velocity in the axes of the torque.
 pub(crate) fn given(purpose: Purpose) -> Vec<(&'static str, Motion)> {
     let mut names = vec![
         ("R", Motion::Rotor),
@@ -157,12 +158,12 @@ impl Motion {
         }
     }
 
-    /// Whether it changes with the rate of turning, at a given attitude and time.
+    /// Whether it depends on the angular velocity.
     pub fn is_rate(self) -> bool {
         !matches!(self, Motion::Rotor | Motion::Time | Motion::Inertia)
     }
 
-    /// What it is at a point of the motion, `frame` leading from principal axes to the body's.
+    /// Its value at a point of the motion, with `frame` from principal axes to those of the body.
     fn at(self, point: &Point, frame: Rotor) -> Given {
         let Point { body, phase: state, center, mass } = *point;
         let vector = |v: Vector| Given::Value(Graded::new(&v.0, VECTOR).unwrap_or_default());
@@ -186,7 +187,7 @@ impl Motion {
     }
 }
 
-/// The matrix of `I(…)`, `frame` leading from principal axes to the body's.
+/// The matrix of `I(…)`, with `frame` from principal axes to those of the body.
 fn inertia(body: &Gyrostat, frame: Rotor) -> Given {
     let (f, i) = (frame.to_matrix(), body.moments);
     let entry = |j: usize, k: usize| (0..3).map(|a| f[j][a] * i[a] * f[k][a]).sum();
@@ -194,19 +195,19 @@ fn inertia(body: &Gyrostat, frame: Rotor) -> Given {
 }
 
 thread_local! {
-    /// Memory for the inputs and the steps of a formula, so that an evaluation allocates none.
+    /// Buffers for inputs and steps, so that an evaluation does not allocate.
     static MEMORY: RefCell<(Vec<Given>, Vec<Graded>)> = const { RefCell::new((Vec::new(), Vec::new())) };
 }
 
 impl Formula {
     /// Reads a formula whose value is a torque, a force or a number.
     ///
-    /// The motion gives `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a
+    /// The motion defines `R` (body axes to space), `t` in s, `Ω_B` and `Ω_S` (the angular velocity, a
     /// bivector in body axes and in space, or `Omega_B` and `Omega_S`; for a torque `Ω` is that in its axes),
     /// `L` and `L_B` (the momentum, that of a wheel included, in space and in body axes), the inertia
-    /// map `I(…)` of the body, and for forces and events `x` and `v` (place and velocity of the centre of mass, vectors
-    /// in space) and `m` (the mass in kg). All other names stand for what `names` says; `value` tells the value of an
-    /// input, of the kind it asks for.
+    /// map `I(…)` of the body, and for forces and events `x` and `v` (position and velocity of the centre of mass, vectors
+    /// in space) and `m` (the mass in kg). All other names are those of `names`; `value` returns the value of an input, of
+    /// the kind that it has.
     pub fn new(
         text: &str,
         purpose: Purpose,
@@ -217,7 +218,7 @@ impl Formula {
         let wrong = |span: Span, message: String| Error { message, span };
         for (name, motion) in given(purpose) {
             if names.bind(name.to_owned(), motion.meaning()).is_some() {
-                let message = format!("`{name}` is given by the motion; call your value otherwise");
+                let message = format!("`{name}` is given by the motion; rename your value");
                 return Err(wrong(whole, message));
             }
         }
@@ -241,13 +242,12 @@ impl Formula {
             sources.push(source.ok_or_else(|| wrong(whole, format!("`{}` has no value", input.name)))?);
         }
         let runner =
-            Runner::new(&program).ok_or_else(|| wrong(whole, "no formula of 3-d space".to_owned()))?;
+            Runner::new(&program).ok_or_else(|| wrong(whole, "not a formula of 3-d space".to_owned()))?;
         let compiled = Compiled { text: text.to_owned(), purpose, program, runner, result };
         Ok(Formula { compiled: Arc::new(compiled), sources: sources.into(), frame: Rotor::IDENTITY })
     }
 
-    /// The same formula with other values, of the same kinds, for the inputs for which `value` tells one: for each of
-    /// many bodies, so that it is compiled once.
+    /// The same compiled formula with other values, of the same kinds, for the inputs that `value` knows.
     pub fn with_values(&self, mut value: impl FnMut(&Input) -> Option<Given>) -> Formula {
         let inputs = self.compiled.program.inputs.iter().zip(&*self.sources);
         let sources = inputs.map(|(input, source)| match source {
@@ -257,12 +257,12 @@ impl Formula {
         Formula { compiled: self.compiled.clone(), sources: sources.collect(), frame: self.frame }
     }
 
-    /// The formula as it was given.
+    /// The text of the formula.
     pub fn text(&self) -> &str {
         &self.compiled.text
     }
 
-    /// The names in it that the motion does not give, with their values.
+    /// The names that the motion does not define, with their values.
     pub(crate) fn known(&self) -> impl Iterator<Item = (&str, Given)> {
         self.compiled.program.inputs.iter().zip(&*self.sources).filter_map(|(input, source)| match source {
             Source::Known(given) => Some((input.name.as_str(), *given)),
@@ -274,7 +274,7 @@ impl Formula {
         self.compiled.purpose
     }
 
-    /// From the axes of the motion to those of the body.
+    /// The rotor from the axes of the motion to those of the body.
     pub(crate) fn frame(&self) -> Rotor {
         self.frame
     }
@@ -287,13 +287,19 @@ impl Formula {
         self.sources.iter().any(|source| matches!(source, Source::Motion(motion) if what(*motion)))
     }
 
+    /// The value of a formula of numbers that needs no motion.
+    pub(crate) fn constant(&self) -> Result<f64, TorqueError> {
+        let body = Gyrostat { moments: [1.0; 3], wheel: Bivector::default() };
+        let phase = Phase { rotor: Rotor::IDENTITY, momentum: Bivector::default(), time: 0.0 };
+        let at = Point { body: &body, mass: f64::NAN, phase: &phase, center: &Center::default() };
+        Ok(self.value(&at)?.components().first().copied().unwrap_or(f64::NAN))
+    }
+
     /// Its value, finite, of the grades of its purpose.
     pub(crate) fn value(&self, at: &Point) -> Result<Graded, TorqueError> {
         let Compiled { runner, result, .. } = &*self.compiled;
         if at.mass.is_nan() && self.needs(|motion| motion == Motion::Mass) {
-            return Err(TorqueError(
-                "`m` is not known; simulate a Body, which has a mass, rather than an Inertia".into(),
-            ));
+            return Err(TorqueError("`m` is not known: an Inertia has no mass; simulate a Body".into()));
         }
         MEMORY.with_borrow_mut(|(inputs, values)| {
             inputs.clear();
@@ -314,7 +320,7 @@ impl Formula {
         })
     }
 
-    /// The error of a step without a value: names its part of the formula.
+    /// The error of a step without a value, which names its part of the formula.
     fn failed(&self, step: usize, why: &str) -> TorqueError {
         let Span { start, end } = self.compiled.program.steps[step].span;
         let text = &self.compiled.text;

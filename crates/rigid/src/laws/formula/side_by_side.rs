@@ -1,4 +1,4 @@
-//! Formulas of torques for bodies side by side: one program, whose known values may differ from body to body.
+//! Torque formulas for bodies in lanes: one program with values for each body.
 
 use super::{Compiled, Formula, Motion, Purpose, Source, inertia};
 use crate::laws::forcing::Place;
@@ -13,9 +13,9 @@ use std::sync::Arc;
 /// A torque for each body.
 pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
     program: Beside<'f, W>,
-    /// What changes on the way, by the numbers of the inputs.
+    /// The inputs that change along the motion.
     motions: Vec<(usize, Motion)>,
-    /// From principal axes to those of the body, where they differ for some body.
+    /// From principal axes to those of the body; `None` if they are the same for all bodies.
     frame: Option<[Lanes<W, F>; 4]>,
     in_space: bool,
     moments: Three<W, F>,
@@ -23,7 +23,7 @@ pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
 }
 
 impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
-    /// `None` where they are not one program, or where a step has no value whatever the motion gives.
+    /// `None` if they are not the same program, or if a step never has a value.
     pub fn new(each: [&'f Formula; W], bodies: &[Gyrostat; W]) -> Option<Formulas<'f, W, F>> {
         let Compiled { program, runner, purpose, .. } = &*each[0].compiled;
         let sources = &each[0].sources;
@@ -80,7 +80,7 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         })
     }
 
-    /// The torques in principal axes, NaN or infinite for a body that has none.
+    /// The torques in principal axes; NaN or infinite for a body without one.
     #[inline(always)]
     pub fn torque(&mut self, at: &Place<W, F>) -> Three<W, F> {
         for k in 0..self.motions.len() {
@@ -101,7 +101,7 @@ impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
         }
     }
 
-    /// What the motion gives, and how many numbers it is.
+    /// The value of a name that the motion defines, and the count of its numbers.
     #[inline(always)]
     fn given(&self, motion: Motion, at: &Place<W, F>) -> ([Lanes<W, F>; 4], usize) {
         let in_body = match motion {

@@ -1,4 +1,4 @@
-//! Laws that are formulas: `-c ∧ (~R e3 R)`.
+//! Torque laws that are formulas: `-c ∧ (~R e3 R)`.
 
 use super::lanes::seen;
 use super::{Axes, Dependence};
@@ -15,7 +15,7 @@ use polhode_ga::{Bivector, Rotor};
 #[derive(Clone, Debug)]
 pub struct FormulaTorque(Formula);
 
-/// The names that the motion gives to a formula.
+/// The names that the motion defines in a formula.
 pub fn given_names() -> impl Iterator<Item = &'static str> {
     given(Purpose::Torque(Axes::Body)).into_iter().map(|(name, _)| name)
 }
@@ -36,7 +36,7 @@ impl FormulaTorque {
         FormulaTorque(self.0.with_values(value))
     }
 
-    /// The formula as it was given.
+    /// The text of the formula.
     pub fn text(&self) -> &str {
         self.0.text()
     }
@@ -46,7 +46,7 @@ impl FormulaTorque {
         if self.0.purpose() == Purpose::Torque(Axes::Space) { Axes::Space } else { Axes::Body }
     }
 
-    /// The names in it that the motion does not give, with their values.
+    /// The names that the motion does not define, with their values.
     pub fn known(&self) -> impl Iterator<Item = (&str, Given)> {
         self.0.known()
     }

@@ -1,4 +1,4 @@
-//! Laws that only their caller knows.
+//! Torque laws that are functions of the caller.
 
 use crate::error::TorqueError;
 use crate::state::phase::{Gyrostat, Phase};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// axes.
 type Call = dyn Fn(f64, Rotor, Bivector) -> Result<Bivector, TorqueError> + Send + Sync;
 
-/// A law that is a function.
+/// A torque law that is a function of the caller.
 #[derive(Clone)]
 pub struct FunctionTorque {
     call: Arc<Call>,
@@ -37,7 +37,9 @@ impl FunctionTorque {
         let torque = (self.call)(state.time, state.rotor * back, omega)?;
         if !torque.0.iter().all(|x| x.is_finite()) {
             let Bivector(torque) = torque;
-            return Err(TorqueError(format!("the torque that the function returned is {torque:?}")));
+            return Err(TorqueError(format!(
+                "the torque that the function returned is {torque:?}; it must be finite"
+            )));
         }
         Ok(back.apply_bivector(torque))
     }

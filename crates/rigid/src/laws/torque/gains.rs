@@ -1,4 +1,4 @@
-//! Factors along body axes, as of dampers and controllers.
+//! Gains along body axes, as of dampers and controllers.
 
 use polhode_ga::{Bivector, Rotor};
 use std::array::from_fn;
@@ -23,7 +23,7 @@ impl Gains {
         from_fn(|k| self.0[k / 3][k % 3])
     }
 
-    /// The map seen from other axes: `B ↦ ~F G(F B ~F) F`. A multiple of 1 stays exactly what it is.
+    /// The map in other axes: `B ↦ ~F G(F B ~F) F`. A multiple of the identity is returned unchanged.
     pub fn in_axes(self, frame: Rotor) -> Gains {
         let Gains(g) = self;
         if g[0][0] == g[1][1] && g[1][1] == g[2][2] && g[0][1] == 0.0 && g[1][2] == 0.0 && g[2][0] == 0.0 {
@@ -42,12 +42,12 @@ impl Gains {
         Bivector(from_fn(|i| self.0[i][0] * b.0[0] + self.0[i][1] * b.0[1] + self.0[i][2] * b.0[2]))
     }
 
-    /// Whether it maps all to zero.
+    /// Whether all gains are zero.
     pub fn is_zero(&self) -> bool {
         self.0.iter().flatten().all(|x| *x == 0.0)
     }
 
-    /// A bound of the size of `G(B)` for |B| = 1: the matrix's own norm.
+    /// A bound of |G(B)| for |B| = 1: the Frobenius norm.
     pub(crate) fn bound(&self) -> f64 {
         self.0.iter().flatten().map(|x| x * x).sum::<f64>().sqrt()
     }

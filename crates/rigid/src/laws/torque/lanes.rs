@@ -1,14 +1,14 @@
-//! The torques of laws for bodies side by side, in principal axes; a single body is lanes of one.
+//! Kernels of torques for bodies in lanes, in principal axes; a single body has one lane.
 //!
-//! Between the stages of a step a rotor is not quite of norm 1, so that another formula for the same turn would be another
-//! law there: whatever steps a body uses these.
+//! Between the stages of a step the norm of a rotor differs from 1, and other formulas for the same rotation would give
+//! other torques there: every stepper uses these.
 
 use polhode_ga::simd::lanes::{Lanes, composed, cross, dot};
 
 /// Three numbers for each body: a vector, a bivector, or a diagonal.
 pub(crate) type Three<const W: usize, const F: bool> = [Lanes<W, F>; 3];
 
-/// `~R v R`: what is v in space, seen from the body, axial or not. With the axial vector q of the rotor's plane
+/// `~R v R`: a vector or bivector of space in body axes. With the axial vector q of the rotor's plane
 /// `v + 2s q x v + 2 q x (q x v)`.
 #[inline(always)]
 pub(crate) fn seen<const W: usize, const F: bool>(
@@ -25,7 +25,7 @@ pub(crate) fn seen<const W: usize, const F: bool>(
     seen
 }
 
-/// `R v ~R`: [`seen`] the other way.
+/// `R v ~R`: the inverse of [`seen`].
 #[inline(always)]
 pub(crate) fn turned<const W: usize, const F: bool>(r: &[Lanes<W, F>; 4], v: &Three<W, F>) -> Three<W, F> {
     seen(&reversed(r), v)
@@ -62,8 +62,7 @@ pub(crate) fn quadratic<const W: usize, const F: bool>(
     [omega[0] * scale, omega[1] * scale, omega[2] * scale]
 }
 
-/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way:
-/// [`turn_from`](super::turn_from). With `q = ~rest R = cos ½θ − sin ½θ Θ/θ`, and of `±q` the one whose scalar part is
+/// The bivector `Θ` of the shorter rotation from one attitude to another, see [`turn_from`](super::turn_from). With `q = ~rest R = cos ½θ − sin ½θ Θ/θ`, and of `±q` the one whose scalar part is
 /// not negative, `Θ = −⟨q⟩₂ θ/sin ½θ`: 2 for the factor where there is no turn.
 #[inline(always)]
 pub(crate) fn turn_from<const W: usize, const F: bool>(
@@ -76,7 +75,7 @@ pub(crate) fn turn_from<const W: usize, const F: bool>(
     let half = size.angle(s);
     let mut factor = half;
     for l in 0..W {
-        // What is below the smallest numbers has no size, and its angle no digits.
+        // A size that underflows has no digits.
         let twice = if size.0[l] == 0.0 { 2.0 } else { 2.0 * (half.0[l] / size.0[l]) };
         factor.0[l] = if s.0[l] < 0.0 { twice } else { -twice };
     }

@@ -1,22 +1,19 @@
-//! Torque laws. A torque is a bivector; its components are those of the axial vector.
-//!
-//! A law is a value: what it needs to know, its torque at a point of the motion, and what it conserves
-//! ([`super::conserved`]). Laws add up.
+//! Torque laws, which add up. A torque is a bivector; its components are those of the axial vector.
 
-mod call;
 mod formula;
 mod function;
 mod gains;
 pub(crate) mod lanes;
 mod orbit;
+mod registered;
 mod table;
 
 use crate::error::TorqueError;
-pub use call::Argument;
 pub use formula::{FormulaTorque, given_names};
 pub use function::FunctionTorque;
 pub use gains::Gains;
 pub use orbit::Orbit;
+pub use registered::FormulaLaw;
 pub use table::{Kind, Table};
 
 use crate::error::SimulateError;
@@ -28,8 +25,8 @@ use std::sync::Arc;
 
 pub(crate) const E3: Vector = Vector([0.0, 0.0, 1.0]);
 
-/// What turns the body. Vectors and bivectors of the body are in body axes, `Ω` is its angular velocity in
-/// them, `R` the rotor from body axes to space.
+/// A torque law. Vectors and bivectors of the body are in body axes, `Ω` is its angular velocity in body axes, `R` the
+/// rotor from body axes to space.
 #[derive(Clone, Debug)]
 pub enum Torque {
     /// Uniform gravity along −e3 on a body held at the origin of its axes: `V = c·γ`, `γ = ~R e3 R`, where
@@ -63,8 +60,8 @@ pub enum Torque {
         /// The attitude without torque.
         rest: Rotor,
     },
-    /// A wheel inside the body with this constant momentum relative to it, kg m²/s: part of the body
-    /// ([`Gyrostat`]) rather than a torque.
+    /// A wheel inside the body with this constant momentum relative to it, kg m²/s: a part of the body
+    /// ([`Gyrostat`]), not a torque.
     Wheel(Bivector),
     /// `−kp Θ − kd Ω`, with `R = target exp(−½Θ)`, `|Θ| <= π`.
     Control {
@@ -82,11 +79,13 @@ pub enum Torque {
     Tabulated(Arc<Table>),
     /// A formula.
     Formula(FormulaTorque),
-    /// What a function of the caller's returns.
+    /// A law of the registry that is computed by its formula.
+    Registered(Box<FormulaLaw>),
+    /// A function of the caller.
     Function(FunctionTorque),
 }
 
-/// The axes of a torque that is given by its components, or by a formula.
+/// The axes of the components of a torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// Those of the body.
@@ -95,12 +94,12 @@ pub enum Axes {
     Space,
 }
 
-/// What a law's torque depends on besides time.
+/// Dependence of a torque on the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// On the attitude at most: a kick at fixed attitude solves it exactly.
+    /// On the attitude and time alone: a kick at fixed attitude is exact.
     Attitude,
-    /// On the rate of turning too.
+    /// On the angular velocity too.
     Rate,
 }
 
@@ -127,6 +126,7 @@ impl Torque {
                 Axes::Space => Torque::Tabulated(table),
             },
             Torque::Formula(law) => Torque::Formula(law.in_axes(frame)),
+            Torque::Registered(law) => Torque::Registered(law.in_axes(frame).into()),
             Torque::Function(law) => Torque::Function(law.in_axes(frame)),
             same @ (Torque::GravityGradient(_)
             | Torque::ConstantSpace(_)
@@ -136,7 +136,7 @@ impl Torque {
         }
     }
 
-    /// What [`Torque::value`] depends on.
+    /// The dependence of [`Torque::value`] on the state.
     pub fn dependence(&self) -> Dependence {
         match self {
             Torque::Heavy(_)
@@ -155,14 +155,16 @@ impl Torque {
             | Torque::Larmor(_)
             | Torque::Function(_) => Dependence::Rate,
             Torque::Formula(law) => law.dependence(),
+            Torque::Registered(law) => law.torque.dependence(),
         }
     }
 
-    /// Whether the torque of one attitude and rate is the same at all times.
+    /// Whether the torque does not depend on time explicitly.
     pub fn is_autonomous(&self) -> bool {
         match self {
             Torque::GravityGradient(_) | Torque::Tabulated(_) | Torque::Function(_) => false,
             Torque::Formula(law) => !law.needs_time(),
+            Torque::Registered(law) => !law.torque.needs_time(),
             _ => true,
         }
     }
@@ -204,6 +206,7 @@ impl Torque {
                 }
             }
             Torque::Formula(law) => law.value(body, state)?,
+            Torque::Registered(law) => law.torque.value(body, state)?,
             Torque::Function(law) => law.value(body, state)?,
         })
     }
@@ -213,7 +216,7 @@ impl Torque {
         if let Torque::Damping(g) = self { *g } else { 0.0 }
     }
 
-    /// Largest torque it can exert, in N m, where that is known and bounded: a scale for steps. 0 elsewhere.
+    /// Largest torque in N m, a scale for steps; 0 if it is unknown or unbounded.
     pub fn size(&self, body: &Gyrostat) -> f64 {
         match self {
             Torque::Heavy(c) => c.norm(),
@@ -226,6 +229,7 @@ impl Torque {
             Torque::TorsionSpring { stiffness, .. } => stiffness.abs() * std::f64::consts::PI,
             Torque::Control { stiffness, .. } => stiffness.bound() * std::f64::consts::PI,
             Torque::Tabulated(table) => table.largest(),
+            Torque::Registered(law) => law.size,
             Torque::Damping(_)
             | Torque::QuadraticDamping(_)
             | Torque::ViscousDamping(_)
@@ -236,14 +240,13 @@ impl Torque {
         }
     }
 
-    /// Its size, or that of its torque at a point of the motion where no largest is known: a scale for
-    /// steps, in N m.
+    /// The larger of [`Torque::size`] and the torque at a state, in N m: a scale for steps.
     pub fn size_at(&self, body: &Gyrostat, state: &Phase) -> f64 {
         self.size(body).max(self.value(body, state).map_or(0.0, |torque| torque.norm()))
     }
 
-    /// Its potential energy in J, if it has one that does not change with time and with the rate.
-    pub fn potential(&self, _body: &Gyrostat, state: &Phase) -> Option<f64> {
+    /// The potential energy in J, of a law that has one.
+    pub fn potential(&self, body: &Gyrostat, state: &Phase) -> Option<f64> {
         let back = state.rotor.reverse();
         match self {
             Torque::Heavy(c) => Some(state.vertical().dot(*c)),
@@ -252,11 +255,12 @@ impl Torque {
                 Some(0.5 * stiffness * turn_from(*rest, state.rotor).norm_squared())
             }
             Torque::Wheel(_) => Some(0.0),
+            Torque::Registered(law) => law.potential(body, state),
             _ => None,
         }
     }
 
-    /// How far its potential energy can rise or fall, in J.
+    /// The range of the potential energy in J.
     pub fn potential_range(&self) -> f64 {
         match self {
             Torque::Heavy(c) => 2.0 * c.norm(),
@@ -264,28 +268,28 @@ impl Torque {
             Torque::TorsionSpring { stiffness, .. } => {
                 0.5 * stiffness.abs() * std::f64::consts::PI * std::f64::consts::PI
             }
+            Torque::Registered(law) if law.potential.is_some() => 2.0 * law.size,
             _ => 0.0,
         }
     }
 
-    /// Times at which the law is not smooth, rising: steps end there.
+    /// Times at which the law is not smooth, in increasing order: steps end there.
     pub fn breaks(&self) -> &[f64] {
         if let Torque::Tabulated(table) = self { table.times() } else { &[] }
     }
 }
 
-/// The bivector `Θ` of the turn from one attitude to another, `R = rest exp(−½Θ)`, the shorter way:
-/// `|Θ| <= π`.
+/// The bivector `Θ` of the shorter rotation from one attitude to another: `R = rest exp(−½Θ)`, `|Θ| <= π`.
 ///
 /// `R` and `−R` are one attitude, so of `q = ±~rest R` the one with a scalar part >= 0 is taken. Along a
-/// motion `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. Half a turn away
-/// the two ways are equally short; Θ jumps there from one to the other while `θ²` goes on without a jump.
+/// motion `q' = −½ q Ω` gives `θ θ' = Θ·Ω`: the torque `−k Θ` has the potential `½ k θ²`. At half a turn both
+/// directions are equally short: Θ is discontinuous there, `θ²` is continuous.
 pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
     let [rest, rotor] = [rest, rotor].map(|r| One::each(r.components()));
     Bivector(One::alone(lanes::turn_from(&rest, &rotor)))
 }
 
-/// The sum of all laws at a point of the motion, without damping and wheels; why and when there is none.
+/// The sum of all laws at a state, without damping and wheels.
 pub(crate) fn exerted(torques: &[Torque], body: &Gyrostat, state: &Phase) -> Result<Bivector, SimulateError> {
     let mut total = Bivector::default();
     for law in torques {
@@ -303,8 +307,8 @@ pub fn wheel(torques: &[Torque]) -> Bivector {
     })
 }
 
-/// The whole torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: that of all laws,
-/// the part `−g I(Ω)`, and what the wheel does as it is turned, `Ω × h`.
+/// The torque T of handout eq. (4.21), `I(Ω') − Ω × I(Ω) = T`, in principal axes: the sum of all laws, damping
+/// `−g I(Ω)`, and the reaction `Ω × h` of the wheel.
 pub fn total(body: &Gyrostat, torques: &[Torque], state: &Phase) -> Result<Bivector, TorqueError> {
     let omega = body.omega(state.momentum);
     let mut sum = omega.commutator(body.wheel);

@@ -1,11 +1,11 @@
-//! A Kepler orbit about the planet whose field turns the body.
+//! Kepler orbit of a body in the field of a planet.
 
 use crate::error::TorqueError;
 use crate::numerics::double_double::DoubleDouble;
 use polhode_ga::Vector;
 use std::f64::consts::{PI, TAU};
 
-/// An orbit in the plane e1e2 of space, in the sense from e1 to e2, periapsis on e1.
+/// An orbit in the plane e1e2 of space, from e1 towards e2, with the periapsis on e1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     rate: f64,
@@ -23,13 +23,11 @@ impl Orbit {
     pub fn new(rate: f64, eccentricity: f64, anomaly: f64) -> Result<Orbit, TorqueError> {
         if !(0.0..1.0).contains(&eccentricity) {
             return Err(TorqueError(format!(
-                "the eccentricity is {eccentricity}; that of an orbit which returns is at least 0 and below 1"
+                "eccentricity is {eccentricity}; that of a closed orbit must be at least 0 and below 1"
             )));
         }
         if let Some(value) = [rate, anomaly].into_iter().find(|x| !x.is_finite()) {
-            return Err(TorqueError(format!(
-                "a mean motion or mean anomaly of {value}; both must be finite"
-            )));
+            return Err(TorqueError(format!("mean motion or mean anomaly is {value}; both must be finite")));
         }
         Ok(Orbit { rate, eccentricity, anomaly })
     }
@@ -49,7 +47,7 @@ impl Orbit {
         self.anomaly
     }
 
-    /// Whether the body keeps its distance.
+    /// Whether it is a circle.
     pub fn is_circular(&self) -> bool {
         self.eccentricity == 0.0
     }
@@ -79,7 +77,7 @@ impl Orbit {
         (1.0 - self.eccentricity).powi(-3)
     }
 
-    /// `M = n t + M0`, in twice the precision: rounded, n t would lose a digit with every ten turns.
+    /// `M = n t + M0` in double-double precision: in double, n t loses a digit with every ten turns.
     fn mean_anomaly(&self, time: f64) -> DoubleDouble {
         DoubleDouble::two_product(self.rate, time) + self.anomaly.into()
     }
@@ -92,8 +90,7 @@ fn reduced(angle: DoubleDouble) -> f64 {
     (part.value() * TAU).clamp(-PI, PI)
 }
 
-/// Sine and cosine of an angle. The library's know the turns of `hi` exactly; `lo` turns a little further,
-/// and below 1e-8 its square is rounding.
+/// Sine and cosine of an angle. Those of the library reduce `hi` exactly; the square of `lo` is rounding below 1e-8.
 fn sin_cos(angle: DoubleDouble) -> (f64, f64) {
     if angle.lo.abs() > 1e-8 {
         return reduced(angle).sin_cos();

@@ -1,4 +1,4 @@
-//! Torques given at times, and interpolated between them.
+//! Torques interpolated in a table of times.
 
 use super::Axes;
 use crate::error::TorqueError;
@@ -7,14 +7,13 @@ use polhode_ga::{Bivector, Rotor};
 /// How a table is interpolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// By straight lines.
+    /// Piecewise linearly.
     Linear,
-    /// By the cubic spline whose second derivative has no jumps, and its third none at the second and the
-    /// last but one time (not a knot). Of three rows it is their parabola, of two their line.
+    /// By the cubic spline with "not a knot" ends; the parabola through three rows, the line through two.
     Cubic,
 }
 
-/// Torques at rising times: pieces that are polynomials of the third degree at most.
+/// Torques at increasing times, interpolated by polynomials of degree 3 at most.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// The axes of the torques.
@@ -28,7 +27,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// From rows, two at least, at times that rise.
+    /// At least two rows at increasing times.
     pub fn new(
         times: Vec<f64>,
         torques: Vec<Bivector>,
@@ -40,10 +39,7 @@ impl Table {
             return wrong(format!("{} times for {} torques; give one for each", times.len(), torques.len()));
         }
         if times.len() < 2 {
-            return wrong(format!(
-                "a table of {} rows; it needs 2 at least, from which to which time",
-                times.len()
-            ));
+            return wrong(format!("a table of {} rows; it needs at least 2", times.len()));
         }
         if let Some(i) = times.iter().position(|t| !t.is_finite()) {
             return wrong(format!("times[{i}] is {}; the times of a table must be finite", times[i]));
@@ -51,7 +47,7 @@ impl Table {
         if let Some(i) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
             let (before, time) = (times[i - 1], times[i]);
             return wrong(format!(
-                "times[{i}] = {time} does not lie after times[{}] = {before}; sort them",
+                "times[{i}] = {time} is not after times[{}] = {before}; sort the rows",
                 i - 1
             ));
         }
@@ -68,11 +64,11 @@ impl Table {
     /// The torque at a time between the first and the last.
     pub fn at(&self, time: f64) -> Result<Bivector, TorqueError> {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
-        // A step that ends at the last time may come to it a rounding late.
+        // A step to the last time may end a rounding after it.
         let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
         if !(first - rounding..=last + rounding).contains(&time) {
             return Err(TorqueError(format!(
-                "the table of torques spans {first} s to {last} s; give rows for all the time that is simulated"
+                "the table of torques spans {first} s to {last} s; add rows for all times of the simulation"
             )));
         }
         let time = time.clamp(first, last);
@@ -80,10 +76,10 @@ impl Table {
         let (h, x) =
             (self.times[i + 1] - self.times[i], (time - self.times[i]) / (self.times[i + 1] - self.times[i]));
         let (a, b) = (self.torques[i], self.torques[i + 1]);
-        // From the nearer end, so that the rows are met exactly.
+        // From the nearer end, so that the rows are reproduced exactly.
         let line = if x < 0.5 { a + (b - a) * x } else { b - (b - a) * (1.0 - x) };
         let Some(slopes) = &self.slopes else { return Ok(line) };
-        // Hermite's cubic is the line and what the slopes at both ends differ from its own.
+        // The cubic Hermite polynomial: the line, and the differences of both slopes from that of the line.
         let steep = b - a;
         let (p, q) = (slopes[i] * h - steep, slopes[i + 1] * h - steep);
         Ok(line + (p * (1.0 - x) - q * x) * (x * (1.0 - x)))
@@ -119,20 +115,20 @@ impl Table {
 
 /// The slopes of the spline.
 ///
-/// With `h_i` the distances and `m_i` the mean slopes between the times, the second derivative has no jump
-/// at `t_i` if
+/// With `h_i` the distances and `m_i` the mean slopes between the times, the second derivative is continuous at `t_i`
+/// if
 ///
 /// ```text
 /// h_i s_(i−1) + 2 (h_(i−1) + h_i) s_i + h_(i−1) s_(i+1) = 3 (h_i m_(i−1) + h_(i−1) m_i),
 /// ```
 ///
-/// and the third has none at `t_1` if, with this for `t_1`,
+/// and the third is continuous at `t_1` if, with the equation above for `t_1`,
 ///
 /// ```text
 /// h_1 s_0 + (h_0 + h_1) s_1 = ((3 h_0 + 2 h_1) h_1 m_0 + h_0² m_1)/(h_0 + h_1),
 /// ```
 ///
-/// and alike at the other end. Elimination from the first row on keeps all pivots positive.
+/// and likewise at the other end. Elimination from the first row on keeps all pivots positive.
 fn spline_slopes(times: &[f64], torques: &[Bivector]) -> Vec<Bivector> {
     let n = times.len();
     let h: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();

@@ -25,7 +25,7 @@ mod tableau;
 use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{Alone, Exert, Place};
+use crate::laws::forcing::{Alone, Forcing, Place};
 use crate::laws::torque::Torque;
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -44,7 +44,7 @@ type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 /// angular velocity relative to `fastest` (rad/s), whichever is larger; with N = 12 also the velocity relative to the
 /// velocity, and the place relative to the distance or the way of the step. NaN where the step is too long to tell.
 #[inline(always)]
-pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     tableau: &Tableau,
     bodies: &Bodies<W, F>,
     exert: &mut E,
@@ -109,7 +109,7 @@ fn any_within<const W: usize, const F: bool>(square: &Lanes<W, F>) -> bool {
 
 /// σ' and L' at `from` changed by σ and ΔL.
 #[inline(always)]
-fn slope<const N: usize, const W: usize, const F: bool, E: Exert<W, F>>(
+fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
     exert: &mut E,
     from: &Points<W, F>,

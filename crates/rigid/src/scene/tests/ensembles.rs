@@ -1,7 +1,8 @@
 //! Ensembles: what is read, what is refused, and that the bodies are distributed as the file says.
 
 use super::*;
-use crate::laws::torque::{Gains, Orbit, Torque};
+use crate::laws::registry::{Argument, Shape, torque};
+use crate::laws::torque::Torque;
 use crate::scene::parameters::PARAMETERS;
 
 /// The least scene with these lines in `[ensemble]`.
@@ -431,23 +432,13 @@ fn parameters_of_one_law_are_drawn_each_by_itself() {
 
 #[test]
 fn every_parameter_is_read_and_set() {
-    let (v, gains) = (Vector([1.0, 2.0, 3.0]), Gains::new([1.0, 2.0, 3.0]));
-    let laws = [
-        ("damping", Torque::Damping(1.0)),
-        ("quadratic_damping", Torque::QuadraticDamping(1.0)),
-        ("viscous_damping", Torque::ViscousDamping(gains)),
-        ("gravity_gradient", Torque::GravityGradient(Orbit::new(1.0, 0.1, 2.0).unwrap())),
-        ("constant_body", Torque::ConstantBody(v.undual())),
-        ("constant_space", Torque::ConstantSpace(v.undual())),
-        ("magnetic", Torque::Magnetic { dipole: v, field: v }),
-        ("torsion_spring", Torque::TorsionSpring { stiffness: 1.0, rest: Rotor::IDENTITY }),
-        ("gyrostat", Torque::Wheel(v.undual())),
-        ("pd_control", Torque::Control { stiffness: gains, damping: gains, target: Rotor::IDENTITY }),
-        ("larmor", Torque::Larmor(v)),
-        ("heavy", Torque::Heavy(v)),
-    ];
     for parameter in PARAMETERS.iter().skip(1) {
-        let law = &laws.iter().find(|(name, _)| *name == parameter.law).unwrap().1;
+        let entry = torque(parameter.law).unwrap();
+        let own = |argument: &Argument| match argument.shape {
+            Shape::Rotor => vec![1.0, 0.0, 0.0, 0.0],
+            _ => (0..argument.shape.size()).map(|k| 0.5 + 0.125 * k as f64).collect(),
+        };
+        let law = &entry.build(&entry.arguments.iter().flat_map(own).collect::<Vec<_>>()).unwrap();
         let wanted = if parameter.size == 3 { [0.5, 0.25, 0.125] } else { [0.5, 0.0, 0.0] };
         let set = parameter.set(law, wanted).unwrap();
         assert_eq!(parameter.of(&set).unwrap().0, wanted, "{}", parameter.name());

@@ -3,13 +3,13 @@ import type { Line } from "../core/core.ts";
 
 const WORD = /[\p{L}][\p{L}\p{M}\d₀-₉_'′∥⊥]*/gu;
 
-/** The text of a line, its names in the colours of their things, its comment pale, and its mistake marked. */
-export function painted(line: Line, colourOf: (name: string) => string | undefined): ComponentChildren[] {
+/** The text of a line with names in the colours of the drawing, a pale comment, and the error marked. */
+export function highlighted(line: Line, colourOf: (name: string) => string | undefined): ComponentChildren[] {
   const { text, problem } = line;
   const comment = text.indexOf("#") < 0 ? text.length : text.indexOf("#");
   const parts: ComponentChildren[] = [];
   let at = 0;
-  /** Up to a place, in a style; a mistake goes through. */
+  /** Adds the text up to a position in a style; the mark of the error may cross its ends. */
   const until = (end: number, style?: { class?: string; colour?: string | undefined }): void => {
     const cuts = problem ? [problem.start, problem.end].filter((cut) => cut > at && cut < end) : [];
     for (const cut of [...cuts, end]) {
@@ -32,14 +32,14 @@ export function painted(line: Line, colourOf: (name: string) => string | undefin
   }
   until(comment);
   until(text.length, { class: "comment" });
-  // What is missing at the end is marked behind it.
+  // An error at the end of the line is marked after it.
   if (problem && problem.start >= text.trimEnd().length) parts.push(<span class="mistake"> </span>);
-  // An empty line is as high as others.
+  // Gives an empty line the height of the others.
   parts.push("\u200b");
   return parts;
 }
 
-/** The usual spelling of a name, as the core has it. */
+/** The canonical spelling of a name, as in the core. */
 function canonical(name: string): string {
   return name
     .replace(/[₀-₉]/gu, (digit) => String("₀₁₂₃₄₅₆₇₈₉".indexOf(digit)))

@@ -1,35 +1,31 @@
-import { significant } from "./format.ts";
+import { significant } from "./numbers.ts";
 
-/** A unit that people read a quantity in: how it is shown, how a scene spells it, and how much it is in SI. */
+/** A unit of measurement: its label on the page, its spelling in scenes, and its size in SI units. */
 export interface Unit {
   label: string;
   scene: string;
   size: number;
 }
 
-const unit = (label: string, size: number, scene = label): Unit => ({ label, scene, size });
+const unit = (label: string, size = 1, scene = label): Unit => ({ label, scene, size });
+export const si = (label: string, scene = label): Unit => unit(label, 1, scene);
 
-/** From large to small; the first that makes a number of at least `least` is the one to use. */
-const LENGTHS = [unit("km", 1000), unit("m", 1), unit("cm", 0.01), unit("mm", 0.001)];
-const MASSES = [unit("t", 1000), unit("kg", 1), unit("g", 0.001)];
-const TIMES = [unit("yr", 31_557_600), unit("d", 86_400), unit("h", 3600), unit("min", 60), unit("s", 1)];
 const TURN = 2 * Math.PI;
+// From large to small: the first unit in which a number is not too small is used.
+const LENGTHS = [unit("km", 1000), unit("m"), unit("cm", 0.01), unit("mm", 0.001)];
+const MASSES = [unit("t", 1000), unit("kg"), unit("g", 0.001)];
+const TIMES = [unit("yr", 31_557_600), unit("d", 86_400), unit("h", 3600), unit("min", 60), unit("s")];
 const RATES = [unit("rev/s", TURN), unit("deg/s", TURN / 360), unit("deg/day", TURN / 360 / 86_400)];
 export const DEGREE = unit("°", TURN / 360, "deg");
 export const DENSITY = unit("g/cm³", 1000, "g/cm^3");
-export const ONE = unit("", 1, "");
 
 export const lengthUnit = (length: number): Unit => pick(LENGTHS, length, 0.8);
 export const massUnit = (mass: number): Unit => pick(MASSES, mass, 0.1);
-/** Minutes from two on, and so on, so that numbers stay short. */
+/** Minutes from 2 min on, hours from 2 h on and so forth, which keeps numbers short. */
 export const timeUnit = (time: number): Unit => pick(TIMES, Math.abs(time), 2);
 export const rateUnit = (rate: number): Unit => pick(RATES, rate, 0.02);
 
-export function si(label: string, scene: string = label): Unit {
-  return unit(label, 1, scene);
-}
-
-/** `3.2 d`, in the unit that fits. */
+/** `3.2 d`: a time in a suitable unit. */
 export function duration(time: number, digits = 5, fit = timeUnit(time)): string {
   return `${significant(time / fit.size, digits)} ${fit.label}`;
 }

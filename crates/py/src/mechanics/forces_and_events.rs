@@ -1,56 +1,50 @@
-//! Forces, and events to look for, as values.
+//! Forces and events by name and arguments, and the registry of laws for Python.
 
-use super::made::{
-    Asked, Known, Made, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector, vector_of,
+use super::columns::Arguments;
+use super::law_value::{
+    Callback, Known, LawValue, Raised, Values, bivector_of, formula, number, rotor_of, sole, vector,
+    vector_of,
 };
 use crate::support::arrays::bad;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::laws::event::{self, Direction, Quantity};
 use polhode_rigid::laws::force;
 use polhode_rigid::laws::formula::{Formula, Purpose};
+use polhode_rigid::laws::registry::{self, Entry, Shape};
 use polhode_rigid::state::point::Function;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 /// A force on the centre of mass.
-#[pyclass(frozen, extends = Made, module = "polhode._native")]
+#[pyclass(frozen, extends = LawValue, module = "polhode._native")]
 pub(crate) struct Force {
     pub(crate) force: force::Force,
 }
 
 #[pymethods]
 impl Force {
-    /// A force by its name in `polhode.force`, its arguments as that module checked and spelled them.
+    /// A force by its name in `polhode.force`, its arguments as that module has checked and converted them.
     #[new]
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Force>> {
         let raised = Raised::default();
         let force = force(&name, &arguments, &raised)?;
-        Ok(PyClassInitializer::from(Made::new(name, arguments, raised)).add_subclass(Force { force }))
+        Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(Force { force }))
     }
 }
 
 fn force(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResult<force::Force> {
     use force::Force as Law;
     Ok(match name {
-        "constant" => Law::Constant(Vector(sole(arguments)?)),
-        "thrust" => Law::Body(Vector(sole(arguments)?)),
-        "drag" => Law::Drag(sole(arguments)?),
-        "quadratic_drag" => Law::QuadraticDrag(sole(arguments)?),
-        "spring" => {
-            let (k, anchor) = arguments.extract()?;
-            Law::Spring(k, Vector(anchor))
-        }
-        "central" => Law::Central(sole(arguments)?),
         "formula" => {
             let (text, values): (String, Values<'_>) = arguments.extract()?;
-            let made = |names, value: &mut Known<'_>| Formula::new(&text, Purpose::Force, names, value);
-            Law::Formula(formula(arguments.py(), &text, &values, made)?)
+            let compile = |names, value: &mut Known<'_>| Formula::new(&text, Purpose::Force, names, value);
+            Law::Formula(formula(arguments.py(), &text, &values, compile)?)
         }
         "function" => {
-            let asked = Asked { call: sole(arguments)?, raised: raised.clone(), what: "force" };
+            let callback = Callback { call: sole(arguments)?, raised: raised.clone(), what: "force" };
             Law::Function(Function::new(move |seen| {
-                asked.of(
+                callback.at(
                     seen.time,
                     |py| {
                         let (x, v) = (vector_of(py, seen.position)?, vector_of(py, seen.velocity)?);
@@ -60,12 +54,22 @@ fn force(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResul
                 )
             }))
         }
-        _ => return Err(bad(format!("no force is called {name}"))),
+        _ => {
+            let entry = registry::force(name).ok_or_else(|| bad(format!("{name} is not a force")))?;
+            let given = Arguments::new(arguments, [])?;
+            let arguments = entry.arguments.iter().take(arguments.len()).enumerate();
+            let mut numbers = Vec::new();
+            for (k, argument) in arguments {
+                numbers.extend_from_slice(given.column(k, argument.shape.size())?.of(0));
+            }
+            entry.check(&numbers).map_err(bad)?;
+            entry.build(&numbers).map_err(bad)?.force
+        }
     })
 }
 
 /// Something to look for along a motion.
-#[pyclass(frozen, extends = Made, module = "polhode._native")]
+#[pyclass(frozen, extends = LawValue, module = "polhode._native")]
 pub(crate) struct Event {
     pub(crate) event: event::Event,
 }
@@ -73,7 +77,7 @@ pub(crate) struct Event {
 #[pymethods]
 impl Event {
     /// An event by its name in `polhode.event`, its direction (1 for rising, -1 for falling, 0 for both), whether it ends
-    /// the motion, and its arguments as that module checked and spelled them.
+    /// the motion, and its arguments as that module has checked and converted them.
     #[new]
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Event>> {
@@ -86,7 +90,7 @@ impl Event {
         };
         let own = arguments.get_slice(2, arguments.len());
         let event = event::Event { quantity: quantity(&name, &own, &raised)?, direction, terminal };
-        Ok(PyClassInitializer::from(Made::new(name, arguments, raised)).add_subclass(Event { event }))
+        Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(Event { event }))
     }
 }
 
@@ -112,13 +116,13 @@ fn quantity(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyRe
         }
         "formula" => {
             let (text, values): (String, Values<'_>) = arguments.extract()?;
-            let made = |names, value: &mut Known<'_>| Formula::new(&text, Purpose::Event, names, value);
-            Quantity::Formula(formula(arguments.py(), &text, &values, made)?)
+            let compile = |names, value: &mut Known<'_>| Formula::new(&text, Purpose::Event, names, value);
+            Quantity::Formula(formula(arguments.py(), &text, &values, compile)?)
         }
         "function" => {
-            let asked = Asked { call: sole(arguments)?, raised: raised.clone(), what: "value" };
+            let callback = Callback { call: sole(arguments)?, raised: raised.clone(), what: "value" };
             Quantity::Function(Function::new(move |seen| {
-                asked.of(
+                callback.at(
                     seen.time,
                     |py| {
                         let (rotor, omega) = (rotor_of(py, seen.rotor)?, bivector_of(py, seen.omega)?);
@@ -129,6 +133,31 @@ fn quantity(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyRe
                 )
             }))
         }
-        _ => return Err(bad(format!("no event is called {name}"))),
+        _ => return Err(bad(format!("{name} is not an event"))),
     })
+}
+
+/// An argument of a law: name, field of a scene, unit, shape, default numbers, words.
+type Argument = (&'static str, &'static str, &'static str, &'static str, Option<Vec<f64>>, Vec<&'static str>);
+
+/// A law: name, label, formula, arguments.
+type Row = (&'static str, &'static str, &'static str, Vec<Argument>);
+
+fn rows<T>(entries: &'static [Entry<T>]) -> Vec<Row> {
+    let argument = |argument: &'static registry::Argument| {
+        let registry::Argument { name, field, quantity, shape, default, .. } = *argument;
+        let words = if let Shape::Word(words) = shape { words.to_vec() } else { Vec::new() };
+        let unit = quantity.map_or("1", |quantity| quantity.si_unit());
+        (name, field, unit, shape.name(), default.map(<[f64]>::to_vec), words)
+    };
+    let row = |entry: &'static Entry<T>| {
+        (entry.name, entry.label, entry.formula, entry.arguments.iter().map(argument).collect())
+    };
+    entries.iter().map(row).collect()
+}
+
+/// The registry of laws: torques and forces.
+#[pyfunction]
+pub(crate) fn law_registry() -> (Vec<Row>, Vec<Row>) {
+    (rows(&registry::TORQUES), rows(&registry::FORCES))
 }

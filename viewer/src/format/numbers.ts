@@ -1,6 +1,9 @@
-/** Numbers as the page writes them: a true minus, powers of ten with raised digits, digits that keep their places. */
+/** Numbers as text: a true minus sign, powers of ten with raised digits, a fixed place for each digit. */
 
 const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** The basis bivectors, in the order of components. */
+export const PLANES = ["e₂∧e₃", "e₃∧e₁", "e₁∧e₂"];
 
 /** `10⁻³`. */
 export function powerOfTen(exponent: number): string {
@@ -8,14 +11,14 @@ export function powerOfTen(exponent: number): string {
   return `10${exponent < 0 ? "⁻" : ""}${digits}`;
 }
 
-/** The power of ten of a number's first digit; 0 of zero. */
+/** The power of ten of the first digit of a number; 0 for zero. */
 export function exponentOf(number: number): number {
   return number === 0 || !Number.isFinite(number) ? 0 : Math.floor(Math.log10(Math.abs(number)));
 }
 
-/** With so many significant digits: `0.06283`, `1.2 × 10⁻⁷`. */
+/** A number with this many significant digits: `0.06283`, `1.2 × 10⁻⁷`. */
 export function significant(number: number, digits = 6): string {
-  if (!Number.isFinite(number)) return number > 0 ? "∞" : number < 0 ? "−∞" : "no number";
+  if (!Number.isFinite(number)) return number > 0 ? "∞" : number < 0 ? "−∞" : "not a number";
   const exponent = exponentOf(number);
   if (exponent < -4 || exponent > 7) {
     const [mantissa, power] = number.toExponential(digits - 1).split("e");
@@ -24,7 +27,14 @@ export function significant(number: number, digits = 6): string {
   return minus(trimmed(number.toPrecision(digits)));
 }
 
-/** As people type it, in a field for numbers. */
+/** A magnitude with three digits and its unit; trailing zeros are kept so that a changing value does not jump. */
+export function quantity(size: number, unit: string): string {
+  const exponent = exponentOf(size);
+  if (exponent >= -3 && exponent < 4) return `${size.toFixed(Math.max(2 - exponent, 0))} ${unit}`;
+  return `${(size / 10 ** exponent).toFixed(2)}·${powerOfTen(exponent)} ${unit}`;
+}
+
+/** A number as text for an input field. */
 export function typed(number: number, digits = 6): string {
   return String(Number(number.toPrecision(digits)));
 }
@@ -36,17 +46,17 @@ export function small(number: number): string {
   return `${minus(mantissa!)} × ${powerOfTen(Number(power))}`;
 }
 
-/** How numbers of one size are written: with so many decimals, after a power of ten is taken out. */
+/** The common format of numbers of similar magnitude: a power of ten is factored out. */
 export interface Scale {
   factor: number;
   decimals: number;
-  /** Places for all that is before and after the point. */
+  /** Characters before and after the decimal point, with the point. */
   width: number;
-  /** ` × 10⁻³`, or nothing. */
+  /** `10⁻³ `, or nothing. */
   power: string;
 }
 
-/** The scale for numbers up to `size`, with five digits for the largest. */
+/** The format for numbers up to `size`, with five digits for the largest. */
 export function scaleFor(size: number): Scale {
   const exponent = exponentOf(size);
   if (exponent < -2 || exponent > 4) {
@@ -56,7 +66,7 @@ export function scaleFor(size: number): Scale {
   return { factor: 1, decimals, width: Math.max(exponent, 0) + 2 + decimals, power: "" };
 }
 
-/** Its sign and its digits apart; what rounds to nothing has no sign. */
+/** The sign and the digits of a number; a number that rounds to zero has no sign. */
 export function scaled(number: number, scale: Scale): { negative: boolean; digits: string } {
   const digits = (Math.abs(number) * scale.factor).toFixed(scale.decimals);
   return { negative: number < 0 && /[1-9]/.test(digits), digits: digits.padStart(scale.width, "\u2007") };

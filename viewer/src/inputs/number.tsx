@@ -1,8 +1,6 @@
 import { useSignal } from "@preact/signals";
-/**
- * A field for a number. `shown` is what the number is: text that is not a number, or one that `onNumber` takes only in
- * part, is replaced by it.
- */
+
+/** A number field. `shown` replaces whatever is entered that is not a number, or that `onNumber` does not accept. */
 export function NumberField(props: {
   id: string;
   label: string;
@@ -13,7 +11,7 @@ export function NumberField(props: {
 }) {
   const { id, label, shown, width, onFocus = () => {}, onNumber } = props;
   const entered = useSignal(0);
-  // The field is drawn again after each entry, also where `shown` stays as it was.
+  // Read here so that the field is rendered after each entry, even if `shown` has not changed.
   void entered.value;
   return (
     <input

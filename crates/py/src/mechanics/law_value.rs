@@ -1,4 +1,4 @@
-//! Laws and events are values made of a name and arguments, which may be formulas and Python functions.
+//! Base class of laws and events: a value that keeps its name and arguments. Formulas and Python functions as arguments.
 
 use crate::algebra::value::{self, Operand};
 use crate::formula::calls::{Argument, of_map};
@@ -18,32 +18,32 @@ use std::collections::HashMap;
 use std::fmt::Display;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a Python function raised, until it is told.
+/// What a Python function raised, until it is reported.
 pub(crate) type Raised = Arc<Mutex<Option<PyErr>>>;
 
-/// A value, and the call that made it.
+/// A law or an event: equal where its name and arguments are, and pickled by them.
 #[pyclass(frozen, subclass, module = "polhode._native")]
-pub(crate) struct Made {
+pub(crate) struct LawValue {
     name: String,
     arguments: Py<PyTuple>,
     raised: Raised,
 }
 
-impl Made {
-    pub fn new(name: String, arguments: Bound<'_, PyTuple>, raised: Raised) -> Made {
-        Made { name, arguments: arguments.unbind(), raised }
+impl LawValue {
+    pub fn new(name: String, arguments: Bound<'_, PyTuple>, raised: Raised) -> LawValue {
+        LawValue { name, arguments: arguments.unbind(), raised }
     }
 }
 
 #[pymethods]
-impl Made {
-    /// Its name in the module that makes it.
+impl LawValue {
+    /// Its name in its module.
     #[getter]
     fn name(&self) -> &str {
         &self.name
     }
 
-    /// The arguments that made it.
+    /// Its arguments.
     #[getter]
     fn arguments(&self, py: Python<'_>) -> Py<PyTuple> {
         self.arguments.clone_ref(py)
@@ -53,7 +53,7 @@ impl Made {
         if !slf.get_type().is(other.get_type()) {
             return Ok(false);
         }
-        let (own, other) = (slf.get(), other.cast::<Made>()?.get());
+        let (own, other) = (slf.get(), other.cast::<LawValue>()?.get());
         Ok(own.name == other.name && own.arguments.bind(slf.py()).eq(&other.arguments)?)
     }
 
@@ -62,40 +62,45 @@ impl Made {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
-        let made = slf.get();
-        let mut all = vec![made.name.clone().into_pyobject(slf.py())?.into_any()];
-        all.extend(made.arguments.bind(slf.py()).iter());
+        let own = slf.get();
+        let mut all = vec![own.name.clone().into_pyobject(slf.py())?.into_any()];
+        all.extend(own.arguments.bind(slf.py()).iter());
         Ok((slf.get_type(), PyTuple::new(slf.py(), all)?))
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        let made = slf.get();
-        Ok(format!("{}({:?}, {})", slf.get_type().name()?, made.name, made.arguments.bind(slf.py()).repr()?))
+        let own = slf.get();
+        Ok(format!("{}({:?}, {})", slf.get_type().name()?, own.name, own.arguments.bind(slf.py()).repr()?))
     }
 }
 
-/// The exception where one of these had no value: what a Python function raised, or else what is told.
-pub(crate) fn failed<'a, 'py: 'a>(
-    made: impl IntoIterator<Item = &'a Bound<'py, Made>>,
-    told: impl Display,
-) -> PyErr {
-    let taken =
-        |one: &Bound<'_, Made>| one.get().raised.lock().unwrap_or_else(PoisonError::into_inner).take();
-    made.into_iter().find_map(taken).unwrap_or_else(|| bad(told))
+fn take_raised(value: &Bound<'_, LawValue>) -> Option<PyErr> {
+    value.get().raised.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-/// What a function raised that is no mere error, such as a KeyboardInterrupt. Errors that were told otherwise are
-/// forgotten.
-pub(crate) fn interrupted<'a, 'py: 'a>(made: impl IntoIterator<Item = &'a Bound<'py, Made>>) -> PyResult<()> {
-    for one in made {
-        let raised = one.get().raised.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(error) = raised.filter(|error| !error.is_instance_of::<PyException>(one.py())) {
+/// The exception where one of these has no value: what a Python function raised, or else this message.
+pub(crate) fn failed<'a, 'py: 'a>(
+    values: impl IntoIterator<Item = &'a Bound<'py, LawValue>>,
+    message: impl Display,
+) -> PyErr {
+    values.into_iter().find_map(take_raised).unwrap_or_else(|| bad(message))
+}
+
+/// Raises what a function raised that is not an `Exception`, such as a KeyboardInterrupt. Exceptions that were reported
+/// otherwise are dropped.
+pub(crate) fn interrupted<'a, 'py: 'a>(
+    values: impl IntoIterator<Item = &'a Bound<'py, LawValue>>,
+) -> PyResult<()> {
+    for value in values {
+        let raised = take_raised(value);
+        if let Some(error) = raised.filter(|error| !error.is_instance_of::<PyException>(value.py())) {
             return Err(error);
         }
     }
     Ok(())
 }
 
+/// The only argument.
 pub(crate) fn sole<'py, T: FromPyObjectOwned<'py>>(arguments: &Bound<'py, PyTuple>) -> PyResult<T> {
     arguments.get_item(0)?.extract().map_err(Into::into)
 }
@@ -106,16 +111,16 @@ pub(crate) type Values<'py> = Vec<(String, Bound<'py, PyAny>)>;
 /// The value of an input of a formula.
 pub(crate) type Known<'a> = dyn FnMut(&Input) -> Option<Given> + 'a;
 
-/// What `make` makes of a formula with values for its names.
+/// Compiles a formula by `compile`, with values for its names.
 pub(crate) fn formula<T>(
     py: Python<'_>,
     text: &str,
     values: &Values<'_>,
-    make: impl FnOnce(Names, &mut Known<'_>) -> Result<T, Error>,
+    compile: impl FnOnce(Names, &mut Known<'_>) -> Result<T, Error>,
 ) -> PyResult<T> {
-    let mut said: Vec<Said> = Vec::with_capacity(values.len());
+    let mut types: Vec<Said> = Vec::with_capacity(values.len());
     for (name, value) in values {
-        said.push(match Argument::of(value)? {
+        types.push(match Argument::of(value)? {
             Some(Argument::Value(ty, _)) => (name.clone(), ty.grades.0, ty.unit.into()),
             Some(Argument::Map(_, grade)) => (name.clone(), grade, 2),
             None => {
@@ -124,21 +129,21 @@ pub(crate) fn formula<T>(
             }
         });
     }
-    let (names, spelled) = names(&said)?;
+    let (names, spelled) = names(&types)?;
     let places: HashMap<&str, usize> = spelled.iter().map(String::as_str).zip(0..).collect();
     let mut wrong = None;
     let mut value = |input: &Input| {
         let (_, value) = values.get(*places.get(input.name.as_str())?)?;
         known(value, input.kind).map_err(|error| wrong = Some(error)).ok()
     };
-    let made = make(names, &mut value);
+    let compiled = compile(names, &mut value);
     match wrong {
         Some(error) => Err(error),
-        None => made.map_err(|e| error(py, text, &e)),
+        None => compiled.map_err(|e| error(py, text, &e)),
     }
 }
 
-/// What a value is for an input.
+/// A Python value as that of an input.
 fn known(value: &Bound<'_, PyAny>, kind: InputKind) -> PyResult<Given> {
     match (kind, value::operand(value)) {
         (InputKind::Value(_), Operand::Value(value, _)) => Ok(Given::Value(*value)),
@@ -161,17 +166,17 @@ pub(crate) fn vector_of(py: Python<'_>, v: Vector) -> value::Object<'_> {
 
 const VECTOR: Grades = Grades(0b10);
 
-/// A Python function that is asked for values along a motion, which stops where it raises.
-pub(crate) struct Asked {
+/// A Python function that is called along a motion, which stops where it raises.
+pub(crate) struct Callback {
     pub call: Py<PyAny>,
     pub raised: Raised,
     /// What it returns.
     pub what: &'static str,
 }
 
-impl Asked {
-    /// What it answers at a time; `read` reads that.
-    pub fn of<T>(
+impl Callback {
+    /// Calls it at a time; `read` converts what it returns.
+    pub fn at<T>(
         &self,
         time: f64,
         arguments: impl for<'py> FnOnce(Python<'py>) -> PyResult<Bound<'py, PyTuple>>,
@@ -179,55 +184,57 @@ impl Asked {
     ) -> Result<T, TorqueError> {
         let what = || format!("the {} that the function returned at t = {time} s", self.what);
         Python::attach(|py| read(self.call.bind(py).call1(arguments(py)?)?, &what)).map_err(|error| {
-            let told = TorqueError(error.to_string());
+            let message = TorqueError(error.to_string());
             *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-            told
+            message
         })
     }
 }
 
-/// Says what an answer is, for errors.
+/// What a returned value is, for errors.
 type What<'a> = &'a dyn Fn() -> String;
 
 /// A bivector or three numbers.
-pub(crate) fn bivector(answer: Bound<'_, PyAny>, what: What<'_>) -> PyResult<Bivector> {
-    three(answer, what, Grades::BIVECTOR, "bivector").map(Bivector)
+pub(crate) fn bivector(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<Bivector> {
+    three(returned, what, Grades::BIVECTOR, "bivector").map(Bivector)
 }
 
 /// A vector or three numbers.
-pub(crate) fn vector(answer: Bound<'_, PyAny>, what: What<'_>) -> PyResult<Vector> {
-    three(answer, what, VECTOR, "vector").map(Vector)
+pub(crate) fn vector(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<Vector> {
+    three(returned, what, VECTOR, "vector").map(Vector)
 }
 
 /// A number, or a scalar.
-pub(crate) fn number(answer: Bound<'_, PyAny>, what: What<'_>) -> PyResult<f64> {
-    match value::operand(&answer) {
+pub(crate) fn number(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<f64> {
+    match value::operand(&returned) {
         Operand::Value(value, _) if value.grades() == Grades::SCALAR => Ok(value.components()[0]),
         Operand::Number(x) => Ok(x),
-        _ => answer.extract().map_err(|_| {
-            let kind = answer.get_type().name().map_or_else(|_| "no number".into(), |name| name.to_string());
+        _ => returned.extract().map_err(|_| {
+            let kind =
+                returned.get_type().name().map_or_else(|_| "another type".into(), |name| name.to_string());
             PyTypeError::new_err(format!("{} must be a number, got {kind}", what()))
         }),
     }
 }
 
-fn three(answer: Bound<'_, PyAny>, what: What<'_>, grades: Grades, kind: &str) -> PyResult<[f64; 3]> {
-    let py = answer.py();
-    if let Operand::Value(value, _) = value::operand(&answer)
+fn three(returned: Bound<'_, PyAny>, what: What<'_>, grades: Grades, kind: &str) -> PyResult<[f64; 3]> {
+    let py = returned.py();
+    if let Operand::Value(value, _) = value::operand(&returned)
         && let (true, &[x, y, z]) = (value.grades() == grades, value.components())
     {
         return Ok([x, y, z]);
     }
-    if let Some(([x, y, z, ..], 3)) = value::row(&answer) {
+    if let Some(([x, y, z, ..], 3)) = value::row(&returned) {
         return Ok([x, y, z]);
     }
-    if let Ok(three) = answer.extract::<Rows<'_>>().and_then(|rows| one(&rows)) {
+    if let Ok(three) = returned.extract::<Rows<'_>>().and_then(|rows| one(&rows)) {
         return Ok(three);
     }
-    // Any other value of three numbers, or the error that says why it is none.
+    // Any other value of three numbers, or an error that says what is wrong with it.
     static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    let module = MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
-    let rows = module.bind(py).call_method1(format!("as_{kind}s").as_str(), (answer, what()))?;
+    let module =
+        MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
+    let rows = module.bind(py).call_method1(format!("as_{kind}s").as_str(), (returned, what()))?;
     let rows: Rows<'_> = rows.call_method0(intern!(py, "copy"))?.extract()?;
     one(&rows).map_err(|error| PyValueError::new_err(format!("{} must be a single {kind}: {error}", what())))
 }

@@ -1,9 +1,7 @@
 import type { ComponentChildren } from "preact";
-import { type Scale, scaled } from "./format.ts";
+import { type Scale, scaled } from "../format/numbers.ts";
 
-export const BLADES = ["e₂∧e₃", "e₃∧e₁", "e₁∧e₂"];
-
-/** A sum of blades as it is written: `3.1 e₂∧e₃ + 0.2 e₃∧e₁ − 1.0 e₁∧e₂`; each digit keeps its place. */
+/** A sum of blades, `3.1 e₂∧e₃ + 0.2 e₃∧e₁ − 1.0 e₁∧e₂`, in which each digit keeps its place. */
 export function Terms({
   values,
   blades,
@@ -30,7 +28,7 @@ export function Terms({
   );
 }
 
-/** A symbol in the type of formulas, with a subscript: Ω with B. */
+/** A symbol in italics with a subscript, such as Ω with B. */
 export function Symbol({ name, sub }: { name: string; sub?: string }) {
   return (
     <i class="symbol">
@@ -40,10 +38,10 @@ export function Symbol({ name, sub }: { name: string; sub?: string }) {
   );
 }
 
-/** A quantity with its name, what it is, and its value below. */
+/** The symbol, description and unit of a quantity, and its value below. */
 export function Quantity(props: {
   symbol: ComponentChildren;
-  note: string;
+  note?: string;
   unit: string;
   mark?: string;
   children: ComponentChildren;

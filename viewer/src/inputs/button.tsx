@@ -1,0 +1,45 @@
+const ICONS = {
+  play: "M7 4.5v15l12.5-7.5z",
+  pause: "M7 5h3.6v14H7zM13.4 5H17v14h-3.6z",
+  restart: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
+  back: "M15.5 5v14L6 12zM17 5h2v14h-2z",
+  forward: "M8.5 5v14L18 12zM5 5h2v14H5z",
+  minus: "M5 11h14v2H5z",
+  plus: "M11 5h2v6h6v2h-6v6h-2v-6H5v-2h6z",
+  open: "M4 5h6l2 2h8v3H4zM4 11.5h16V19H4z",
+  close: "M6.4 5 12 10.6 17.6 5 19 6.4 13.4 12l5.6 5.6-1.4 1.4-5.6-5.6L6.4 19 5 17.6l5.6-5.6L5 6.4z",
+};
+
+export type IconName = keyof typeof ICONS;
+
+/** A decorative icon; the label of its button says what the button does. */
+export function Icon({ name }: { name: IconName }) {
+  return (
+    <svg class="icon" viewBox="0 0 24 24" aria-hidden="true">
+      <path d={ICONS[name]} />
+    </svg>
+  );
+}
+
+/** A button with an icon. Its tooltip is the label, with the key that does the same. */
+export function IconButton(props: {
+  id: string;
+  label: string;
+  icon: IconName;
+  press?: string;
+  class?: string;
+  onClick: () => void;
+}) {
+  const { id, label, icon, press, onClick } = props;
+  return (
+    <button
+      id={id}
+      class={props.class}
+      aria-label={label}
+      title={press ? `${label} (${press})` : label}
+      onClick={onClick}
+    >
+      <Icon name={icon} />
+    </button>
+  );
+}

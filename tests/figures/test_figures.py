@@ -15,7 +15,6 @@ import studios
 from command_line import EXAMPLES, polhode
 
 pytest.importorskip("matplotlib")
-pytest.importorskip("playwright")
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from polhode._figures import handout as _handout

@@ -18,7 +18,6 @@ import processes
 import studios
 from command_line import EXAMPLES, POLHODE, SCENE, polhode
 
-pytest.importorskip("playwright")
 pytest.importorskip("PIL")
 from PIL import Image
 
@@ -185,7 +184,7 @@ def test_invalid_films_are_refused(options, error, message, tmp_path, monkeypatc
     assert not list(tmp_path.iterdir())
 
 
-def test_batches_and_motions_of_one_time_are_refused(tmp_path):
+def test_batches_and_motions_of_one_time_are_refused(tmp_path, painted):
     inertia = ph.Inertia.from_principal_moments(1, 2, 3)
     one = ph.simulate(inertia, ph.State(ph.Rotor.identity(), [0, 0, 1.0]), [1.0])
     with pytest.raises(ValueError, match="needs two different output times; this motion has one"):
@@ -195,7 +194,7 @@ def test_batches_and_motions_of_one_time_are_refused(tmp_path):
         batch.film(tmp_path / "a.gif")
 
 
-def test_without_ffmpeg_the_error_names_it(tmp_path, monkeypatch):
+def test_without_ffmpeg_the_error_names_it(tmp_path, monkeypatch, painted):
     monkeypatch.setenv("PATH", str(tmp_path))
     (tmp_path / "old.mp4").write_bytes(b"old")
     with pytest.raises(OSError, match=r"needs the program ffmpeg: install it \(Debian: apt install ffmpeg\)"):
@@ -205,7 +204,7 @@ def test_without_ffmpeg_the_error_names_it(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("library", ["playwright", "PIL"])
-def test_without_a_library_the_error_names_the_extra(library, tmp_path, monkeypatch):
+def test_without_a_library_the_error_names_the_extra(library, tmp_path, monkeypatch, painted):
     monkeypatch.setitem(sys.modules, library, None)
     with pytest.raises(ImportError, match=rf"needs {library}: pip install 'polhode\[film\]'"):
         motion().film(tmp_path / "a.gif")

@@ -13,7 +13,6 @@ GRID = ph.simulate(BODY, ph.State(ph.Rotor.random((2, 3), rng=1), [0.1, 2, 0.1])
 @pytest.mark.parametrize("name", ["plot", "film"])
 def test_a_body_picked_from_a_batch_is_drawn(name, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
-    pytest.importorskip("playwright")
     studios.paint(monkeypatch)
     call = getattr(GRID, name)
     with pytest.raises(ValueError, match=rf"{name} .*\(2, 3\).*trajectory\[0, 0\]"):

@@ -2,7 +2,9 @@
 
 import io
 import shutil
+import sys
 from contextlib import contextmanager
+from types import ModuleType
 
 from missing import left_out
 from viewers import BUNDLE
@@ -25,7 +27,7 @@ def require_browser():
 
 
 class Painted:
-    """Frames of one colour, which grows with the time: what it was asked for is in `asked`."""
+    """A studio with frames of one colour, which depends on the time; `asked` has the requests."""
 
     def __init__(self, times, size):
         self.times, self.size, self.asked = times, size, []
@@ -43,7 +45,7 @@ class Painted:
 
 
 def paint(monkeypatch):
-    """Let figures and films be painted; return the list of what paints them."""
+    """Replace the studio of figures and films, also without Playwright; return the list of those opened."""
     from polhode._figures import film, scene
 
     opened = []
@@ -53,6 +55,7 @@ def paint(monkeypatch):
         opened.append(Painted(times, size))
         yield opened[-1]
 
+    monkeypatch.setitem(sys.modules, "playwright", ModuleType("playwright"))
     for module in (film, scene):
         monkeypatch.setattr(module, "studio", studio)
     return opened

@@ -148,7 +148,7 @@ def test_the_method_is_written(tmp_path):
         ({"torque": T.damping(1) + T.damping(2)}, "two"),
         ({"torque": T.formula("k Ω", k=1) + T.formula("k Ω", k=2, frame="space")}, "`k` has two values"),
         ({"torque": T.formula("F(Ω)", F=MOMENTS)}, "linear map"),
-        ({"times": [-2.0, 0.0]}, "this one has none"),
+        ({"times": [-2.0, 0.0]}, "no later time"),
         ({"tolerance": 2.0}, "tolerance"),
     ],
 )

@@ -25,6 +25,7 @@ mod agreement;
 mod compile;
 mod print;
 mod run;
+pub mod session;
 mod syntax;
 
 pub use agreement::Agreement;

@@ -44,12 +44,16 @@ mod _native {
     #[pymodule_export]
     use crate::formula::Formula;
     #[pymodule_export]
-    use crate::formula::program::{Program, canonical, marked};
+    use crate::formula::line::SessionLine;
+    #[pymodule_export]
+    use crate::formula::program::{Program, agreement_tolerance, canonical, marked};
 
     #[pymodule_export]
     use crate::algebra::signature::{Algebra, g3_object};
     #[pymodule_export]
     use crate::algebra::value::{Multivector, Rotor};
+    #[pymodule_export]
+    use crate::support::face::register;
     #[pymodule_export]
     use crate::support::pool::{Buffer, buffer};
 
@@ -58,7 +62,7 @@ mod _native {
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene, scene_mesh};
     #[pymodule_export]
-    use crate::support::text::{diagnostic, near_unit, quantities};
+    use crate::support::text::diagnostic;
 
     /// The version of the package.
     #[pymodule_export]

@@ -4,12 +4,12 @@
 
 use super::program::Program;
 use crate::algebra::value::{Held, Operand, operand, scalar, wrap};
+use crate::support::face::LINEAR_MAP;
 use polhode_ga::Graded;
 use polhode_ga::formula::{Given, InputKind, Type};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::PyDict;
 use std::sync::Mutex;
 
 /// So many calls of a formula are kept.
@@ -117,9 +117,8 @@ impl Argument {
             }
             Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
-                static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-                let one = value.is_instance(CLASS.import(py, "polhode._algebra.linear_map", "LinearMap")?)?
-                    && value.getattr(intern!(py, "shape"))?.is_empty()?;
+                let one =
+                    LINEAR_MAP.is_class_of(value)? && value.getattr(intern!(py, "shape"))?.is_empty()?;
                 let grade = || value.getattr(intern!(py, "grade"))?.extract();
                 Ok(if one { Some(Argument::Map(value.clone().unbind(), grade()?)) } else { None })
             }

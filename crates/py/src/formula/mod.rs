@@ -2,11 +2,14 @@
 
 pub(crate) mod batches;
 pub(crate) mod calls;
+pub(crate) mod line;
+mod magnitude;
 pub(crate) mod program;
 
 use crate::algebra::signature::{Algebra, g3, largest};
 use crate::algebra::value::Object;
 use crate::support::arrays::bad;
+use crate::support::face::CALL_FORMULA;
 use calls::{Argument, Calls};
 use polhode_ga::formula::{
     Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
@@ -16,7 +19,6 @@ use polhode_ga::product::Grades;
 use program::{Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
 use std::collections::HashMap;
 use std::sync::Mutex;
@@ -290,9 +292,7 @@ fn called<'py>(
             return Ok(value);
         }
     }
-    static GENERAL: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let general = GENERAL.import(py, "polhode._formula.formula", "called")?;
-    general.call1((formula, arguments, named))
+    CALL_FORMULA.get(py)?.call1((formula, arguments, named))
 }
 
 /// What a node is, and what else there is to say of it.

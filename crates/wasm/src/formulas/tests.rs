@@ -45,7 +45,10 @@ fn lines_give_values_to_names_for_later_lines() {
 
 #[test]
 fn equations_are_measured_as_python_measures_them() {
-    assert_eq!(outcomes("a = 2 e1 + e2\nI a∧e3 = 3 e1\na∧e3 == -e3∧a\na = 1 = 1")[1..3], ["differs", "holds"]);
+    assert_eq!(
+        outcomes("a = 2 e1 + e2\nI a∧e3 = 3 e1\na∧e3 == -e3∧a\na = 1 = 1")[1..3],
+        ["differs", "holds"]
+    );
     // Residuals and sizes of polhode.evaluate.
     assert_eq!(agreement("2 = 3"), Agreement { residual: 1.0, size: 3.0 });
     assert_eq!(agreement("e1∧e2 + 2 e2∧e1 = 0"), Agreement { residual: 1.0, size: 3.0 });

@@ -66,12 +66,12 @@ pub enum Refusal {
 
 /// A line, ready to be parsed.
 #[derive(Clone)]
-pub struct Line<'a> {
+pub struct Line {
     /// What it does.
     pub statement: Statement,
     /// Whether the formula uses the last value.
     pub uses_last: bool,
-    written: &'a str,
+    written: String,
     source: Source,
     /// The formula as written, without the spaces around it.
     body: Range<usize>,
@@ -79,26 +79,25 @@ pub struct Line<'a> {
     units: Units,
 }
 
-impl<'a> Line<'a> {
+impl Line {
     /// Reads `written[start..]`. Units are read in assignments; `is_name` knows the canonical names that are bound.
     ///
     /// # Errors
     /// If an assignment is expected and the head is not a name or function, or a quantity is invalid.
     pub fn read(
-        written: &'a str,
+        written: &str,
         start: usize,
         expected: Expected,
         is_name: impl Fn(&str) -> bool,
         units: Units,
-    ) -> Result<Line<'a>, Error> {
+    ) -> Result<Line, Error> {
         let (statement, head, begin) = statement(written, start, expected)?;
         let parameters = match &statement {
             Statement::Define { parameters, .. } => &parameters[..],
             _ => &[],
         };
-        let is_name = |word: &str| {
-            canonical(word).is_some_and(|word| is_name(&word) || parameters.contains(&word))
-        };
+        let is_name =
+            |word: &str| canonical(word).is_some_and(|word| is_name(&word) || parameters.contains(&word));
         let quantities = match &statement {
             Statement::Evaluate => Vec::new(),
             _ => (units.quantities)(&written[begin..], &is_name).map_err(|error| Error {
@@ -119,7 +118,7 @@ impl<'a> Line<'a> {
         replaced.extend(last.into_iter().map(|at| (at..at + 1, LAST_VALUE.to_owned())));
         replaced.sort_by_key(|(place, _)| place.start);
         let source = Source::new(written, begin..written.len(), replaced);
-        Ok(Line { statement, uses_last, written, source, body, head, units })
+        Ok(Line { statement, uses_last, written: written.to_owned(), source, body, head, units })
     }
 
     /// The formula as it is parsed: with numbers for quantities and a name for `_`.

@@ -11,6 +11,10 @@ from polhode._algebra.rotor import Rotor as WholeRotor
 from polhode._support.arrays import Array
 
 __all__ = [
+    "EQUATION_AS_VALUE",
+    "LAST_VALUE",
+    "NOT_FINITE",
+    "NO_LAST_VALUE",
     "Algebra",
     "Body",
     "Buffer",
@@ -73,6 +77,10 @@ __all__ = [
 ]
 
 __version__: str
+EQUATION_AS_VALUE: str
+LAST_VALUE: str
+NO_LAST_VALUE: str
+NOT_FINITE: str
 
 _Value = TypeVar("_Value", bound=Whole)
 
@@ -202,7 +210,7 @@ _Wrong = tuple[str, int, int]
 
 @final
 class Line:
-    def __new__(cls, written: str, start: int, expected: str, names: set[str]) -> Line: ...
+    def __new__(cls, written: str, start: int, assigns: bool | None, names: set[str]) -> Line: ...
     @property
     def name(self) -> str | None: ...
     @property
@@ -212,7 +220,6 @@ class Line:
     @property
     def uses_last(self) -> bool: ...
     def error(self, message: str) -> _Wrong: ...
-    def refuse(self, why: str) -> _Wrong: ...
     def place(self, message: str, text: str, place: tuple[int, int]) -> _Wrong: ...
 
 def agreement_tolerance(eps: float) -> float: ...

@@ -237,19 +237,19 @@ def test_all_lines_are_evaluated_and_errors_have_places():
 
 
 MISTAKES = {
-    "unknown name": ("a + q", "formula:1:5: error: `q` has no value; those that have: a, b\n"),
+    "unknown name": ("a + q", "formula:1:5: error: `q` has no value; names with values: a, b\n"),
     "a word": ("omega", "formula:1:1: error: `omega` has no value as one name; read as letters"),
     "unbalanced bracket": ("(a + b", "formula:1:1: error: "),
     "bracket too many": ("a + b)", "formula:1:6: error: `)` closes no bracket"),
     "wrong grade": ("cross(a∧b, b)", "formula:1:7: error: "),
     "ambiguous chain": ("a·b∧a", "ambiguous without brackets: `(a·b)∧a` or `a·(b∧a)`"),
-    "a division": ("a/2b", "formula:1:1: error: what is divided by?"),
+    "a division": ("a/2b", "formula:1:1: error: ambiguous divisor; write"),
     "deep nesting": (
         "(" * 150 + "a" + ")" * 150,
-        "formula:1:101: error: more than 100 levels within each other",
+        "formula:1:101: error: more than 100 nested levels",
     ),
     "20,000 factors": ("a" * 20_000, "has more than 10000 names, numbers and signs; define its parts first"),
-    "no blade": ("e4", "`e4` is no basis element: the basis vectors are e1 to e3"),
+    "no blade": ("e4", "`e4` is not a basis element; the basis vectors are e1 to e3"),
     "nothing": ("", "formula:1:1: error: the formula is empty"),
     "a stray sign": ("a $ b", "formula:1:3: error: `$`"),
     "log of 0": ("log(a - a)", "formula:1:"),
@@ -273,11 +273,11 @@ def test_error_messages(name):
 WRONG_LETS = {
     "no name": ("2x=e1", "--let:1:1: error: `2x` is not a name; names are letters"),
     "built in": ("a b=e1", "--let:1:1: error: `a b` is not a name"),
-    "an equation": ("x=e1=e1", "--let:1:3: error: `x` cannot have an equation as its value; compare with `==`"),
+    "an equation": ("x=e1=e1", "--let:1:3: error: an equation is not a value that a name can have; compare with `==`"),
     "unknown": ("x=2 q", "--let:1:5: error: `q` has no value"),
     "later name": ("x=y", "--let:1:3: error: `y` has no value"),
-    "unknown unit": ("x=5 degs", ". Is the unit `deg` meant?"),
-    "a unit in words": ("x=2 revolutions", ". Is the unit `rev` meant?"),
+    "unknown unit": ("x=5 degs", ". Did you mean the unit `deg`?"),
+    "a unit in words": ("x=2 revolutions", ". Did you mean the unit `rev`?"),
     "a unit after no number": (
         "x=½ deg + 1",
         ". The unit `deg` stands right after a number, as in `0.5 deg`",
@@ -289,7 +289,7 @@ WRONG_LETS = {
     "a divided unit": ("x=1/2 deg", "--let:1:5: error: `/` before a quantity has two readings; put brackets"),
     "beyond floats": ("x=1e+400 m", "--let:1:3: error: `1e+400 m` is beyond the range"),
     "no body": ("f(x)=x +", "--let:1:9: error: the formula ends where"),
-    "a parameter twice": ("f(x,x)=x", "--let:1:1: error: what is defined is a name, `c`, or a function"),
+    "a parameter twice": ("f(x,x)=x", "--let:1:1: error: expected a name, `c`, or a function"),
     "recursion": ("f(x)=1 + f(x)", "--let:1:6: error: `f` would call itself; formulas have no recursion"),
     "unknown in a body": ("f(x)=c x", "--let:1:6: error: `c` has no value"),
 }
@@ -308,7 +308,7 @@ def test_invalid_assignments_have_places(name):
 def test_a_unit_that_is_also_a_name_is_refused():
     error = complaint("p", "--let", "m=2 kg", "--let", "p=3 m")
     assert error.startswith("--let:1:5: error: `m` is a unit and a name here; for the name write `3*m`\n")
-    assert "formula:1:1: error: `p` has no value; those that have: m" in error
+    assert "formula:1:1: error: `p` has no value; names with values: m" in error
 
 
 @pytest.mark.parametrize(

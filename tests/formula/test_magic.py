@@ -94,10 +94,10 @@ def test_symbols(shell):
 
 
 MISTAKES = {
-    "%ga a + q": "%ga:1:5: error: `q` has no value; those that have: a\n  |\n1 | a + q\n  |     ^",
+    "%ga a + q": "%ga:1:5: error: `q` has no value; names with values: a\n  |\n1 | a + q\n  |     ^",
     "%%ga\na\n(a": "%ga:3:1: error: `(` is never closed\n  |\n3 | (a\n  | ^",
     "%ga m = 3 m": "%ga:1:7: error: `m` is a unit and a name here",
-    "%ga b = a == a": "%ga:1:5: error: `b` cannot have an equation as its value",
+    "%ga b = a == a": "%ga:1:5: error: an equation is not a value",
     "%ga log(a - a)": "%ga:1:1: error: no logarithm",
 }
 

@@ -121,7 +121,7 @@ MISTAKES = {
     "a place after a quantity": ("x = 90 deg + q", 13, 14, "`q` has no value"),
     "a place after the last value": ("x = _ + _ q", 10, 11, "`q` has no value"),
     "grades": ("cross(a, a∧b)", 9, 12, "the cross product needs a vector"),
-    "an equation as a value": ("x = a == b", 4, 10, "`x` cannot have an equation as its value; compare with `==`"),
+    "an equation as a value": ("x = a == b", 4, 10, "an equation is not a value that a name can have; compare with `==`"),
     "overflow": ("1e+300*1e+300", 0, 13, "beyond the range of floating point"),
     "an infinite value": ("x = 1e+300*1e+300", 4, 17, "beyond the range of floating point"),
     "no logarithm": ("log(a - a)", 0, 10, "no logarithm"),
@@ -224,7 +224,7 @@ def test_completion_knows_every_function(prompt):
 def test_piped_lines_are_answered_without_a_prompt():
     done = polhode("repl", input="# nothing\na = 2 e1\na a\n\nq\n:quit\nnever\n")
     assert (done.returncode, done.stdout) == (0, "4\n")
-    assert done.stderr == ("input:5:1: error: `q` has no value; those that have: a\n  |\n5 | q\n  | ^\n")
+    assert done.stderr == ("input:5:1: error: `q` has no value; names with values: a\n  |\n5 | q\n  | ^\n")
 
 
 def test_piped_bytes_that_are_not_utf_8(tmp_path):

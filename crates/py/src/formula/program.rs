@@ -1,4 +1,4 @@
-//! Programs of formulas in Python: what they are given, and their steps for those who walk them.
+//! Programs of formulas in Python: inputs, evaluation on arrays, and steps for interpreters.
 
 use super::magnitude::PyMagnitude;
 use crate::support::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
@@ -15,27 +15,27 @@ use pyo3::types::{PyTuple, PyType};
 /// A piece of text in characters, as Python counts.
 pub(crate) type Place = (usize, usize);
 
-/// What a formula does with values of known types.
+/// A formula compiled for values of known types.
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Program {
     pub(crate) program: formula::Program,
-    /// For each input, its place among the values given.
+    /// For each input, its index among the values given.
     pub(crate) order: Vec<usize>,
     pub(crate) text: String,
-    /// In 3-d space it is run here.
+    /// In 3-d space.
     pub(crate) runner: Option<Runner>,
 }
 
-/// Rows between which Python may interrupt.
+/// Rows between checks for signals.
 const PIECE: usize = 1 << 17;
 
-/// An operation: its name, the steps it needs, what else it needs, the grades of the value as bits, whether
-/// that is a rotor, and where it stands in the text.
+/// An operation: name, operands, constant or input, grades of the value as bits, whether it is a rotor, and its place in
+/// the text.
 type Step<'py> = (&'static str, Bound<'py, PyTuple>, Bound<'py, PyAny>, u16, bool, Place);
 
 #[pymethods]
 impl Program {
-    /// For each input its place among the values given, `value`, `matrix` or `determinant`, and the grade.
+    /// For each input its index among the values given, `value`, `matrix` or `determinant`, and the grade.
     #[getter]
     fn inputs(&self) -> Vec<(usize, &'static str, u16)> {
         let kind = |kind| match kind {
@@ -60,7 +60,7 @@ impl Program {
     }
 
     /// The grades of the value as bits, its number of components, and whether it is a rotor; None for an
-    /// equation, and for an algebra whose programs are not run here.
+    /// equation and for other algebras.
     #[getter]
     fn value_type(&self) -> Option<(u16, usize, bool)> {
         self.runner.as_ref()?;
@@ -137,7 +137,7 @@ impl Program {
         out: &mut [T],
     ) -> PyResult<()> {
         let (Some(runner), Some(ty)) = (&self.runner, self.ty()) else {
-            return Err(bad("an equation, or a formula of another algebra, is not run here"));
+            return Err(bad("only formulas of 3-d space that are not equations run on arrays"));
         };
         let size = ty.grades.indices(&G3).len();
         let rows: usize = batch.iter().product();
@@ -163,8 +163,8 @@ impl Program {
         Some(self.program.steps[result].ty)
     }
 
-    /// The value for single values, and whether it is a rotor; `None` if it is not run here. The values of the
-    /// steps are left in `values`.
+    /// The value for single values, and whether it is a rotor; `None` for other algebras. `values` receives the values of
+    /// all steps.
     pub(crate) fn value(
         &self,
         inputs: &[Given],
@@ -184,7 +184,7 @@ impl Program {
     }
 }
 
-/// The name of an operation, and what it needs beside other steps.
+/// The name of an operation, and its constant, input or power.
 fn described<'py>(py: Python<'py>, op: &Op) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
     let none = || py.None().into_bound(py);
     Ok(match *op {
@@ -236,7 +236,7 @@ pub(crate) fn error(py: Python<'_>, text: &str, error: &formula::Error) -> PyErr
     }
 }
 
-/// The place in a text, in characters, with a caret, on lines of its own.
+/// The line of a text with carets under a place in characters.
 #[pyfunction]
 pub(crate) fn marked(text: &str, place: Place) -> String {
     formula::Error { message: String::new(), span: span(text, place) }.shown(text)
@@ -248,7 +248,7 @@ pub(crate) fn agreement_tolerance(eps: f64) -> f64 {
     formula::tolerance(eps)
 }
 
-/// The spelling under which a name is known, such as `Ω_B` or `a1` for `a_1`; None if it is not a name.
+/// The canonical spelling of a name, such as `Ω_B` or `a1` for `a_1`; None if it is not a name.
 #[pyfunction]
 pub(crate) fn canonical(name: &str) -> Option<String> {
     formula::canonical(name)

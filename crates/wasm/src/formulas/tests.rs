@@ -101,7 +101,7 @@ fn units_are_read_where_a_name_gets_a_value() {
     assert!(found[1].ends_with("Units are read where a name gets a value, as in `x = 2 deg`"), "{found:?}");
     assert_eq!(found[2], "2");
     assert!(found[3].contains("a unit and a name"), "{found:?}");
-    assert!(found[4].ends_with("Is the unit `kg` meant?"), "{found:?}");
+    assert!(found[4].ends_with("Did you mean the unit `kg`?"), "{found:?}");
 }
 
 #[test]

@@ -19,9 +19,6 @@ FUNCTIONS = (
 
 T = TypeVar("T")
 
-_LAST_VALUE = "last_value"  # the name under which the core parses `_`
-
-
 class LineError(Exception):
     """An error in a line, with its place in characters."""
 
@@ -87,19 +84,19 @@ class Session:
         LineError
             If the line is invalid or has no value.
         """
-        return self._outcome(self._line(line, 0, "any"))
+        return self._outcome(self._line(line, 0, None))
 
     def evaluate(self, line: str) -> Answer:
         """Return the value of a formula, or the agreement of an equation."""
-        return self._outcome(self._line(line, 0, "formula"))
+        return self._outcome(self._line(line, 0, False))
 
     def assign(self, line: str, start: int = 0) -> Answer:
         """Give a value to the name before the first ``=`` of ``line[start:]``, or define a function."""
-        return self._outcome(self._line(line, start, "assignment"))
+        return self._outcome(self._line(line, start, True))
 
     def about(self, line: str, start: int, what: Callable[..., T]) -> T:
         """Return the result of `what` for the formula ``line[start:]`` and the values of names."""
-        read = self._line(line, start, "formula")
+        read = self._line(line, start, False)
         parsed, given = self._parsed(read)
         try:
             return what(parsed, **given)
@@ -121,9 +118,9 @@ class Session:
 
     # --- how
 
-    def _line(self, line: str, start: int, expected: str) -> _native.Line:
+    def _line(self, line: str, start: int, assigns: bool | None) -> _native.Line:
         try:
-            return _native.Line(line, start, expected, set(self.names))
+            return _native.Line(line, start, assigns, set(self.names))
         except ValueError as error:
             raise LineError(*error.args) from None
 
@@ -135,7 +132,7 @@ class Session:
         if read.name is None:
             return answer
         if isinstance(answer.value, Agreement):
-            raise LineError(*read.refuse("equation"))
+            raise LineError(*read.error(_native.EQUATION_AS_VALUE))
         self.values[read.name] = answer.value
         self.functions.pop(read.name, None)
         return replace(answer, name=read.name)
@@ -144,8 +141,8 @@ class Session:
         given = _given(self.functions, self.values)
         if read.uses_last:
             if self._last is None:
-                raise LineError(*read.refuse("no last value"))
-            given[_LAST_VALUE] = self._last
+                raise LineError(*read.error(_native.NO_LAST_VALUE))
+            given[_native.LAST_VALUE] = self._last
         try:
             return formula(read.text, define=dict(self.functions.values())), given
         except FormulaError as error:
@@ -160,7 +157,7 @@ class Session:
         except (ValueError, TypeError, ArithmeticError, MemoryError) as error:
             raise LineError(*read.error(str(error) or "out of memory")) from None
         if self.only_finite and not _is_finite(value):
-            raise LineError(*read.refuse("not finite"))
+            raise LineError(*read.error(_native.NOT_FINITE))
         if not isinstance(value, Agreement):
             self._last = value
         return Answer(value, None, parsed, given)

@@ -7,6 +7,15 @@ use std::ops::Range;
 /// The name under which `_`, the last value, is parsed.
 pub const LAST_VALUE: &str = "last_value";
 
+/// The error for `_` before there is a value.
+pub const NO_LAST_VALUE: &str = "`_` is the last value; there is none yet";
+
+/// The error for an infinite value or NaN.
+pub const NOT_FINITE: &str = "the value is beyond the range of floating point, about 1.8e308";
+
+/// The error for `name = lhs == rhs`.
+pub const EQUATION_AS_VALUE: &str = "an equation is not a value that a name can have; compare with `==`";
+
 /// How a session reads quantities with units.
 #[derive(Clone, Copy)]
 pub struct Units {
@@ -17,108 +26,67 @@ pub struct Units {
     pub near: fn(&str) -> Option<String>,
 }
 
-/// What a line may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Expected {
-    /// An assignment if it looks like one, else a formula.
-    Any,
-    /// An assignment.
-    Assignment,
-    /// A formula or an equation.
-    Formula,
-}
-
-/// What a line does.
+/// The left side of `a = …` or `V(x) = …`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Statement {
-    /// Evaluates a formula, or compares the sides of an equation.
-    Evaluate,
-    /// Gives a value to a canonical name.
-    Assign {
-        /// As written.
-        head: String,
-        /// Canonical.
-        name: String,
-    },
-    /// Defines a function.
-    Define {
-        /// As written, `V(x)`.
-        head: String,
-        /// Canonical.
-        name: String,
-        /// Canonical.
-        parameters: Vec<String>,
-    },
-}
-
-/// Why a line has no outcome although its formula is well formed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// A name cannot have an equation as its value.
-    EquationAsValue,
-    /// `_` before there is a value.
-    NoLastValue,
-    /// The value is infinite or NaN.
-    NotFinite,
-    /// A function calls itself.
-    Recursion,
+pub struct Head {
+    /// As written.
+    pub text: String,
+    /// The canonical name.
+    pub name: String,
+    /// The canonical parameters of a function; none of a value.
+    pub parameters: Vec<String>,
+    place: Range<usize>,
 }
 
 /// A line, ready to be parsed.
 #[derive(Clone)]
 pub struct Line {
-    /// What it does.
-    pub statement: Statement,
+    /// Of an assignment or definition; none of a formula.
+    pub head: Option<Head>,
     /// Whether the formula uses the last value.
     pub uses_last: bool,
     written: String,
     source: Source,
     /// The formula as written, without the spaces around it.
     body: Range<usize>,
-    head: Range<usize>,
     units: Units,
 }
 
 impl Line {
-    /// Reads `written[start..]`. Units are read in assignments; `is_name` knows the canonical names that are bound.
+    /// Reads `written[start..]`: an assignment or a formula if `assigns` says so, else either. Units are read in
+    /// assignments; `is_name` knows the canonical names that are bound.
     ///
     /// # Errors
-    /// If an assignment is expected and the head is not a name or function, or a quantity is invalid.
+    /// If an assignment has no head, a quantity is invalid, or a function uses `_`.
     pub fn read(
         written: &str,
         start: usize,
-        expected: Expected,
+        assigns: Option<bool>,
         is_name: impl Fn(&str) -> bool,
         units: Units,
     ) -> Result<Line, Error> {
-        let (statement, head, begin) = statement(written, start, expected)?;
-        let parameters = match &statement {
-            Statement::Define { parameters, .. } => &parameters[..],
-            _ => &[],
-        };
+        let (head, begin) = head(written, start, assigns)?;
+        let parameters = head.as_ref().map_or(&[][..], |head| &head.parameters);
         let is_name =
             |word: &str| canonical(word).is_some_and(|word| is_name(&word) || parameters.contains(&word));
-        let quantities = match &statement {
-            Statement::Evaluate => Vec::new(),
-            _ => (units.quantities)(&written[begin..], &is_name).map_err(|error| Error {
-                span: Span { start: begin + error.span.start, end: begin + error.span.end },
-                ..error
-            })?,
+        let within = |Span { start, end }| span(begin + start..begin + end);
+        let quantities = match &head {
+            None => Vec::new(),
+            Some(_) => (units.quantities)(&written[begin..], &is_name)
+                .map_err(|error| Error { span: within(error.span), ..error })?,
         };
-        let place = |place: Range<usize>| begin + place.start..begin + place.end;
         let mut replaced: Vec<(Range<usize>, String)> =
-            quantities.into_iter().map(|(at, value)| (place(at), number(value))).collect();
-        let last = last_values(written, begin);
+            quantities.into_iter().map(|(at, x)| (begin + at.start..begin + at.end, number(x))).collect();
         let body = trimmed(written, begin..written.len());
+        let last = last_values(written, begin);
         let uses_last = !last.is_empty();
-        if uses_last && matches!(statement, Statement::Define { .. }) {
-            let message = "a function cannot use `_`, the last value".to_owned();
-            return Err(Error { message, span: span(body) });
+        if uses_last && !parameters.is_empty() {
+            return Err(Error::new(span(body), "a function cannot use `_`, the last value"));
         }
         replaced.extend(last.into_iter().map(|at| (at..at + 1, LAST_VALUE.to_owned())));
         replaced.sort_by_key(|(place, _)| place.start);
         let source = Source::new(written, begin..written.len(), replaced);
-        Ok(Line { statement, uses_last, written: written.to_owned(), source, body, head, units })
+        Ok(Line { head, uses_last, written: written.to_owned(), source, body, units })
     }
 
     /// The formula as it is parsed: with numbers for quantities and a name for `_`.
@@ -128,126 +96,109 @@ impl Line {
 
     /// An error about the whole formula.
     pub fn error(&self, message: impl Into<String>) -> Error {
-        Error { message: message.into(), span: span(self.body.clone()) }
-    }
-
-    /// The error for a formula without an outcome.
-    pub fn refuse(&self, why: Refusal) -> Error {
-        let (head, name) = match &self.statement {
-            Statement::Evaluate => ("", ""),
-            Statement::Assign { head, name } | Statement::Define { head, name, .. } => (&head[..], &name[..]),
-        };
-        self.error(match why {
-            Refusal::EquationAsValue => {
-                format!("`{head}` cannot have an equation as its value; compare with `==`")
-            }
-            Refusal::NoLastValue => "`_` is the last value; there is none yet".to_owned(),
-            Refusal::NotFinite => "the value is beyond the range of floating point, about 1.8e308".to_owned(),
-            Refusal::Recursion => format!("`{name}` would call itself; formulas have no recursion"),
-        })
+        Error::new(span(self.body.clone()), message)
     }
 
     /// An error about a formula of the session, with its place in the line: about [`Line::text`], about the head of the
     /// definition, or about an earlier definition.
     pub fn place(&self, text: &str, error: Error) -> Error {
-        let about = error.span;
-        if let Statement::Define { head, name, .. } = &self.statement {
+        let Error { message, span: about } = error;
+        if let Some(Head { text: head, name, place, .. }) =
+            self.head.as_ref().filter(|head| head.is_function())
+        {
             let word = text.get(about.start..about.end).and_then(canonical);
             if word.is_some_and(|word| word == *name) {
-                return self.refuse(Refusal::Recursion);
+                return self.error(format!("`{name}` would call itself; formulas have no recursion"));
             }
             if text == head {
-                return Error { message: error.message, span: span(self.head.clone()) };
+                return Error::new(span(place.clone()), message);
             }
         }
         if text != self.source.text {
-            return self.error(format!("{}, in the definition `{text}`", error.message));
+            return self.error(format!("{message}, in the definition `{text}`"));
         }
         let Range { start, end } = self.source.place(about.start..about.end);
-        // What is missing after the last word is missing right after it, not after the spaces that follow.
+        // An error after the last word is right after it, not after the spaces that follow.
         let start = start.clamp(self.body.start, self.body.end);
         let place = start..end.clamp(start, self.body.end);
-        let hint = self.unit_hint(&error.message, place.clone());
-        Error { message: error.message + &hint, span: span(place) }
+        let hint = self.unit_hint(&message, place.clone()).unwrap_or_default();
+        Error::new(span(place), message + &hint)
     }
 
     /// What to add where a word without a value may be a unit.
-    fn unit_hint(&self, message: &str, place: Range<usize>) -> String {
+    fn unit_hint(&self, message: &str, place: Range<usize>) -> Option<String> {
         let word = &self.written[place.clone()];
         let letters = !word.is_empty() && word.chars().all(char::is_alphabetic);
-        let Some(unit) =
-            (letters && message.contains("has no value")).then(|| (self.units.near)(word)).flatten()
-        else {
-            return String::new();
-        };
-        let reads_units = self.statement != Statement::Evaluate;
+        let unit = (letters && message.contains("has no value")).then(|| (self.units.near)(word))??;
         let after_number = self.written[..place.start].trim_end().ends_with(char::is_numeric);
-        match (unit == word, reads_units) {
-            (true, true) => format!(". The unit `{unit}` stands right after a number, as in `0.5 {unit}`"),
-            (true, false) if after_number => {
-                format!(". Units are read where a name gets a value, as in `x = 2 {word}`")
+        match (unit == word, self.head.is_some()) {
+            (true, true) => {
+                Some(format!(". The unit `{unit}` stands right after a number, as in `0.5 {unit}`"))
             }
-            (false, true) if after_number => format!(". Is the unit `{unit}` meant?"),
-            _ => String::new(),
+            (true, false) if after_number => {
+                Some(format!(". Units are read where a name gets a value, as in `x = 2 {word}`"))
+            }
+            (false, true) if after_number => Some(format!(". Did you mean the unit `{unit}`?")),
+            _ => None,
         }
     }
 }
 
-/// What `written[start..]` does, its head, and where the formula begins.
-pub(super) fn statement(
-    written: &str,
-    start: usize,
-    expected: Expected,
-) -> Result<(Statement, Range<usize>, usize), Error> {
-    let equals = written[start..].find('=').map(|at| start + at);
-    let head = trimmed(written, start..equals.unwrap_or(written.len()));
-    if let (Some(equals), true) = (equals, expected != Expected::Formula)
-        && (expected == Expected::Assignment || !written[equals + 1..].starts_with('='))
-        && let Some(statement) = assigned(&written[head.clone()])
-    {
-        return Ok((statement, head, equals + 1));
+impl Head {
+    /// Whether it is that of a function.
+    pub fn is_function(&self) -> bool {
+        !self.parameters.is_empty()
     }
-    if expected != Expected::Assignment {
-        return Ok((Statement::Evaluate, head, start));
+
+    /// `a` or `V(x)`; none for anything else.
+    fn new(text: &str, place: Range<usize>) -> Option<Head> {
+        let (name, parameters) = match heading(text) {
+            Ok(head) => head,
+            Err(_) => {
+                // A parameter that occurs twice is an error of the definition.
+                let call = text.strip_suffix(')').and_then(|head| head.split_once('('));
+                let call = call.and_then(|(name, list)| {
+                    Some((canonical(name)?, list.split(',').map(canonical).collect::<Option<_>>()?))
+                });
+                call.or_else(|| Some((canonical(text)?, Vec::new())))?
+            }
+        };
+        Some(Head { text: text.to_owned(), name, parameters, place })
     }
-    let problem = match equals {
-        Some(_) => format!("`{}` is not a name", &written[head.clone()]),
-        None => "expected `name = value`".to_owned(),
-    };
-    let message = format!("{problem}; names are letters with subscripts and primes, `Ω_B`, `R'`, or words");
-    Err(Error { message, span: span(head) })
 }
 
-/// What `head = …` does; `None` if the head is neither a name nor a function of names.
-fn assigned(head: &str) -> Option<Statement> {
-    let written = head.to_owned();
-    if let Ok((name, parameters)) = heading(head) {
-        return Some(match parameters.is_empty() {
-            true => Statement::Assign { head: written, name },
-            false => Statement::Define { head: written, name, parameters },
-        });
-    }
-    // A parameter that occurs twice is an error of the definition.
-    if let Some((name, parameters)) = head.strip_suffix(')').and_then(|head| head.split_once('('))
-        && let Some(name) = canonical(name)
-        && let Some(parameters) = parameters.split(',').map(canonical).collect()
+/// The head of `written[start..]` if it assigns, and where the formula begins.
+pub(super) fn head(
+    written: &str,
+    start: usize,
+    assigns: Option<bool>,
+) -> Result<(Option<Head>, usize), Error> {
+    let equals = written[start..].find('=').map(|at| start + at);
+    let place = trimmed(written, start..equals.unwrap_or(written.len()));
+    let text = &written[place.clone()];
+    if let (Some(equals), None | Some(true)) = (equals, assigns)
+        && (assigns.is_some() || !written[equals + 1..].starts_with('='))
+        && let Some(head) = Head::new(text, place.clone())
     {
-        return Some(Statement::Define { head: written, name, parameters });
+        return Ok((Some(head), equals + 1));
     }
-    canonical(head).map(|name| Statement::Assign { head: written, name })
+    if assigns != Some(true) {
+        return Ok((None, start));
+    }
+    let problem = equals.map_or("expected `name = value`".to_owned(), |_| format!("`{text}` is not a name"));
+    let names = "names are letters with subscripts and primes, `Ω_B`, `R'`, or words";
+    Err(Error::new(span(place), format!("{problem}; {names}")))
 }
 
 /// Where `_` stands alone from `start` on: neither as a subscript, `a_1`, nor before the grade of a part, `⟨M⟩_2`.
 fn last_values(line: &str, start: usize) -> Vec<usize> {
     let continues = |c: char| c.is_alphanumeric() || c == '_';
     let ends = |c: char| continues(c) || matches!(c, '\u{300}'..='\u{36f}') || "⟩〉>})]'′’∥⊥".contains(c);
-    let alone = |&(at, _): &(usize, &str)| {
-        let before = line[..at].chars().next_back();
+    let alone = |&at: &usize| {
         let after = line[at + 1..].chars().next();
-        !before.is_some_and(ends) && !after.is_some_and(|c| continues(c) || c == '{')
+        !line[..at].ends_with(ends) && !after.is_some_and(|c| continues(c) || c == '{')
     };
-    let found = line.match_indices('_').filter(|(at, _)| *at >= start);
-    found.filter(alone).map(|(at, _)| at).collect()
+    line.match_indices('_').map(|(at, _)| at).filter(|&at| at >= start).filter(alone).collect()
 }
 
 fn span(place: Range<usize>) -> Span {

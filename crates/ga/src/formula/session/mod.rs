@@ -8,7 +8,7 @@
 mod line;
 mod source;
 
-pub use line::{Expected, LAST_VALUE, Line, Refusal, Statement, Units};
+pub use line::{EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE, Units};
 pub use source::Source;
 
 use super::{
@@ -65,12 +65,10 @@ impl Session {
             return Ok(Outcome::default());
         }
         let known = |name: &str| self.names.get(name).is_some();
-        let read = Line::read(line, 0, Expected::Any, known, self.units);
+        let read = Line::read(line, 0, None, known, self.units);
         let outcome = read.and_then(|line| self.answer(&line));
-        let (name, parameters) = match line::statement(line, 0, Expected::Any).map(|(it, ..)| it) {
-            Ok(Statement::Evaluate) | Err(_) => return outcome.map_err(|error| (None, error)),
-            Ok(Statement::Assign { name, .. }) => (name, Vec::new()),
-            Ok(Statement::Define { name, parameters, .. }) => (name, parameters),
+        let Ok((Some(Head { name, parameters, .. }), _)) = line::head(line, 0, None) else {
+            return outcome.map_err(|error| (None, error));
         };
         match outcome {
             Ok(outcome) => {
@@ -88,23 +86,20 @@ impl Session {
 
     fn answer(&mut self, line: &Line) -> Result<Outcome, Error> {
         if line.uses_last {
-            let (value, ty) = self.last.ok_or_else(|| line.refuse(Refusal::NoLastValue))?;
+            let (value, ty) = self.last.ok_or_else(|| line.error(NO_LAST_VALUE))?;
             self.bind(LAST_VALUE, value, ty);
         } else {
             self.names.forget(LAST_VALUE);
         }
-        if let Statement::Define { head, name, parameters } = &line.statement {
-            return self.define(line, head, name, parameters);
+        if let Some(head) = line.head.as_ref().filter(|head| head.is_function()) {
+            return self.define(line, head);
         }
         let outcome = self.evaluate(line)?;
         let Some((value, ty)) = outcome.value else {
-            return match line.statement {
-                Statement::Evaluate => Ok(outcome),
-                _ => Err(line.refuse(Refusal::EquationAsValue)),
-            };
+            return if line.head.is_none() { Ok(outcome) } else { Err(line.error(EQUATION_AS_VALUE)) };
         };
-        if let Statement::Assign { name, .. } = &line.statement {
-            self.bind(name, value, ty);
+        if let Some(head) = &line.head {
+            self.bind(&head.name, value, ty);
         }
         self.last = Some((value, ty));
         Ok(outcome)
@@ -115,21 +110,15 @@ impl Session {
         self.values.insert(name.to_owned(), value);
     }
 
-    fn define(
-        &mut self,
-        line: &Line,
-        head: &str,
-        name: &str,
-        parameters: &[String],
-    ) -> Result<Outcome, Error> {
-        define(head, line.text(), Space::g3(), &mut self.names)
+    fn define(&mut self, line: &Line, head: &Head) -> Result<Outcome, Error> {
+        define(&head.text, line.text(), Space::g3(), &mut self.names)
             .map_err(|error| line.place(line.text(), error))?;
-        let Some(Meaning::Function(Definition { body, .. })) = self.names.get(name) else {
+        let Some(Meaning::Function(Definition { body, .. })) = self.names.get(&head.name) else {
             return Ok(Outcome::default());
         };
-        self.check(body, parameters).map_err(|error| line.place(line.text(), error))?;
+        self.check(body, &head.parameters).map_err(|error| line.place(line.text(), error))?;
         let (text, latex) = (body.text(Style::Unicode), body.latex());
-        self.values.remove(name);
+        self.values.remove(&head.name);
         Ok(Outcome { text: Some(text), latex: Some(latex), ..Outcome::default() })
     }
 
@@ -153,7 +142,7 @@ impl Session {
             None => value.components().iter().all(|x| x.is_finite()),
         };
         if !finite {
-            return Err(line.refuse(Refusal::NotFinite));
+            return Err(line.error(NOT_FINITE));
         }
         let value = agreement.is_none().then_some((value, ty));
         Ok(Outcome { value, agreement, ..spelled(&tree) })

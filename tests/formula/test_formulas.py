@@ -336,11 +336,11 @@ def test_wrong_texts_are_found_at_once():
             ph.formula(text)
     with pytest.raises(ph.FormulaError):
         ph.formula("V(x)", define={"V(x)": "x +"})
-    with pytest.raises(TypeError, match="text"):
+    with pytest.raises(TypeError, match="must be a string"):
         ph.formula(3)
     with pytest.raises(TypeError, match="algebra"):
         ph.formula("a", algebra="G3")
-    with pytest.raises(TypeError, match="text, got list"):
+    with pytest.raises(TypeError, match="string, got list"):
         ph.evaluate(["a"])
     with pytest.raises(TypeError, match="define must be a mapping"):
         ph.formula("V(a)", define="V(x) = x")

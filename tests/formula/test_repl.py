@@ -121,7 +121,12 @@ MISTAKES = {
     "a place after a quantity": ("x = 90 deg + q", 13, 14, "`q` has no value"),
     "a place after the last value": ("x = _ + _ q", 10, 11, "`q` has no value"),
     "grades": ("cross(a, a∧b)", 9, 12, "the cross product needs a vector"),
-    "an equation as a value": ("x = a == b", 4, 10, "an equation is not a value that a name can have; compare with `==`"),
+    "an equation as a value": (
+        "x = a == b",
+        4,
+        10,
+        "an equation is not a value that a name can have",
+    ),
     "overflow": ("1e+300*1e+300", 0, 13, "beyond the range of floating point"),
     "an infinite value": ("x = 1e+300*1e+300", 4, 17, "beyond the range of floating point"),
     "no logarithm": ("log(a - a)", 0, 10, "no logarithm"),

@@ -47,7 +47,7 @@ class Given:
     refused: dict[str, TypeError]
 
     def inputs(self, program: _native.Program) -> list[Any]:
-        """Return the inputs of a program: multivectors; of maps, matrices (..., 9) and determinants (..., 1)."""
+        """Return the inputs of a program: values; for maps, matrices (..., 9), determinants (..., 1)."""
         self._require_one_shape(program)
         return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
 

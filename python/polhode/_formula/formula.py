@@ -188,7 +188,9 @@ def _compiled(text: str) -> Formula:
 def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, Any] | None) -> Any:
     """Return the value of a formula over values of any kind; the binding calls this."""
     if len(arguments) > 1:
-        raise TypeError(f"a formula takes keywords and at most one mapping of values, got {len(arguments)} arguments")
+        raise TypeError(
+            f"a formula takes keywords and at most one mapping of values, got {len(arguments)} arguments"
+        )
     program, known = compiled(core, given(core, arguments[0] if arguments else None, named or {}))
     return evaluated(core.text, program, known)
 

@@ -19,6 +19,7 @@ FUNCTIONS = (
 
 T = TypeVar("T")
 
+
 class LineError(Exception):
     """An error in a line, with its place in characters."""
 

@@ -11,6 +11,10 @@ from polhode._algebra.rotor import Rotor as WholeRotor
 from polhode._support.arrays import Array
 
 __all__ = [
+    "EQUATION_AS_VALUE",
+    "LAST_VALUE",
+    "NOT_FINITE",
+    "NO_LAST_VALUE",
     "Algebra",
     "Body",
     "Buffer",
@@ -25,12 +29,14 @@ __all__ = [
     "LarmorSphere",
     "Law",
     "LawValue",
+    "Line",
     "Motion",
     "Multivector",
     "Program",
     "Rotor",
     "SceneError",
     "__version__",
+    "agreement_tolerance",
     "buffer",
     "canonical",
     "diagnostic",
@@ -42,12 +48,11 @@ __all__ = [
     "law_registry",
     "marked",
     "methods",
-    "near_unit",
     "norm",
     "orbit_directions",
     "product",
-    "quantities",
     "read_scene",
+    "register",
     "rotor_apply",
     "rotor_compose",
     "rotor_exp",
@@ -73,6 +78,10 @@ __all__ = [
 ]
 
 __version__: str
+EQUATION_AS_VALUE: str
+LAST_VALUE: str
+NO_LAST_VALUE: str
+NOT_FINITE: str
 
 _Value = TypeVar("_Value", bound=Whole)
 
@@ -192,8 +201,29 @@ class Program:
     def value_type(self) -> tuple[int, int, bool] | None: ...
     @property
     def steps(self) -> list[_Step]: ...
+    def term_size(
+        self, step: int, length: Any, operands: list[tuple[Any, Any]], eps: float, namespace: Any
+    ) -> Any: ...
     def run(self, inputs: list[Array], out: Array) -> None: ...
 
+# An error: the message, and its place in characters.
+_Wrong = tuple[str, int, int]
+
+@final
+class Line:
+    def __new__(cls, written: str, start: int, assigns: bool | None, names: set[str]) -> Line: ...
+    @property
+    def name(self) -> str | None: ...
+    @property
+    def function(self) -> str | None: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def uses_last(self) -> bool: ...
+    def error(self, message: str) -> _Wrong: ...
+    def place(self, message: str, text: str, place: tuple[int, int]) -> _Wrong: ...
+
+def agreement_tolerance(eps: float) -> float: ...
 def canonical(name: str) -> str | None: ...
 def marked(text: str, place: tuple[int, int]) -> str: ...
 def g3() -> WholeAlgebra: ...
@@ -386,5 +416,4 @@ def simulate_many(
 def read_scene(path: str) -> dict[str, Any]: ...
 def scene_mesh(path: str) -> tuple[Array, list[list[int]]] | None: ...
 def diagnostic(source: str, number: int, line: str, start: int, end: int, message: str) -> str: ...
-def near_unit(word: str) -> str | None: ...
-def quantities(text: str, names: set[str]) -> list[tuple[int, int, float]]: ...
+def register(name: str, object: Any) -> None: ...

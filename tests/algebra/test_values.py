@@ -267,7 +267,7 @@ def test_multivectors_have_neither_hash_nor_constructor():
         hash(e1)
     with pytest.raises(TypeError, match=r"use ph\.scalar, ph\.vector"):
         ph.Multivector()
-    with pytest.raises(TypeError, match=r"Rotor is not made directly; use Rotor\.from_") as refused:
+    with pytest.raises(TypeError, match=r"Rotor has no public constructor; use Rotor\.from_") as refused:
         ph.Rotor([1, 0, 0, 0])
     assert "ph.vector" not in str(refused.value)
 

@@ -1,4 +1,4 @@
-"""Equations tell whether their sides agree, to what tolerance, and how far they are apart."""
+"""Agreement of the sides of equations: residual, size of the terms, tolerance."""
 
 from fractions import Fraction
 
@@ -39,7 +39,7 @@ def test_equations_over_every_kind(kind, text, shape):
         assert np.all(np.asarray(agreement.residual == 0)) == (text in HOLD)
 
 
-def test_the_residual_is_measured_by_the_terms():
+def test_the_residual_is_relative_to_the_terms():
     a, b = e1 + 2 * e2, 3 * e3
     agreement = ph.evaluate("a∧b + b∧a = 0", a=a, b=b)
     assert agreement.size == pytest.approx(2 * np.sqrt(5) * 3, rel=1e-12)
@@ -54,7 +54,7 @@ def test_the_residual_is_measured_by_the_terms():
 
 
 @pytest.mark.parametrize("size", [1e-170, 1.0, 1e170])
-def test_sizes_of_quotients_do_not_leave_the_floats(size):
+def test_sizes_of_quotients_neither_overflow_nor_underflow(size):
     assert ph.evaluate("a/s s = a", a=size * e1, s=size)
     assert ph.evaluate("s/t = 1", s=size, t=size)
     assert not ph.evaluate("s/t = 1.00000001", s=size, t=size)
@@ -75,7 +75,7 @@ def test_tolerances():
         close.within(float("nan"))
 
 
-def test_rows_are_told_apart():
+def test_rows_are_compared_separately():
     x = np.array([1.0, 2.0, np.nan, np.inf])
     agreement = ph.evaluate("x = y", x=x, y=np.array([1.0, 3.0, 3.0, 3.0]))
     assert agreement.holds.tolist() == [True, False, False, False]

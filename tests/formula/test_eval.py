@@ -1,4 +1,4 @@
-"""``polhode eval``: what it prints, where formulas come from, and every kind of mistake, read aloud."""
+"""``polhode eval``: output, sources of formulas, and every kind of error message."""
 
 import json
 import os
@@ -41,12 +41,12 @@ def test_the_example_of_the_requirements():
         ("e1 e2", "e1∧e2"),
         ("-I e1∧e2", "e3"),
         ("-I e1^e2", "e3"),
-        ("-e1∧e2", "-e1∧e2"),  # which is no option
+        ("-e1∧e2", "-e1∧e2"),  # not an option
         ("-2", "-2"),
         ("½ π", "1.5707963"),
         ("2e1 + 1e-1", "0.1 + 2 e1"),
         ("⟨(e1+e2) e1⟩_2", "-e1∧e2"),
-        ("  e1  # a comment is no part of arguments", None),
+        ("  e1  # comments are not allowed in arguments", None),
     ],
 )
 def test_values_print_as_on_paper(formula, value):
@@ -106,9 +106,9 @@ def test_quantities_stand_within_formulas(value):
 
 def test_units_are_names_in_formulas():
     assert printed("3 m", "g m s", "--let", "m=2 kg", "--let", "g=e1", "--let", "s=e1") == ["6", "2"]
-    told = complaint("3 m", "exp(-45deg/2 e1e2)")
-    assert "`m` has no value; no names have values here. Units are read where a name gets a value" in told
-    assert "as in `x = 2 deg`\n" in told
+    error = complaint("3 m", "exp(-45deg/2 e1e2)")
+    assert "`m` has no value; no names have values here. Units are read where a name gets a value" in error
+    assert "as in `x = 2 deg`\n" in error
 
 
 # --- equations
@@ -124,7 +124,7 @@ def test_equations_are_true_or_false():
     assert again == "true, residual 0 of terms of size 1"
 
 
-def test_the_residual_is_measured_by_the_terms():
+def test_the_residual_is_relative_to_the_terms():
     """The sine of a float near π is not 0, but small beside the rotor."""
     (line,) = printed("R e1 ~R = -1e-9 e1 + 1e-9 e1 + e1", "--let", "R=exp(-180deg e1e2)")
     assert line.startswith("true, residual ")
@@ -148,7 +148,7 @@ def test_json_is_one_strict_document():
     assert {"text", "ascii", "latex"} < set(value) & set(true)
 
 
-def test_json_tells_of_mistakes_where_they_stand():
+def test_json_has_errors_with_places():
     done = evaluate("e1", "e1 +", "e2", "--json")
     assert (done.returncode, done.stderr) == (3, "")
     first, second, third = json.loads(done.stdout)
@@ -158,7 +158,7 @@ def test_json_tells_of_mistakes_where_they_stand():
 
 
 @pytest.mark.parametrize("formula", ["x x", "x x - x x", "x e1 + 1", "exp(x e1)", "x x = 1"])
-def test_what_overflows_is_an_error_and_json_stays_json(formula):
+def test_overflow_is_an_error_and_json_stays_valid(formula):
     done = evaluate(formula, "e1", "--let", "x=1e+200", "--json")
     assert done.returncode in (0, 3)
     for record in json.loads(done.stdout, parse_constant=pytest.fail):
@@ -209,7 +209,7 @@ def test_standard_input_has_one_formula_a_line(arguments, line_end):
     check_lines(printed(*arguments, input="\ufeff" + LINES.replace("\n", line_end)))
 
 
-def test_lines_are_answered_as_they_come():
+def test_lines_are_answered_as_they_arrive():
     with processes.start([POLHODE, "eval"], stdin=processes.PIPE, stderr=None) as process:
         process.stdin.write("e1 e2\n")
         process.stdin.flush()
@@ -218,14 +218,14 @@ def test_lines_are_answered_as_they_come():
         assert process.wait() == 0
 
 
-def test_all_lines_are_tried_and_mistakes_have_their_place():
+def test_all_lines_are_evaluated_and_errors_have_places():
     done = evaluate(input="e1\ne1 + q\n\nlet = 3\n  e2 e2)\ne3\n")
     assert done.returncode == 3
     assert done.stdout.splitlines() == ["e1", "e3"]
     assert done.stderr == (
         "<stdin>:2:6: error: `q` has no value; no names have values here\n"
         "  |\n2 | e1 + q\n  |      ^\n"
-        "<stdin>:4:5: error: `` is no name; names are letters with subscripts and primes, "
+        "<stdin>:4:5: error: `` is not a name; names are letters with subscripts and primes, "
         "`Ω_B`, `R'`, or words\n"
         "  |\n4 | let = 3\n  |     ^\n"
         "<stdin>:5:6: error: `)` closes no bracket\n"
@@ -233,23 +233,23 @@ def test_all_lines_are_tried_and_mistakes_have_their_place():
     )
 
 
-# --- every kind of mistake
+# --- errors
 
 
 MISTAKES = {
-    "unknown name": ("a + q", "formula:1:5: error: `q` has no value; those that have: a, b\n"),
+    "unknown name": ("a + q", "formula:1:5: error: `q` has no value; names with values: a, b\n"),
     "a word": ("omega", "formula:1:1: error: `omega` has no value as one name; read as letters"),
     "unbalanced bracket": ("(a + b", "formula:1:1: error: "),
     "bracket too many": ("a + b)", "formula:1:6: error: `)` closes no bracket"),
     "wrong grade": ("cross(a∧b, b)", "formula:1:7: error: "),
     "ambiguous chain": ("a·b∧a", "ambiguous without brackets: `(a·b)∧a` or `a·(b∧a)`"),
-    "a division": ("a/2b", "formula:1:1: error: what is divided by?"),
+    "a division": ("a/2b", "formula:1:1: error: ambiguous divisor; write"),
     "deep nesting": (
         "(" * 150 + "a" + ")" * 150,
-        "formula:1:101: error: more than 100 levels within each other",
+        "formula:1:101: error: more than 100 nested levels",
     ),
     "20,000 factors": ("a" * 20_000, "has more than 10000 names, numbers and signs; define its parts first"),
-    "no blade": ("e4", "`e4` is no basis element: the basis vectors are e1 to e3"),
+    "no blade": ("e4", "`e4` is not a basis element; the basis vectors are e1 to e3"),
     "nothing": ("", "formula:1:1: error: the formula is empty"),
     "a stray sign": ("a $ b", "formula:1:3: error: `$`"),
     "log of 0": ("log(a - a)", "formula:1:"),
@@ -259,25 +259,28 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_every_mistake_is_read_aloud(name):
+def test_error_messages(name):
     formula, expected = MISTAKES[name]
-    told = complaint(formula, "--let", "a=e1", "--let", "b=e2")
-    assert expected in told
-    place, source, line, caret = told.splitlines()
+    error = complaint(formula, "--let", "a=e1", "--let", "b=e2")
+    assert expected in error
+    place, source, line, caret = error.splitlines()
     assert ": error: " in place
     assert (source.strip(), line[:4].strip()) == ("|", "1 |")
     assert set(caret.strip(" |")) == {"^"}
-    assert max(map(len, told.splitlines())) < 300
+    assert max(map(len, error.splitlines())) < 300
 
 
 WRONG_LETS = {
-    "no name": ("2x=e1", "--let:1:1: error: `2x` is no name; names are letters"),
-    "built in": ("a b=e1", "--let:1:1: error: `a b` is no name"),
-    "an equation": ("x=e1=e1", "--let:1:3: error: an equation is no value for `x`; compare with `==`"),
+    "no name": ("2x=e1", "--let:1:1: error: `2x` is not a name; names are letters"),
+    "built in": ("a b=e1", "--let:1:1: error: `a b` is not a name"),
+    "an equation": (
+        "x=e1=e1",
+        "--let:1:3: error: an equation is not a value that a name can have",
+    ),
     "unknown": ("x=2 q", "--let:1:5: error: `q` has no value"),
     "later name": ("x=y", "--let:1:3: error: `y` has no value"),
-    "unknown unit": ("x=5 degs", ". Is the unit `deg` meant?"),
-    "a unit in words": ("x=2 revolutions", ". Is the unit `rev` meant?"),
+    "unknown unit": ("x=5 degs", ". Did you mean the unit `deg`?"),
+    "a unit in words": ("x=2 revolutions", ". Did you mean the unit `rev`?"),
     "a unit after no number": (
         "x=½ deg + 1",
         ". The unit `deg` stands right after a number, as in `0.5 deg`",
@@ -289,14 +292,14 @@ WRONG_LETS = {
     "a divided unit": ("x=1/2 deg", "--let:1:5: error: `/` before a quantity has two readings; put brackets"),
     "beyond floats": ("x=1e+400 m", "--let:1:3: error: `1e+400 m` is beyond the range"),
     "no body": ("f(x)=x +", "--let:1:9: error: the formula ends where"),
-    "a parameter twice": ("f(x,x)=x", "--let:1:1: error: what is defined is a name, `c`, or a function"),
+    "a parameter twice": ("f(x,x)=x", "--let:1:1: error: expected a name, `c`, or a function"),
     "recursion": ("f(x)=1 + f(x)", "--let:1:6: error: `f` would call itself; formulas have no recursion"),
     "unknown in a body": ("f(x)=c x", "--let:1:6: error: `c` has no value"),
 }
 
 
 @pytest.mark.parametrize("name", WRONG_LETS)
-def test_wrong_values_have_their_place(name):
+def test_invalid_assignments_have_places(name):
     let, expected = WRONG_LETS[name]
     # The formula stands for itself: it does not need the name.
     done = evaluate("1", "--let", let)
@@ -306,9 +309,9 @@ def test_wrong_values_have_their_place(name):
 
 
 def test_a_unit_that_is_also_a_name_is_refused():
-    told = complaint("p", "--let", "m=2 kg", "--let", "p=3 m")
-    assert told.startswith("--let:1:5: error: `m` is a unit and a name here; for the name write `3*m`\n")
-    assert "formula:1:1: error: `p` has no value; those that have: m" in told
+    error = complaint("p", "--let", "m=2 kg", "--let", "p=3 m")
+    assert error.startswith("--let:1:5: error: `m` is a unit and a name here; for the name write `3*m`\n")
+    assert "formula:1:1: error: `p` has no value; names with values: m" in error
 
 
 @pytest.mark.parametrize(
@@ -322,11 +325,11 @@ def test_wrong_usage_is_2(arguments):
 def test_files_that_cannot_be_read(tmp_path):
     assert complaint("-f", "absent.ga", cwd=tmp_path) == "absent.ga: error: no such file or directory\n"
     assert "is a directory" in complaint("-f", tmp_path)
-    assert complaint(input="") == "<stdin>: error: there is no formula; write one a line\n"
+    assert complaint(input="") == "<stdin>: error: no formula found; write one on each line\n"
     (tmp_path / "empty.ga").write_text("\n# nothing\n")
     assert (
         complaint("-f", "empty.ga", cwd=tmp_path)
-        == "empty.ga: error: there is no formula; write one a line\n"
+        == "empty.ga: error: no formula found; write one on each line\n"
     )
 
 
@@ -337,14 +340,14 @@ def test_a_closed_standard_input(command, code):
     assert done.stderr.endswith("error: standard input is closed\n")
 
 
-def test_what_is_not_utf_8_has_its_place(tmp_path):
+def test_bytes_that_are_not_utf_8_have_places(tmp_path):
     (tmp_path / "latin.ga").write_bytes("e1\nn = café\ne2\n".encode("latin-1"))
     done = evaluate("-f", "latin.ga", cwd=tmp_path)
     assert done.returncode == 3
     assert done.stdout.splitlines() == ["e1", "e2"]
     assert "latin.ga:2:8: error: not UTF-8\n" in done.stderr
-    told = complaint(b"e1 + \xff")
-    assert told.startswith("formula:1:6: error: not UTF-8\n")
+    error = complaint(b"e1 + \xff")
+    assert error.startswith("formula:1:6: error: not UTF-8\n")
     assert complaint("x", "--let", b"x=\xff").startswith("--let:1:3: error: not UTF-8\n")
     (tmp_path / os.fsdecode(b"\xff.ga")).write_text("q")
     assert complaint("-f", b"\xff.ga", cwd=tmp_path).startswith("?.ga:1:1: error: `q` has no value")

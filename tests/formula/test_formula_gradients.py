@@ -74,18 +74,18 @@ def test_gradients_through_linear_maps_and_definitions():
     assert f.grad("x")(x=a).is_close(a + e1)
 
 
-def test_what_has_no_gradient():
+def test_formulas_without_a_gradient():
     with pytest.raises(TypeError, match=r"grades \(1,\)"):
         ph.formula("2 a").grad("a")(a=e1)
     with pytest.raises(TypeError, match="equation"):
         ph.formula("a = a").grad("a")(a=e1)
-    with pytest.raises(TypeError, match="by b, which was not given"):
+    with pytest.raises(TypeError, match="by b: no value with this name"):
         ph.formula("a²").grad("b")(a=e1)
-    with pytest.raises(TypeError, match="F, which is a linear map"):
+    with pytest.raises(TypeError, match="by F: it is a linear map"):
         ph.formula("F(a)·a").grad("F")(F=ph.LinearMap.from_matrix(np.eye(3)), a=e1)
     with pytest.raises(TypeError, match="names"):
         ph.formula("a²").grad()
-    with pytest.raises(TypeError, match="each name once"):
+    with pytest.raises(TypeError, match="must differ"):
         ph.formula("a1²").grad("a1", "a_1")
     with pytest.raises(TypeError, match="floats"):
         ph.formula("a²").grad("a")(a=ph.vector([1, 2, 3], dtype=object))

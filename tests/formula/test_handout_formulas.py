@@ -1,7 +1,7 @@
-"""Every equation of the handout, typed as it stands there, is true; and a sign or a factor away it is not.
+"""Every equation of the handout holds as written there, and fails with a sign or a factor changed.
 
-Of floats the sides agree to the equation's own tolerance, in every one of 10,000 rows; fractions are equal
-and symbols vanish identically.
+Sides over floats agree within the equation's tolerance in each of 10,000 rows, fractions are equal, and the
+difference of symbolic sides vanishes identically.
 """
 
 from functools import cache
@@ -38,7 +38,7 @@ def test_a_wrong_version_does_not(equation, kind):
     assert not np.any(ph.evaluate(equation.wrong, names_of(equation.names, kind)).holds)
 
 
-def test_a_batch_is_told_row_by_row():
+def test_a_batch_is_compared_row_by_row():
     a, b = ph.vector(np.ones((ROWS, 3))), ph.vector(np.arange(3.0 * ROWS).reshape(ROWS, 3))
     agreement = ph.evaluate("a∧b = 0", a=a, b=a + b * (np.arange(ROWS) == 7.0).astype(float))
     assert not agreement

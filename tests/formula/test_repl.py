@@ -1,4 +1,4 @@
-"""``polhode repl``: what it answers, typed or through a pipe; history and completion."""
+"""``polhode repl``: answers, typed or piped; history and completion."""
 
 import contextlib
 import os
@@ -37,7 +37,7 @@ def test_names_get_values_and_formulas_print_theirs(prompt):
 def test_equations_compare(prompt):
     prompt.answer("a = e1 + e2")
     assert prompt.answer("a a == 2") == "true, residual 0 of terms of size 2"
-    # What is left of the sign is no name: nothing is assigned.
+    # The left side is not a name: nothing is assigned.
     assert prompt.answer("a a = 3") == "false, residual 1 of terms of size 3"
     assert prompt.answer("a == e1 + e2").startswith("true")
 
@@ -71,19 +71,26 @@ def test_the_last_value_is_an_underscore(prompt):
     with pytest.raises(LineError, match="`_` is the last value; there is none yet"):
         prompt.answer("_ + 1")
     assert answers(prompt, "e1 + e2", "_ _", "2 _", "_", "⟨e1 + _⟩_1") == ["e1 + e2", "2", "4", "4", "e1"]
-    # Subscripts are none.
+    # Subscripts are not last values.
     assert answers(prompt, "a_1 = e3", "Ω_B = e12", "a_1 Ω_B", "_ == I") == [
         "",
         "",
         "I",
         "true, residual 0 of terms of size 1",
     ]
-    # What is true is no value.
+    # The outcome of an equation is not a value.
     assert prompt.answer("_") == "I"
 
 
+def test_a_function_cannot_use_the_last_value(prompt):
+    prompt.answer("e1")
+    with pytest.raises(LineError, match="a function cannot use `_`") as caught:
+        prompt.answer("f(x) = _ x")
+    assert (caught.value.start, caught.value.end) == (7, 10)
+
+
 def test_commands(prompt):
-    assert prompt.answer(":names") == "no name has a value yet; `a = 2 e1 + e2` gives one"
+    assert prompt.answer(":names") == "no names have values yet; assign one with `a = 2 e1 + e2`"
     answers(prompt, "b = e2", "a = 2 e1", "R = exp(e12)", "V(x) = ½ x·x")
     assert prompt.answer(":names").splitlines() == [
         "R = 0.54030231 + 0.84147098 e1∧e2", "V(x) = ½ x·x", "a = 2 e1", "b = e2",
@@ -98,7 +105,7 @@ def test_commands(prompt):
         prompt.answer(":quit")
 
 
-def test_what_functions_need_is_not_cleared(prompt):
+def test_names_in_use_are_not_cleared(prompt):
     answers(prompt, "c = 2", "f(x) = c x")
     with pytest.raises(LineError, match="`c` is used in the definition `c x`"):
         prompt.answer(":clear c")
@@ -107,14 +114,19 @@ def test_what_functions_need_is_not_cleared(prompt):
 
 MISTAKES = {
     "unknown name": ("2 q", 2, 3, "`q` has no value"),
-    "unknown command": (":foo a", 0, 4, "there is no command `:foo`; there are :names, :clear"),
+    "unknown command": (":foo a", 0, 4, "unknown command `:foo`; expected one of :names, :clear"),
     "unbalanced": ("(a", 0, 1, "`(` is never closed"),
     "unknown to clear": (":clear q", 7, 8, "`q` has no value"),
     "a place in a command": (":tree a + q", 10, 11, "`q` has no value"),
     "a place after a quantity": ("x = 90 deg + q", 13, 14, "`q` has no value"),
     "a place after the last value": ("x = _ + _ q", 10, 11, "`q` has no value"),
     "grades": ("cross(a, a∧b)", 9, 12, "the cross product needs a vector"),
-    "an equation as a value": ("x = a == b", 4, 10, "an equation is no value for `x`; compare with `==`"),
+    "an equation as a value": (
+        "x = a == b",
+        4,
+        10,
+        "an equation is not a value that a name can have",
+    ),
     "overflow": ("1e+300*1e+300", 0, 13, "beyond the range of floating point"),
     "an infinite value": ("x = 1e+300*1e+300", 4, 17, "beyond the range of floating point"),
     "no logarithm": ("log(a - a)", 0, 10, "no logarithm"),
@@ -122,7 +134,7 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_mistakes_have_their_place(name, prompt):
+def test_errors_have_places(name, prompt):
     answers(prompt, "a = e1", "b = e2", "a")
     line, start, end, message = MISTAKES[name]
     with pytest.raises(LineError) as caught:
@@ -202,7 +214,7 @@ def test_names_are_completed(prompt):
     assert prompt.candidates("qq") == []
 
 
-def test_completion_knows_the_functions_there_are(prompt):
+def test_completion_knows_every_function(prompt):
     prompt.answer("a = e1 + e3")
     two = {"commutator", "cross", "dot", "left_contraction", "right_contraction", "wedge"}
     one_number = {"cos", "sin", "tan"}
@@ -217,10 +229,10 @@ def test_completion_knows_the_functions_there_are(prompt):
 def test_piped_lines_are_answered_without_a_prompt():
     done = polhode("repl", input="# nothing\na = 2 e1\na a\n\nq\n:quit\nnever\n")
     assert (done.returncode, done.stdout) == (0, "4\n")
-    assert done.stderr == ("input:5:1: error: `q` has no value; those that have: a\n  |\n5 | q\n  | ^\n")
+    assert done.stderr == ("input:5:1: error: `q` has no value; names with values: a\n  |\n5 | q\n  | ^\n")
 
 
-def test_piped_bytes_that_are_no_text(tmp_path):
+def test_piped_bytes_that_are_not_utf_8(tmp_path):
     (tmp_path / "lines").write_bytes(b"e1 \xff\ne2")
     with open(tmp_path / "lines", "rb") as lines:
         done = polhode("repl", stdin=lines)
@@ -292,7 +304,7 @@ def terminal(tmp_path):
         yield terminal
 
 
-def test_a_conversation(terminal, tmp_path):
+def test_a_typed_session(terminal, tmp_path):
     assert terminal.type("speed = 2 e1\n") == "speed = 2 e1\n> "
     assert terminal.type("speed∧e2\n").endswith("\n2 e1∧e2\n> ")
     assert "no value" in terminal.type("q\n")
@@ -309,7 +321,7 @@ def test_a_conversation(terminal, tmp_path):
     assert history.splitlines() == ["speed = 2 e1", "speed∧e2", "q", "speed"]
 
 
-def test_the_history_comes_back(tmp_path):
+def test_the_history_is_restored(tmp_path):
     (tmp_path / "polhode").mkdir()
     (tmp_path / "polhode" / "history").write_text("7 e3\n")
     with terminal_of(tmp_path) as terminal:
@@ -320,13 +332,13 @@ def test_the_history_comes_back(tmp_path):
     assert (tmp_path / "polhode" / "history").read_text() == "7 e3\n"
 
 
-def test_a_history_that_cannot_be_kept_is_told_of(tmp_path):
+def test_a_history_that_cannot_be_saved_is_reported(tmp_path):
     (tmp_path / "polhode").write_text("a file where a directory should be")
     with terminal_of(tmp_path) as terminal:
         terminal.type("e1\n")
         code, shown = terminal.leave(":quit\n")
     assert code == 0
-    assert "polhode: the history is not kept: " in shown
+    assert "polhode: cannot save the history: " in shown
     assert "Traceback" not in shown
 
 
@@ -338,7 +350,7 @@ def test_the_history_is_bounded_and_shared(tmp_path):
     assert (len(lines), lines[0], lines[-1]) == (1000, "200", "x299")
 
 
-def test_where_the_history_is(monkeypatch, tmp_path):
+def test_the_path_of_the_history(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     assert _history_path() == tmp_path / "polhode" / "history"
     monkeypatch.setenv("XDG_STATE_HOME", "relative")  # which the standard has ignored

@@ -13,17 +13,17 @@ use std::path::{Path, PathBuf};
 
 /// A longer line is cut around the place.
 const LINE_SHOWN: usize = 100;
-/// How much of a cut line stands before the place.
+/// Characters of a cut line before the place.
 const BEFORE_PLACE: usize = 30;
-/// How much of a person's text a message quotes.
+/// Characters of input that a message quotes.
 const QUOTED: usize = 40;
 
-/// One thing wrong in one file.
+/// One error in one file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// The file.
     pub path: PathBuf,
-    /// Line and column, from 1, the column in characters; none when the file as a whole is wrong.
+    /// Line and column, from 1, the column in characters; none for an error about the whole file.
     pub position: Option<(usize, usize)>,
     /// What is wrong, and what to do.
     pub message: String,
@@ -90,7 +90,7 @@ pub fn marked(text: &str, span: Range<usize>) -> String {
     Diagnostic::at(Path::new(""), text, span, "").excerpt
 }
 
-/// The line with carets under `marked` characters, at least one, that have `before` others before them.
+/// The line with carets under `marked` characters, at least one, after `before` others.
 fn excerpt(line: &str, number: usize, before: usize, marked: usize) -> String {
     let length = line.chars().count();
     let first = if length > LINE_SHOWN { before.saturating_sub(BEFORE_PLACE) } else { 0 };
@@ -119,7 +119,7 @@ fn excerpt(line: &str, number: usize, before: usize, marked: usize) -> String {
     format!("\n{gutter} |\n{number} | {source}\n{gutter} | {indent}{carets}")
 }
 
-/// How a character is shown, and how many columns of a terminal that takes.
+/// A character as displayed, and its width in terminal columns.
 fn glyph(c: char) -> (std::iter::RepeatN<char>, usize) {
     let (shown, count, width) = match c {
         '\t' => (' ', 4, 4),
@@ -137,7 +137,7 @@ fn glyph(c: char) -> (std::iter::RepeatN<char>, usize) {
     (std::iter::repeat_n(shown, count), width)
 }
 
-/// A person's text between backticks for a message: cut when long, control characters escaped.
+/// Input in backticks for a message: cut when long, control characters escaped.
 pub fn quote(text: &str) -> String {
     let cut: String = text.chars().take(QUOTED).flat_map(visible).collect();
     let rest = if text.chars().nth(QUOTED).is_some() { "…" } else { "" };
@@ -162,7 +162,7 @@ pub fn alternatives(names: &[&str]) -> String {
     several.to_owned() + &list(names)
 }
 
-/// The name that `word` probably stands for: equal but for case, or within one edit per three letters.
+/// The name that `word` probably means: equal up to case, or within one edit per three letters.
 pub fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let letters = word.chars().count();
     if letters > QUOTED {

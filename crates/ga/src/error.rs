@@ -1,8 +1,8 @@
-//! Why a function has no value.
+//! Errors of functions without a value.
 
 use std::fmt;
 
-/// How far a matrix may be from a rotation and still be read as one: `max |MᵀM − 1|`.
+/// Largest deviation `max |MᵀM − 1|` of a matrix that is accepted as a rotation.
 pub const MATRIX_TOLERANCE: f64 = 1e-4;
 
 /// Why a function has no value.
@@ -37,27 +37,27 @@ pub enum MathError {
         /// Its reciprocal.
         reciprocal_condition: f64,
     },
-    /// No number times an even versor.
+    /// Not a number times an even versor.
     NotVersor {
-        /// The larger of its odd part and what in `M~M` is no number, relative to `|M|` and `|M|²`.
+        /// The larger of its odd part and the nonscalar part of `M~M`, relative to `|M|` and `|M|²`.
         deviation: f64,
     },
-    /// No bivector has this versor as its exponential, or none was found.
+    /// No bivector was found whose exponential is this versor.
     NoBivectorLogarithm,
-    /// An angle so large that its rounding is more than a turn.
+    /// The angle is so large that its rounding exceeds a turn.
     AngleTooLarge,
     /// A metric with null generators has no `I⁻¹`.
     DegenerateMetric,
-    /// Zero stands for no subspace.
+    /// Zero does not represent a subspace.
     NoSubspace,
-    /// No wedge product of vectors.
+    /// Not a wedge product of vectors.
     NotBlade {
-        /// The part that no blade accounts for, relative to `|M|`.
+        /// The part outside the nearest blade, relative to `|M|`.
         deviation: f64,
     },
     /// The result is beyond the range of floating point.
     Overflow,
-    /// A quotient by 0.
+    /// Division by 0.
     DivisionByZero,
 }
 
@@ -66,7 +66,7 @@ impl fmt::Display for MathError {
         match self {
             MathError::NotFinite => write!(f, "a component is NaN or infinite; remove such values first"),
             MathError::ZeroRotor => {
-                write!(f, "all components are zero, which is no rotor; give the identity as 1, 0, 0, 0")
+                write!(f, "all components are zero, which is not a rotor; give the identity as 1, 0, 0, 0")
             }
             MathError::NoPlane => {
                 write!(f, "a bivector of zero or non-finite size spans no plane; give a nonzero one")
@@ -94,29 +94,29 @@ impl fmt::Display for MathError {
             ),
             MathError::NotVersor { deviation } => write!(
                 f,
-                "not an even versor (a product of an even number of vectors): M ~M is no number, or M not even \
-                 (relative deviation {deviation:.1e}); logarithm and square root are known for versors only"
+                "not an even versor (a product of an even number of vectors): M ~M is not a number, or M is not even \
+                 (relative deviation {deviation:.1e}); only versors have a logarithm or square root here"
             ),
             MathError::NoBivectorLogarithm => {
-                write!(f, "no logarithm: no bivector was found that has this versor as its exponential")
+                write!(f, "no logarithm: found no bivector whose exponential is this versor")
             }
             MathError::AngleTooLarge => {
-                write!(f, "an angle beyond 2^52, whose rounding is a turn; reduce it first")
+                write!(f, "the angle exceeds 2^52, where rounding exceeds a turn; reduce it first")
             }
             MathError::DegenerateMetric => write!(
                 f,
                 "no dual: a generator squares to zero, so the pseudoscalar has no inverse; take the complement"
             ),
-            MathError::NoSubspace => write!(f, "zero stands for no subspace; give a nonzero blade"),
+            MathError::NoSubspace => write!(f, "zero does not represent a subspace; give a nonzero blade"),
             MathError::NotBlade { deviation } => write!(
                 f,
-                "not a blade (a wedge product of vectors): a part of {deviation:.1e} of it remains; give one grade, factored"
+                "not a blade (a wedge product of vectors): relative deviation {deviation:.1e}; give a wedge of vectors"
             ),
             MathError::Overflow => write!(
                 f,
                 "the result is beyond the range of floating point (1.8e308); scale the argument down"
             ),
-            MathError::DivisionByZero => write!(f, "division by zero; give a divisor that is not 0"),
+            MathError::DivisionByZero => write!(f, "division by zero; give a nonzero divisor"),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A single value of G3 that carries its grades: what a dynamic language holds.
+//! A single value of G3 with grades known at run time, as in dynamic languages.
 
 use crate::g3::rotor::Rotor;
 use crate::g3::values::{Vector, geometric};
@@ -40,7 +40,7 @@ impl Graded {
         held
     }
 
-    /// Becomes what [`Graded::from_fn`] is.
+    /// Assigns [`Graded::from_fn`] in place.
     #[inline]
     pub(crate) fn fill(&mut self, grades: Grades, component: impl FnMut(usize) -> f64) {
         *self = Graded { components: [0.0; 8], grades };
@@ -48,8 +48,7 @@ impl Graded {
         places.zip((0..8).map(component)).for_each(|(held, x)| *held = x);
     }
 
-    /// Becomes the other, field by field: a copy of the whole, right after its grades were written, would wait
-    /// for them.
+    /// Assigns another value field by field: a copy of the whole struct would stall on grades just written.
     #[inline]
     pub(crate) fn assign(&mut self, other: &Graded) {
         self.components = other.components;
@@ -104,8 +103,8 @@ impl Graded {
         out
     }
 
-    /// Becomes the product of two values by a plan of G3 for their grades. In place: components written one by
-    /// one are slow to be copied at once.
+    /// Assigns the product of two values by a plan of G3 for their grades. In place, since components just written one by
+    /// one are slow to copy.
     #[inline]
     pub(crate) fn set_product(&mut self, plan: &Plan, a: &Graded, b: &Graded) {
         self.grades = plan.grades;
@@ -116,13 +115,13 @@ impl Graded {
         }
         self.components = [0.0; 8];
         for term in &plan.terms {
-            // The masks only tell the compiler that no index leaves the eight.
+            // The masks let the compiler omit bounds checks.
             self.components[term.out & 7] +=
                 f64::from(term.sign) * a.components[term.a & 7] * b.components[term.b & 7];
         }
     }
 
-    /// Each component changed.
+    /// Applies a function to each component.
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Graded {
         let mut out = *self;
         for x in &mut out.components[..size(self.grades)] {
@@ -131,7 +130,7 @@ impl Graded {
         out
     }
 
-    /// Each component with that of the other value, over the grades of both.
+    /// Combines components of two values, over the grades of both.
     pub fn zip(&self, other: &Graded, f: impl Fn(f64, f64) -> f64) -> Graded {
         if self.grades == other.grades {
             let mut sum = Graded { components: [0.0; 8], grades: self.grades };
@@ -165,7 +164,7 @@ impl Graded {
         out
     }
 
-    /// Becomes `R A ~R`.
+    /// Assigns `R A ~R`.
     #[inline]
     pub(crate) fn turn(&mut self, rotor: Rotor) {
         let mut next = 0;
@@ -181,7 +180,7 @@ impl Graded {
     }
 }
 
-/// How many components the grades have.
+/// The number of components of some grades.
 pub(crate) fn size(grades: Grades) -> usize {
     const SIZES: [u8; 16] = [0, 1, 3, 4, 3, 4, 6, 7, 1, 2, 4, 5, 4, 5, 7, 8];
     usize::from(SIZES[usize::from(grades.0 & 15)])
@@ -197,7 +196,7 @@ mod tests {
         (0..count).map(|i| ((seed * 31 + i) as f64 * 0.7).sin()).collect()
     }
 
-    /// Every product of every pair of sets of grades gives the numbers of the batch kernels, bit for bit.
+    /// Every product of every pair of sets of grades equals the batch kernels bit for bit.
     #[test]
     fn single_values_equal_the_batches() {
         for (ga, gb) in (1..16).flat_map(|a| (1..16).map(move |b| (Grades(a), Grades(b)))) {

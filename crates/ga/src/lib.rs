@@ -1,4 +1,4 @@
-//! Geometric algebra: the definition, and the typed values of 3-d space.
+//! Geometric algebra of any signature, typed values of 3-d space, and formulas.
 //!
 //! A geometric algebra is spanned by *blades*, products of distinct orthonormal generators
 //! `e1 e2 … en`. Multiplying two blades needs two facts only: generators anticommute, and each squares
@@ -14,12 +14,12 @@
 //!
 //! so that the three components of a bivector equal those of its dual axial vector: `e2e3 = I e1`.
 //!
-//! Rooms: [`table`] (blades, signatures), [`product`] (which grades of a product each named product keeps), [`graded`]
-//! (a value that carries its grades), [`g3`] (the typed values of 3-d space: `Vector`, `Bivector`, `Trivector`,
+//! Modules: [`table`] (blades, signatures), [`product`] (the grades that each named product keeps), [`graded`]
+//! (a value with its grades), [`g3`] (the typed values of 3-d space: `Vector`, `Bivector`, `Trivector`,
 //! `Multivector`, rotors; inverse, exp, log, square root), [`general`] (the same functions in any algebra; complements,
-//! join and meet), [`simd`] (bodies side by side, numbers of twice the precision, threads), [`rows`] (products and
-//! functions over rows of numbers), [`formula`] (the language of the handout), [`error`] (why a function has no value),
-//! [`diagnostic`] (errors that show their place in a text).
+//! join and meet), [`simd`] (lanes, double-double arithmetic, threads), [`rows`] (products and
+//! functions over rows of numbers), [`formula`] (the language of the handout), [`error`] (errors of functions),
+//! [`diagnostic`] (errors with a place in a text).
 //!
 //! Conventions: a rotor `R = exp(−Bθ/2)` turns by `θ` in the sense of the unit bivector `B`, actively,
 //! `a' = R a ~R`; `S*R` applies `R` first. `dual(A) = A I⁻¹`, so the dual of `a∧b` is the cross product.

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 /// Most generators an [`Algebra`] may have; its tables then have 4⁸ entries.
 pub const MAX_GENERATORS: usize = 8;
 
-/// How many generators square to +1, −1 and 0, in this order.
+/// The numbers of generators with square +1, −1 and 0, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Signature {
     /// Generators with square +1; they come first.
@@ -110,7 +110,7 @@ impl Algebra {
         Some(Algebra { signature, blades, index_of_bits })
     }
 
-    /// The signature it was made from.
+    /// Its signature.
     pub fn signature(&self) -> Signature {
         self.signature
     }
@@ -133,7 +133,7 @@ impl Algebra {
 mod tests {
     use super::*;
 
-    /// The whole table of G3 as a person reads it: row times column.
+    /// The whole table of G3 as text: row times column.
     #[test]
     fn g3_table_is_pinned() {
         let names = ["1", "e1", "e2", "e3", "e23", "e31", "e12", "I"];

@@ -11,6 +11,8 @@ mod support;
 /// The compiled core of Polhode; private, called through `polhode`.
 #[pymodule]
 mod _native {
+    use polhode_ga::formula::session;
+
     #[pymodule_export]
     use crate::algebra::rows::{
         from_pauli, function, norm, product, rotor_apply, rotor_compose, rotor_exp, rotor_from_components,
@@ -44,12 +46,16 @@ mod _native {
     #[pymodule_export]
     use crate::formula::Formula;
     #[pymodule_export]
-    use crate::formula::program::{Program, canonical, marked};
+    use crate::formula::line::SessionLine;
+    #[pymodule_export]
+    use crate::formula::program::{Program, agreement_tolerance, canonical, marked};
 
     #[pymodule_export]
     use crate::algebra::signature::{Algebra, g3_object};
     #[pymodule_export]
     use crate::algebra::value::{Multivector, Rotor};
+    #[pymodule_export]
+    use crate::support::face::register;
     #[pymodule_export]
     use crate::support::pool::{Buffer, buffer};
 
@@ -58,7 +64,16 @@ mod _native {
     #[pymodule_export]
     use crate::scene::{SceneError, read_scene, scene_mesh};
     #[pymodule_export]
-    use crate::support::text::{diagnostic, near_unit, quantities};
+    use crate::support::text::diagnostic;
+
+    #[pymodule_export]
+    const EQUATION_AS_VALUE: &str = session::EQUATION_AS_VALUE;
+    #[pymodule_export]
+    const LAST_VALUE: &str = session::LAST_VALUE;
+    #[pymodule_export]
+    const NO_LAST_VALUE: &str = session::NO_LAST_VALUE;
+    #[pymodule_export]
+    const NOT_FINITE: &str = session::NOT_FINITE;
 
     /// The version of the package.
     #[pymodule_export]

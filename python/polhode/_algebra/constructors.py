@@ -158,3 +158,7 @@ e1 = vector([1.0, 0.0, 0.0])
 e2 = vector([0.0, 1.0, 0.0])
 e3 = vector([0.0, 0.0, 1.0])
 I = trivector(1.0)  # noqa: E741  # the handout's name
+
+
+_native.register("as_vectors", as_vectors)
+_native.register("as_bivectors", as_bivectors)

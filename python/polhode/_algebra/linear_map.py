@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from polhode import _native
 from polhode._algebra.constructors import bivector, e1, e2, e3, pure, scalar, trivector, vector
 from polhode._algebra.multivector import Multivector
 from polhode._support.arrays import Array, Shape, as_floats, at_index, first_index, frozen
@@ -260,3 +261,6 @@ def _times(matrix: Array, components: Array) -> Array:
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         product: Array = (matrix @ components[..., np.newaxis])[..., 0]
     return product
+
+
+_native.register("LinearMap", LinearMap)

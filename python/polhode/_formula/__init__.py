@@ -1,1 +1,1 @@
-"""Formulas as on paper."""
+"""Formulas in the notation of the handout."""

@@ -1,43 +1,42 @@
-"""Whether the sides of an equation agree, and how far they are apart."""
+"""Agreement of the sides of an equation, for any coefficients; the core has the rules."""
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
+from polhode import _native
 from polhode._algebra.coefficients import namespace
 from polhode._algebra.multivector import Multivector
-from polhode._formula.interpreter import Step, Walk
+from polhode._formula.interpreter import Walk
 from polhode._generic.exact import is_multiprecision, is_zero, sqrt
 from polhode._generic.numeric import Numeric, components
 from polhode._support.arrays import is_float
 from polhode._support.extras import register_pytree
 
-_SINGLE = 2.0**-23
-
 
 class Agreement:
-    """What an equation evaluates to: whether its sides agree, row by row.
+    """The value of an equation: whether its sides agree, row by row.
 
-    They agree where ``residual <= rtol * size``; ``bool()`` tells whether they do in all rows. Exact numbers
+    They agree where ``residual <= rtol * size``; ``bool()`` is true if they agree in all rows. Exact numbers
     must be equal, and the difference of symbolic sides must vanish identically.
 
     Attributes
     ----------
     residual
-        ``|lhs − rhs|``, the size of the components ``√Σ c²``: a float, or an array of the batch shape. Of
-        several pairs of sides, as in an equation in free indices, that which is worst beside its size.
+        ``|lhs − rhs|``, the norm of the components ``√Σ c²``: a float, or an array of the batch shape. Of
+        several pairs of sides, as in an equation in free indices, the largest relative to its size.
     size
-        Of the terms that make up the sides: of a sum the sum of its terms' sizes, of a product that of one
-        factor's terms times the size of the other. So ``a∧b + b∧a = 0`` is measured by ``2|a||b|``. None for
-        symbols.
+        The size of the terms that make up the sides: of a sum the sum of its terms' sizes, of a product the
+        size of one factor's terms times the norm of the other. So ``a∧b + b∧a = 0`` is compared with
+        ``2|a||b|``. None for symbols.
     rtol
-        1e-9 for float64, as in `is_close`; 1e-4 for float32; 0 for exact numbers and symbols. `within` takes
-        another.
+        1e-9 for float64, as in `is_close`; 1e-4 for float32; 0 for exact numbers and symbols. `within`
+        changes it.
     """
 
     __slots__ = ("residual", "rtol", "size")
@@ -55,9 +54,9 @@ class Agreement:
     def within(self, rtol: float) -> Agreement:
         """Return the same with another relative tolerance."""
         if not 0 <= rtol < math.inf:
-            raise ValueError(f"rtol must be a finite number from 0 on, got {rtol!r}")
+            raise ValueError(f"rtol must be finite and not negative, got {rtol!r}")
         if self.size is None:
-            raise TypeError("symbols agree identically or not; substitute numbers to compare to a tolerance")
+            raise TypeError("symbols agree identically or not at all; substitute numbers to use a tolerance")
         return Agreement(self.residual, self.size, rtol)
 
     def __bool__(self) -> bool:
@@ -69,13 +68,13 @@ class Agreement:
             holds = np.asarray(self.holds)
             residual = np.asarray(self.residual)
             size = None if self.size is None else np.asarray(self.size)
-        except Exception:  # traced or lazy arrays have no numbers to show; each library has its own error
+        except Exception:  # traced or lazy arrays have no numbers; each library raises its own error
             return f"Agreement(residual {self.residual!r}, size {self.size!r}, rtol {self.rtol:g})"
-        return f"Agreement({_told(holds, residual, size)}, rtol {self.rtol:g})"
+        return f"Agreement({_summary(holds, residual, size)}, rtol {self.rtol:g})"
 
 
-def _told(holds: Any, residual: Any, size: Any) -> str:
-    """Return in how many rows the sides agree, and the residual of the worst."""
+def _summary(holds: Any, residual: Any, size: Any) -> str:
+    """Return the number of rows in which the sides agree, and the largest relative residual."""
     if not holds.size:
         return "no rows"
     if size is None:
@@ -84,7 +83,7 @@ def _told(holds: Any, residual: Any, size: Any) -> str:
     else:
         with np.errstate(divide="ignore", invalid="ignore"):
             worst = int(np.argmax(np.where(residual == 0, 0, residual / size)))
-        beside = f" beside terms of size {size.flat[worst]:.3g}"
+        beside = f" of terms of size {size.flat[worst]:.3g}"
     number = residual.flat[worst]
     shown = f"residual {number:.3g}" if isinstance(number, float) else f"residual {number}"
     if not holds.ndim:
@@ -94,17 +93,19 @@ def _told(holds: Any, residual: Any, size: Any) -> str:
     return f"holds in {rows} rows, largest {shown}{beside} at index {index}"
 
 
-# --- how it is found
-
-
-def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
-    """Return the agreement of the steps that are sides of an equation, group by group."""
+def agreement(walk: Walk, program: _native.Program) -> Agreement:
+    """Return the agreement of the sides of an equation."""
+    groups = program.results
     sides = {i for group in groups for i in group}
     values: dict[int, Multivector] = {}
-    sizes: list[Any] = []
-    for number, (step, operands, value) in enumerate(walk):
+    sizes: list[tuple[Any, Any]] = []  # of each step the norm, and the size of its terms
+    for number, (step, _, value) in enumerate(walk):
         if not walk.symbolic:
-            sizes.append(_size(walk, step, operands, value, [sizes[i] for i in step.operands]))
+            length = _length(walk, value._data)
+            of = _length(walk, walk.inputs[step.detail]) if step.name == "map" else length
+            operands = [sizes[i] for i in step.operands]
+            size = program.term_size(number, of, operands, walk.kind.eps, _floats(walk)[0])
+            sizes.append((length, size))
         if number in sides:
             values[number] = value
     pairs = [(group[0], other) for group in groups for other in group[1:]]
@@ -113,7 +114,7 @@ def agreement(walk: Walk, groups: Sequence[Sequence[int]]) -> Agreement:
         return Agreement(_first([_symbolic_residual(d) for d in differences]), None, 0.0)
     xp, kind = _floats(walk)
     found = [
-        xp.broadcast_arrays(_residual(walk, d), xp.maximum(sizes[a], sizes[b]))
+        xp.broadcast_arrays(_residual(walk, d), xp.maximum(sizes[a][1], sizes[b][1]))
         for d, (a, b) in zip(differences, pairs, strict=True)
     ]
     residual, size = _worst(kind, [(r, s) for r, s in found])
@@ -133,24 +134,21 @@ def _restored(rtol: float, leaves: Iterable[Any]) -> Agreement:
 
 
 def _floats(walk: Walk) -> tuple[Any, Numeric]:
-    """Return the namespace and the arithmetic of sizes, which are floats: of NumPy for exact numbers."""
+    """Return the namespace and arithmetic of sizes, which are floats; NumPy's for exact numbers."""
     kind = Numeric(np) if walk.kind.exact or walk.kind.native else walk.kind
     return kind.xp, kind
 
 
 def _rtol(walk: Walk, differences: list[Any]) -> float:
-    """As `is_close`; a formula has at most 10,000 steps, and 64 roundings in each of them make 1.4e-10.
-
-    Multiprecision has as many digits in reserve; single precision, half as long, has three.
-    """
-    if not walk.kind.exact:
-        return 1e-4 if walk.kind.eps >= _SINGLE else 1e-9
-    rounded = [x for data in differences for x in data.flat if isinstance(x, float) or is_multiprecision(x)]
-    return 1e-9 / 2.0**-52 * walk.kind.eps if rounded else 0.0
+    """Return the tolerance of floats; 0 for exact numbers that were not rounded."""
+    rounded = not walk.kind.exact or any(
+        isinstance(x, float) or is_multiprecision(x) for data in differences for x in data.flat
+    )
+    return _native.agreement_tolerance(walk.kind.eps) if rounded else 0.0
 
 
 def _worst(kind: Numeric, pairs: list[tuple[Any, Any]]) -> tuple[Any, Any]:
-    """Return the residual that is largest beside its size, and that size."""
+    """Return the residual that is largest relative to its size, and that size."""
     (residual, size), *others = pairs
     for r, s in others:
         worse = (r * size > residual * s) | ((s == 0) & (r > 0)) | (r != r)
@@ -159,7 +157,7 @@ def _worst(kind: Numeric, pairs: list[tuple[Any, Any]]) -> tuple[Any, Any]:
 
 
 def _first(residuals: list[Any]) -> Any:
-    """Return the first that is not 0, row by row."""
+    """Return the first nonzero residual, row by row."""
     found, *others = residuals
     for other in others:
         found = np.where(np.equal(found, 0).astype(bool), other, found)
@@ -167,7 +165,7 @@ def _first(residuals: list[Any]) -> Any:
 
 
 def _symbolic_residual(data: Any) -> Any:
-    """Return 0 for a difference that vanishes identically, row by row; else its size."""
+    """Return the norm of a difference, row by row; 0 if it vanishes identically."""
     result = np.zeros(data.shape[:-1], dtype=object)
     for index in np.ndindex(result.shape):
         row = [x for x in map(_without_floats, data[index]) if not is_zero(x)]
@@ -177,7 +175,7 @@ def _symbolic_residual(data: Any) -> Any:
 
 
 def _without_floats(x: Any) -> Any:
-    """Return an expression in which each float is the ratio that it is, so that digits are not cut off."""
+    """Return an expression with floats as exact ratios, so that no digits are lost."""
     sympy = sys.modules["sympy"]
     if not isinstance(x, sympy.Expr):
         return x
@@ -185,14 +183,11 @@ def _without_floats(x: Any) -> Any:
 
 
 def _residual(walk: Walk, data: Any) -> Any:
-    """Return the size of a difference; of exact numbers that are not equal, never 0."""
+    """Return the norm of a difference; never 0 for exact numbers that differ."""
     size = _length(walk, data)
     if not walk.kind.exact:
         return size
     return np.where((data != 0).any(axis=-1) & (size == 0), math.ulp(0.0), size)
-
-
-# --- the size of terms
 
 
 def _length(walk: Walk, data: Any) -> Any:
@@ -208,63 +203,3 @@ def _float(x: Any) -> float:
         return float(x)
     except OverflowError:
         return math.inf
-
-
-def _size(walk: Walk, step: Step, operands: tuple[Multivector, ...], value: Multivector, s: list[Any]) -> Any:
-    """Return the size of the terms that make up a step: its rounding is a few ulps of that.
-
-    Functions stretch the rounding of their argument by their derivative.
-    """
-    rule = _RULES.get(step.name)
-    if rule is not None:
-        return rule(*s)
-    if step.name == "map":
-        return s[0] * _length(walk, walk.inputs[step.detail])
-    xp, _ = _floats(walk)
-    if step.name in _BILINEAR:
-        return _BILINEAR[step.name](xp, *(_length(walk, x._data) for x in operands), *s)
-    size = _length(walk, value._data)
-    if step.name in _PERIODIC:
-        # Up to where the tolerance is a thousandth; beyond it would hide any difference.
-        most = 10.0 if not walk.kind.exact and walk.kind.eps >= _SINGLE else 1e6
-        turned = s[0] * abs(step.detail) if step.name == "power" else s[0]
-        return _PERIODIC[step.name](size, xp.minimum(turned, xp.full_like(turned, most)))
-    if step.name in _STRETCHED:
-        return _STRETCHED[step.name](size, _length(walk, operands[-1]._data), *s)
-    return size
-
-
-_RULES: dict[str, Callable[..., Any]] = {
-    "add": lambda s, t: s + t,
-    "subtract": lambda s, t: s + t,
-    "negate": lambda s: s,
-    "reverse": lambda s: s,
-    "part": lambda s: s,
-    "dual": lambda s: s,
-    "undual": lambda s: s,
-    "norm": lambda s: s,
-}
-
-# From the sizes of the two operands, and those of their terms: to first order, AB changes by A dB + dA B.
-_BILINEAR: dict[str, Callable[..., Any]] = {
-    "product": lambda xp, a, b, s, t: xp.maximum(a * t, s * b),
-    "compose": lambda xp, a, b, s, t: xp.maximum(a * t, s * b),
-    "turn": lambda xp, a, b, s, t: xp.maximum(a * a * t, a * s * b),
-    "divide": lambda xp, a, b, s, t: xp.maximum(s / b, a / b * (t / b)),
-}
-
-# From the size of the value, that of the last operand, and those of the operands' terms.
-_STRETCHED: dict[str, Callable[..., Any]] = {
-    "inverse": lambda v, a, s: v * (v * s),
-    "log": lambda v, a, s: v + s / a,
-    "sqrt": lambda v, a, s: v * (1 + s / (a + (a == 0))),
-}
-
-# From the size of the value, and that of the terms of the argument.
-_PERIODIC: dict[str, Callable[..., Any]] = {
-    "power": lambda v, s: v + s,
-    "exp": lambda v, s: v * (1 + s),
-    "sin": lambda v, s: v + s,
-    "cos": lambda v, s: v + s,
-    "tan": lambda v, s: v + s * (1 + v * v),
-}

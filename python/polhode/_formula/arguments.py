@@ -1,4 +1,4 @@
-"""What a formula is given for its names."""
+"""Arguments of formulas: values by name, and their kinds."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._formula.errors import FormulaError
 from polhode._support.arrays import is_float
 
-# A name, grades as bits, and whether it stands for a value, a rotor, or a linear map of these grades.
+# A name, grades as bits, and whether it is a value, a rotor, or a linear map of these grades.
 Kind = tuple[str, int, int]
 
 _VALUE, _ROTOR, _MAP = 0, 1, 2
@@ -36,9 +36,9 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class Given:
-    """The algebra of all values, their kinds, and the values: multivectors, linear maps, Python's numbers.
+    """The algebra of all values, their kinds, and the values: multivectors, linear maps, Python numbers.
 
-    What no formula takes is refused, each with its reason.
+    Values that no formula accepts are in `refused`, each with its error.
     """
 
     algebra: Any
@@ -47,18 +47,18 @@ class Given:
     refused: dict[str, TypeError]
 
     def inputs(self, program: _native.Program) -> list[Any]:
-        """Return what a program takes: multivectors, and of maps matrices (..., 9), determinants (..., 1)."""
+        """Return the inputs of a program: values; for maps, matrices (..., 9), determinants (..., 1)."""
         self._require_one_shape(program)
         return [self._input(self.values[place], kind, grade) for place, kind, grade in program.inputs]
 
     def narrowed(self) -> Given:
-        """Return the same with single values of those grades alone in which they are not zero."""
+        """Return the same with single values reduced to their nonzero grades."""
         values = [_narrowed(value) for value in self.values]
         kinds = [(name, *_kind(value)) for (name, _, _), value in zip(self.kinds, values, strict=True)]
         return Given(self.algebra, kinds, values, self.refused)
 
     def with_scalars(self, program: _native.Program) -> Given:
-        """Return the same with scalars for Python's numbers, in the precision of the values that are used."""
+        """Return the same with Python numbers as scalars, in the precision of the values in use."""
         used = [self.values[place] for place, _, _ in program.inputs]
         data = [value._data for value in used if isinstance(value, Multivector)]
         data += [value.matrix for value in used if isinstance(value, LinearMap)]
@@ -76,14 +76,14 @@ class Given:
         return Multivector._of(scalars(number, like), 1, self.algebra)
 
     def _require_one_shape(self, program: _native.Program) -> None:
-        """Raise for batches that do not broadcast."""
+        """Raise a ValueError for batches that do not broadcast."""
         used = dict.fromkeys(place for place, _, _ in program.inputs)
         shapes = {self.kinds[place][0]: _batch(self.values[place]) for place in used}
         try:
             np.broadcast_shapes(*shapes.values())
         except ValueError:
-            told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
-            raise ValueError(f"the batches of values do not broadcast: {told}") from None
+            shown = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+            raise ValueError(f"shapes of values do not broadcast: {shown}") from None
 
     def _input(self, value: Any, kind: str, grade: int) -> Any:
         if kind == "value":
@@ -99,7 +99,7 @@ def _batch(value: Any) -> tuple[int, ...]:
 
 
 def given(core: _native.Formula, values: Mapping[str, Any] | None, named: dict[str, Any]) -> Given:
-    """Return the values by name. Those that no formula takes are told of only if this one needs them."""
+    """Return the values by name. An unusable value is an error only if the formula uses it."""
     everything = _together(values, named)
     algebra, owner = _main_algebra(core, everything)
     known: dict[str, Any] = {}
@@ -122,14 +122,14 @@ def compiled(core: _native.Formula, known: Given) -> tuple[_native.Program, Give
         for name, reason in known.refused.items():
             if wanted is not None and _native.canonical(name) == wanted:
                 raise reason from None
-        # As for methods, a single value without a scalar part, such as e1*e2, counts as a bivector.
+        # As in methods, a single value with a zero scalar part, such as e1*e2, counts as a bivector.
         known = known.narrowed()
         program = core.program(known.algebra, known.kinds)
     return program, known.with_scalars(program)
 
 
 def _main_algebra(core: _native.Formula, values: dict[str, Any]) -> tuple[Any, str]:
-    """Return the algebra of the first value whose name the text may have, or 3-d space; and what has it."""
+    """Return the algebra of the first value that the text may use, or 3-d space; and whose it is."""
     if core.algebra is not None:
         return core.algebra, "the formula"
     letters = _folded("".join([core.text, *(body for _, body in core.definitions)]))
@@ -140,12 +140,12 @@ def _main_algebra(core: _native.Formula, values: dict[str, Any]) -> tuple[Any, s
 
 
 def _folded(text: str) -> set[str]:
-    """Return the characters of a text, in whatever style of letters."""
+    """Return the characters of a text, without their style (bold, italic, ...)."""
     return set(unicodedata.normalize("NFKD", text))
 
 
 def _may_have(letters: set[str], name: str) -> bool:
-    """Whether a text of these letters may have a name in it, whose subscripts may be written otherwise."""
+    """Whether a text of these letters may contain a name; subscripts have several spellings."""
     return {c for c in _folded(name.partition("(")[0].partition("_")[0]) if c.isalpha()} <= letters
 
 
@@ -157,13 +157,13 @@ def _narrowed(value: Any) -> Any:
 
 
 def kinds_of(algebra: Any, kinds: dict[str, Any]) -> tuple[Any, list[Kind]]:
-    """Return the algebra and the kinds of names, given by values or by what they would be."""
+    """Return the algebra and the kinds of names, given as values or described."""
     values = {name: kind for name, kind in kinds.items() if isinstance(kind, Multivector)}
     algebra = _common_algebra(algebra, values)
-    return algebra, [(name, *_said(name, kind, algebra)) for name, kind in kinds.items()]
+    return algebra, [(name, *_described(name, kind, algebra)) for name, kind in kinds.items()]
 
 
-def _said(name: str, kind: Any, algebra: Any) -> tuple[int, int]:
+def _described(name: str, kind: Any, algebra: Any) -> tuple[int, int]:
     if isinstance(kind, Multivector | LinearMap):
         return _kind(kind)
     if isinstance(kind, str):
@@ -182,7 +182,7 @@ def _said(name: str, kind: Any, algebra: Any) -> tuple[int, int]:
             raise ValueError(f"{name} has grade {grade}, but {algebra} has grades 0 to {n}")
         mask |= 1 << grade
     if not mask:
-        raise ValueError(f"{name} has no grades; zero is a scalar, grade 0")
+        raise ValueError(f"{name} has no grades; zero is a scalar, of grade 0")
     return mask, _VALUE
 
 
@@ -198,29 +198,29 @@ def _together(values: Mapping[str, Any] | None, named: dict[str, Any]) -> dict[s
     if values is None:
         return named
     if not isinstance(values, Mapping):
-        raise TypeError(f"values are given as keywords or as a mapping by name, got {type(values).__name__}")
+        raise TypeError(f"expected values as keywords or as a mapping by name, got {type(values).__name__}")
     for name in values:
         if not isinstance(name, str):
-            raise TypeError(f"values are given by name, got {name!r}, which is no text")
+            raise TypeError(f"names of values must be strings, got {name!r}")
     twice = [name for name in values if name in named]
     if twice:
-        raise TypeError(f"{twice[0]!r} is given twice, in the mapping and as a keyword")
+        raise TypeError(f"{twice[0]!r} is given both in the mapping and as a keyword")
     return {**values, **named}
 
 
 def _algebra_of(value: Multivector | LinearMap) -> Any:
-    """Return the algebra of a value; linear maps are of 3-d space."""
+    """Return the algebra of a value; linear maps belong to 3-d space."""
     return value.algebra if isinstance(value, Multivector) else algebra_of(3)
 
 
 def _require_algebra(name: str, value: Multivector | LinearMap, algebra: Any, owner: str) -> None:
     own = _algebra_of(value)
     if own is not algebra:
-        raise TypeError(f"the values are of different algebras: {owner} of {algebra}, {name} of {own}")
+        raise TypeError(f"values must be of one algebra, got {owner} of {algebra} and {name} of {own}")
 
 
 def _common_algebra(algebra: Any, values: dict[str, Multivector]) -> Any:
-    """Return the one algebra of all values; of 3-d space if there are none."""
+    """Return the common algebra of all values; 3-d space if there are none."""
     owner = "the formula"
     for name, value in values.items():
         if algebra is None:
@@ -238,9 +238,9 @@ def _value(name: str, value: Any, algebra: Any, owner: str) -> Any:
     data = scalars(value, None)
     if data is not None:
         return Multivector._of(data, 1, algebra)
-    remedy = "values are multivectors, linear maps, numbers, and arrays as batches of numbers"
+    remedy = "expected a multivector, a linear map, a number, or an array as a batch of numbers"
     if callable(value):
-        remedy = "formulas call linear maps (ph.LinearMap.from_function) and functions they define themselves"
+        remedy = "formulas call linear maps (ph.LinearMap.from_function) and functions given by `define`"
     elif isinstance(value, list | tuple):
         remedy = "wrap components with ph.vector, a batch of numbers with np.array"
     kind = f"an array of {value.dtype}" if isinstance(value, np.ndarray) else f"a {type(value).__name__}"

@@ -1,4 +1,4 @@
-"""Why a text is no formula, or a formula has no value."""
+"""The exception for errors in formulas."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from polhode import _native
 
 
 class FormulaError(ValueError):
-    """What is wrong with a formula, or with the values it was given, with the place in the text.
+    """An error in a formula or in the values given to it, with its place in the text.
 
     Attributes
     ----------
     message
         What is wrong, and what to do.
     text, span
-        The formula, and which of its characters are meant: the first, and the one after the last.
+        The formula, and the place in it: the first character, and the one after the last.
     """
 
     def __init__(self, message: str, text: str, span: tuple[int, int]) -> None:
@@ -22,3 +22,6 @@ class FormulaError(ValueError):
 
     def __str__(self) -> str:
         return self.message + _native.marked(self.text, self.span)
+
+
+_native.register("FormulaError", FormulaError)

@@ -1,4 +1,4 @@
-"""Formulas as on paper, compiled once and called on values of any kind."""
+"""Formulas in the notation of the handout, compiled once and called on values of any kind."""
 
 from __future__ import annotations
 
@@ -26,28 +26,27 @@ _G3 = algebra_of(3)
 
 
 class Formula:
-    """A formula as on paper: ``f = ph.formula("R (x·Ω) ~R")``, then ``f(R=R, x=x, Ω=Ω)``.
+    """A formula as written on paper: ``f = ph.formula("R (x·Ω) ~R")``, then ``f(R=R, x=x, Ω=Ω)``.
 
     Juxtaposition is the geometric product; ``∧`` (``^``), ``·`` (``|``) and ``×``, the commutator, bind
     tighter than it. One-letter names may run together: ``RaR̃`` is ``R a ~R``.
 
-    Called with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping:
+    Call it with values by name, as keywords or, for names such as ``R'`` and ``a∥``, in a mapping:
     multivectors, rotors, linear maps, numbers, and arrays as batches of numbers. Batches broadcast,
-    coefficients are of any kind; grades are checked before anything is computed. Names that the formula does
-    not use may have any values. An equation evaluates to an
-    `Agreement`.
+    coefficients are of any kind, and grades are checked before anything is computed. Names that the formula
+    does not use are ignored. The value of an equation is an `Agreement`.
 
-    Made by `formula`; equal to any of the same text, algebra and definitions.
+    Create it with `formula`. Formulas of the same text, algebra and definitions are equal.
     """
 
-    # The native function in a slot is what a call of the formula calls; JAX wants weak references.
+    # A native function in this slot makes calls fast; JAX needs weak references.
     __slots__ = ("__call__", "__weakref__", "_core")
     __call__: Callable[..., Any]
     _core: _native.Formula
 
     def __init__(self, core: _native.Formula) -> None:
         if not isinstance(core, _native.Formula):
-            raise TypeError("a Formula is made by ph.formula(text)")
+            raise TypeError("create a Formula with ph.formula(text)")
         self._core = core
         self.__call__ = core.caller()
 
@@ -57,43 +56,43 @@ class Formula:
         return self._core.text
 
     def __str__(self) -> str:
-        """The formula in canonical spelling, as on paper."""
+        """The formula in canonical spelling."""
         return self.spelled("unicode")
 
     @property
     def ascii(self) -> str:
-        """The formula in ASCII spelling, but for names, which stay."""
+        """The formula in ASCII spelling; names stay as they are."""
         return self.spelled("ascii")
 
     @property
     def latex(self) -> str:
-        """The formula as LaTeX, for mathematics mode."""
+        """The formula in LaTeX, for math mode."""
         return self.spelled("latex")
 
     def _repr_latex_(self) -> str:
         return f"${self.latex}$"
 
-    # --- what is known of it before there are values
+    # --- before evaluation
 
     def spelled(self, style: str, /, **kinds: Any) -> str:
-        """Return it in canonical spelling, "unicode", "ascii" or "latex", for names as `tree` explains.
+        """Return the formula in canonical spelling, "unicode", "ascii" or "latex".
 
-        So it is known which letters stand side by side: without any `kinds`, each word counts as one name.
+        `kinds`, as for `tree`, tell adjacent names from one long name; without any, each word is one name.
         """
         return self._core.spelled(style, *kinds_of(self._core.algebra, kinds))
 
     def tree(self, /, **kinds: Any) -> dict[str, Any]:
         """Return the syntax tree: nested dictionaries of kind, text, span (in characters), grades, children.
 
-        `kinds` say what the names stand for: a grade or several, ``a=1, M=(0, 2)``; ``R="rotor"``;
-        ``inertia="map of bivectors"``, ``"map of vectors"``; or a value. Without any, each word counts as
-        one name of a value of any grades.
+        `kinds` are the kinds of the names: one or several grades, ``a=1, M=(0, 2)``; ``R="rotor"``;
+        ``inertia="map of bivectors"``, ``"map of vectors"``; or a value. Without any, each word is one name
+        of a value of any grades.
         """
         algebra, items = kinds_of(self._core.algebra, kinds)
         return self._core.tree(algebra, items)
 
     def grades(self, /, **kinds: Any) -> tuple[int, ...]:
-        """Return the grades of the value, for names that stand for what `tree` explains."""
+        """Return the grades of the value for names of these kinds, as for `tree`."""
         program = self._program(kinds)
         masks = [step[3] for step in program.steps]
         mask = 0
@@ -103,7 +102,7 @@ class Formula:
         return tuple(k for k in range(mask.bit_length()) if mask >> k & 1)
 
     def steps(self, /, **kinds: Any) -> list[str]:
-        """Return what is computed, step by step, for names that stand for what `tree` explains."""
+        """Return the steps of the computation for names of these kinds, as for `tree`."""
         program = self._program(kinds)
         return described(self.text, steps_of(program), program.names)
 
@@ -114,17 +113,15 @@ class Formula:
     # --- derivatives
 
     def grad(self, *names: str) -> Callable[..., Any]:
-        """Return the function that gives the gradients by these names, through JAX; of a scalar formula.
+        """Return a function for the gradients of a scalar formula with respect to these names, by JAX.
 
-        It takes values as the formula does. The gradient by a name is of the grades of its value, components
-        being the derivatives by components; several names give a tuple. NumPy's floats give NumPy's floats of
-        double precision; arrays of JAX, traced ones too, theirs. In a batch each row has its own gradient.
+        It takes values as the formula does. The gradient by a name has the grades of its value, and its
+        components are the derivatives by components; several names give a tuple. NumPy arrays give float64
+        NumPy arrays; JAX arrays, also traced ones, give JAX arrays. Each row of a batch has its own gradient.
         """
         from polhode._formula.gradient import gradient
 
         return gradient(self._core, names)
-
-    # --- the rest
 
     def __repr__(self) -> str:
         return f"ph.formula({self.text!r})"
@@ -144,28 +141,33 @@ class Formula:
 
 
 def formula(text: str, algebra: Algebra | None = None, define: Mapping[str, str] | None = None) -> Formula:
-    """Return a formula, ready to be called on values; a `FormulaError` if the text is none.
+    """Return a formula, ready to be called on values.
 
     Parameters
     ----------
     text
-        As on paper, such as ``"R v ~R + (a∧b)·c"``; an equation has sides, ``"~R R = 1"``.
+        The formula, such as ``"R v ~R + (a∧b)·c"``, or an equation, ``"~R R = 1"``.
     algebra
-        That of the values; without it, the one they have.
+        The algebra of the values; by default it is taken from the values of each call.
     define
-        Values and functions by formulas of their own: ``{"c": "0.1 e3", "V(x)": "½ x·x"}``, each of which may
-        use those before it.
+        Values and functions defined by formulas, ``{"c": "0.1 e3", "V(x)": "½ x·x"}``; each may use those
+        before it.
+
+    Raises
+    ------
+    FormulaError
+        If the text is not a formula.
     """
     if not isinstance(text, str):
-        raise TypeError(f"a formula is a text, got {type(text).__name__}")
+        raise TypeError(f"a formula must be a string, got {type(text).__name__}")
     if algebra is not None and not isinstance(algebra, Algebra):
-        raise TypeError(f"algebra must be one of ph.algebra(…), got {type(algebra).__name__}")
+        raise TypeError(f"algebra must be a ph.algebra(…), got {type(algebra).__name__}")
     if define is not None and not isinstance(define, Mapping):
         raise TypeError(f'define must be a mapping such as {{"V(x)": "½ x·x"}}, got {type(define).__name__}')
     definitions = list((define or {}).items())
     for definition in definitions:
         if not all(isinstance(part, str) for part in definition):
-            raise TypeError(f"define gives texts to texts, got {definition[0]!r}: {definition[1]!r}")
+            raise TypeError(f"define must map strings to strings, got {definition[0]!r}: {definition[1]!r}")
     return Formula(_native.Formula(text, algebra, definitions))
 
 
@@ -184,15 +186,20 @@ def _compiled(text: str) -> Formula:
 
 
 def called(core: _native.Formula, arguments: tuple[Any, ...], named: dict[str, Any] | None) -> Any:
-    """Return the value of a formula, where it is not native: the general way of every call."""
+    """Return the value of a formula over values of any kind; the binding calls this."""
     if len(arguments) > 1:
-        raise TypeError(f"a formula takes one mapping of values and keywords, got {len(arguments)} values")
+        raise TypeError(
+            f"a formula takes keywords and at most one mapping of values, got {len(arguments)} arguments"
+        )
     program, known = compiled(core, given(core, arguments[0] if arguments else None, named or {}))
     return evaluated(core.text, program, known)
 
 
+_native.register("call_formula", called)
+
+
 def evaluated(text: str, program: _native.Program, known: Given) -> Any:
-    """Return the value of a program for values of the kinds that it was made for."""
+    """Return the value of a program for values of the kinds for which it was compiled."""
     inputs = known.inputs(program)
     kind = program.value_type
     if kind is not None:
@@ -200,19 +207,18 @@ def evaluated(text: str, program: _native.Program, known: Given) -> Any:
         if all(map(is_float, data)):
             return _run(program, kind, data)
     walk = Walk(text, steps_of(program), inputs, known.algebra)
-    results = program.results
-    if len(results[0]) == 1:
+    if len(program.results[0]) == 1:
         return walk.last()
-    if not inputs and known.algebra is _G3:  # numbers alone are compared as they are written
+    if not inputs and known.algebra is _G3:  # constants alone are compared exactly
         walk.kind = kind_of(np.empty(0, dtype=object))
-    return agreement(walk, results)
+    return agreement(walk, program)
 
 
 def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any]) -> Multivector:
-    """Return the value of a program of 3-d space over floats, block by block."""
+    """Return the value of a program of 3-d space over floats."""
     mask, size, unit = kind
     dtypes, shapes = {x.dtype for x in data}, {x.shape[:-1] for x in data}
-    dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # of two precisions, the higher
+    dtype = dtypes.pop() if len(dtypes) == 1 else np.dtype(np.float64)  # the higher of two precisions
     batch = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
     out = new((*batch, size), dtype)
     program.run([rows(x.astype(dtype, copy=False), batch) for x in data], out)
@@ -220,7 +226,7 @@ def _run(program: _native.Program, kind: tuple[int, int, bool], data: list[Any])
 
 
 def described(text: str, steps: list[Step], names: list[str]) -> list[str]:
-    """Return what the steps do, one line each; inputs and constants stand where they are used."""
+    """Return the steps, one line each, with inputs and constants in place."""
     shown: list[str] = []
     lines: list[str] = []
     for step in steps:

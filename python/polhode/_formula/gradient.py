@@ -1,4 +1,4 @@
-"""Gradients of formulas, through JAX."""
+"""Gradients of formulas by JAX."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from polhode._support.extras import optional
 
 
 def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any]:
-    """Return the function of values that gives the gradients of a scalar formula by some names."""
+    """Return a function for the gradients of a scalar formula with respect to some names."""
     if not names or not all(isinstance(name, str) for name in names):
-        raise TypeError(f'grad takes the names to differentiate by, as in f.grad("x"), got {names!r}')
+        raise TypeError(f'grad expects names to differentiate by, as in f.grad("x"), got {names!r}')
     if len({_native.canonical(name) for name in names}) < len(names):
-        raise TypeError(f"grad takes each name once, got {names!r}")
+        raise TypeError(f"names in grad must differ, got {names!r}")
     jax = optional("jax", "jax", "the gradient of a formula")
     register_pytrees()
 
@@ -32,7 +32,7 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
         places = [_place(program, known, name) for name in names]
         data = [x._data if isinstance(x, Multivector) else x.matrix for x in known.values]
         if any(x.dtype == object for x in data):
-            raise TypeError("gradients are of floats; convert exact numbers with .astype(float)")
+            raise TypeError("gradients need floats; convert exact numbers with .astype(float)")
         if not all(map(is_float, data)):
             return _shaped(names, _by_jax(jax, core.text, program, known, places))
         with _doubles(jax):
@@ -46,7 +46,7 @@ def gradient(core: _native.Formula, names: tuple[str, ...]) -> Callable[..., Any
 def _by_jax(
     jax: Any, text: str, program: _native.Program, known: Given, places: list[int]
 ) -> list[Multivector]:
-    """Return the gradients; rows of a batch do not depend on each other, so their sum has them all."""
+    """Return the gradients of the sum over all rows, which are those of each row."""
     steps = steps_of(program)
     chosen: list[Any] = [known.values[i] for i in places]
 
@@ -59,8 +59,8 @@ def _by_jax(
         for i, value in zip(places, chosen, strict=True):
             if value.shape != result.shape:
                 raise ValueError(
-                    f"each row of the formula, of shape {result.shape}, needs one of {known.kinds[i][0]} "
-                    f"to differentiate by, got shape {value.shape}; or take gradients under jax.vmap"
+                    f"{known.kinds[i][0]} must have a row for each row of the formula, of shape "
+                    f"{result.shape}, got shape {value.shape}; or take gradients under jax.vmap"
                 )
         return result._data.sum()
 
@@ -69,38 +69,38 @@ def _by_jax(
 
 
 def _doubles(jax: Any) -> Any:
-    """Return the context in which JAX has 64 bits."""
+    """Return a context with 64-bit JAX."""
     if hasattr(jax, "enable_x64"):
         return jax.enable_x64(True)
     return optional("jax.experimental", "jax", "the gradient of a formula").enable_x64()
 
 
 def _of_jax(jax: Any, value: Any) -> Any:
-    """Return a value of NumPy floats as one of JAX, in double precision; a linear map as it is."""
+    """Return a value over NumPy floats as float64 of JAX; linear maps are unchanged."""
     if isinstance(value, LinearMap):
         return value
     return value._like(jax.numpy.asarray(value._data, dtype="float64"))
 
 
 def _place(program: _native.Program, known: Given, name: str) -> int:
-    """Return which of the values given a name stands for."""
+    """Return the index of the value with this name."""
     wanted = _native.canonical(name)
     for i, ((other, *_), value) in enumerate(zip(known.kinds, known.values, strict=True)):
         if _native.canonical(other) == wanted:
             if isinstance(value, LinearMap):
-                raise TypeError(f"there is no gradient by {name}, which is a linear map")
+                raise TypeError(f"cannot differentiate by {name}: it is a linear map")
             return i
-    raise TypeError(f"there is no gradient by {name}, which was not given")
+    raise TypeError(f"cannot differentiate by {name}: no value with this name was given")
 
 
 def _require_scalar(program: _native.Program) -> None:
     (sides, *others) = program.results
     if others or len(sides) > 1:
-        raise TypeError("an equation has no gradient; take that of the difference of its sides, squared")
+        raise TypeError("an equation has no gradient; differentiate the squared difference of its sides")
     mask = program.steps[sides[0]][3]
     if mask != 1:
         grades = tuple(k for k in range(mask.bit_length()) if mask >> k & 1)
-        raise TypeError(f"gradients are of scalars; the formula has grades {grades}; take ⟨…⟩ or norm(…)")
+        raise TypeError(f"gradients need a scalar formula, got grades {grades}; take ⟨…⟩ or norm(…)")
 
 
 def _shaped(names: tuple[str, ...], found: list[Multivector]) -> Any:

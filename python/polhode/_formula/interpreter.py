@@ -1,4 +1,4 @@
-"""The steps of a formula, walked by the methods of values: for what the compiled core does not run."""
+"""Interpreter of formula programs, for values that the compiled core does not evaluate."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from polhode._support.arrays import is_float
 
 
 class Step(NamedTuple):
-    """An operation on earlier steps, and what comes of it.
+    """An operation on earlier steps.
 
     Attributes
     ----------
     name
-        Of the operation.
+        The operation.
     operands
-        The numbers of the steps it needs.
+        The numbers of the steps that are its operands.
     detail
-        What else it needs: a number, an input, a power.
+        Its constant, input or power.
     mask, unit
         The grades of the value, as bits, and whether it is a rotor.
     span
-        Where it stands in the text, in characters.
+        Its place in the text, in characters.
     """
 
     name: str
@@ -50,7 +50,7 @@ def steps_of(program: _native.Program) -> list[Step]:
 
 
 class Walk:
-    """The values of all steps of a program, one after the other. Errors tell the place in the text.
+    """The values of all steps of a program, in order. Errors have a place in the text.
 
     `inputs` are multivectors, and of maps the matrices (..., 9) and determinants (..., 1).
     """
@@ -65,14 +65,14 @@ class Walk:
         self.symbolic = self.kind.exact and any(is_symbolic(x) for array in arrays for x in array.flat)
 
     def __iter__(self) -> Iterator[tuple[Step, tuple[Multivector, ...], Multivector]]:
-        """Each step with its operands and its value."""
+        """Yield each step with its operands and its value."""
         done: list[Any] = []
         last = {i: number for number, step in enumerate(self.steps) for i in step.operands}
         for number, step in enumerate(self.steps):
             operands = tuple(done[i] for i in step.operands)
             done.append(self._value(step, operands))
             yield step, operands, done[-1]
-            for i in step.operands:  # large batches go when nobody needs them any more
+            for i in step.operands:  # free large batches after their last use
                 if last[i] == number:
                     done[i] = None
 
@@ -85,12 +85,12 @@ class Walk:
         try:
             return _typed(_STEPS[step.name](self, step, *operands), step)
         except (ValueError, ZeroDivisionError, TypeError) as error:
-            if type(error).__module__ != "builtins":  # of a library that traces
+            if type(error).__module__ != "builtins":  # an error of a tracing library
                 raise
             raise FormulaError(str(error), self.text, step.span) from error
 
     def of(self, components: Sequence[Any], mask: int) -> Multivector:
-        """Return a value of given components, of the kind of the others."""
+        """Return a value with these components, as coefficients of the inputs' kind."""
         data = self.kind.asarray(components if self.kind.exact else np.array(components, dtype=np.float64))
         return Multivector._of(data, mask, self.algebra)
 
@@ -99,19 +99,19 @@ class Walk:
         return Multivector._of(self.kind.asarray(numbers)[..., None], 1, self.algebra)
 
     def number(self, value: float, ratio: tuple[int, int] | None) -> Any:
-        """Return a number as it was written: exact beside exact ones."""
+        """Return a constant; an exact one among exact values."""
         if not self.kind.exact:
             return value
         if ratio is None:
             raise ValueError(
-                "numbers in a formula are exact up to 2⁵³, and ratios of such; "
+                "constants in a formula are exact only up to 2⁵³ and as ratios of such numbers; "
                 "give this one by name to compute exactly"
             )
         return sys.modules["sympy"].Rational(*ratio) if self.symbolic else divide(*ratio)
 
 
 def _typed(value: Multivector, step: Step) -> Multivector:
-    """Return a value of the grades and the type that the step has for all values."""
+    """Return a value with the grades and the type of the step."""
     if value._mask != step.mask:
         value = value._part(step.mask)
     if isinstance(value, Rotor) == step.unit:
@@ -127,7 +127,7 @@ def _constant(walk: Walk, step: Step) -> Multivector:
 
 
 def _pi(walk: Walk, step: Step) -> Multivector:
-    """π: a symbol beside symbols."""
+    """Return π; as a symbol among symbols."""
     return walk.of([sys.modules["sympy"].pi if walk.symbolic else walk.kind.pi], step.mask)
 
 
@@ -142,7 +142,7 @@ def _map(walk: Walk, step: Step, argument: Multivector) -> Multivector:
 
 
 def _of_scalars(walk: Walk, step: Step, a: Multivector) -> Multivector:
-    """sin, cos or tan."""
+    """Return the sine, cosine or tangent."""
     x = walk.kind.asarray(a._data)[..., 0]
     if not walk.kind.exact:
         walk.kind.require_finite([x])

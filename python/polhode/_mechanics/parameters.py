@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from polhode import _native
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_bivectors, as_vectors
 from polhode._algebra.multivector import Multivector
@@ -55,6 +56,8 @@ class Batch:
     def _kind(self) -> tuple[Any, ...]:
         return type(self.like), getattr(self.like, "grades", None)
 
+
+_native.register("Batch", Batch)
 
 Numbers = float | tuple[float, ...] | Batch
 

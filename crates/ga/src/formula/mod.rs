@@ -1,4 +1,4 @@
-//! Formulas as on paper: one small language for the shell, Python, scenes, torques and the browser.
+//! Formulas in the notation of the handout, for the shell, Python, scenes and the browser.
 //!
 //! ```text
 //! equation = sum { "=" sum }
@@ -12,22 +12,22 @@
 //! ```
 //!
 //! The products of the third line of operators bind tighter than the geometric product, as in the handout:
-//! `I a∧b` is `I (a∧b)`. They are not associative with each other, so that `a·b∧c` is refused; `a∧b∧c` is not.
+//! `I a∧b` is `I (a∧b)`. They are not associative with each other, so `a·b∧c` is an error; `a∧b∧c` is not.
 //! One-letter names, with subscripts, primes and tildes, may run together: `RaR̃` is `R a ~R`. A longer word
-//! is one name where that name is bound. What the names stand for therefore decides how a text is read, and
-//! [`parse`] is given the [`Names`].
+//! is one name where that name is bound. So the meaning of names decides how a text is parsed, and [`parse`] takes
+//! the [`Names`].
 //!
 //! Text becomes a [`Tree`] with spans, the tree a [`Program`] of steps whose grades are known ([`compile`]). Every
-//! formula ends, and is read and compiled in bounded time, memory and stack: see [`MAX_NODES`] and
-//! [`MAX_DEPTH`].
+//! formula is parsed and compiled in bounded time, memory and stack: see [`MAX_NODES`] and [`MAX_DEPTH`].
 
 mod agreement;
 mod compile;
 mod print;
 mod run;
+pub mod session;
 mod syntax;
 
-pub use agreement::Agreement;
+pub use agreement::{Agreement, Magnitude, term_size, tolerance};
 pub use compile::define::{define, heading};
 pub use compile::program::{Id, Input, InputKind, Op, Program, Step};
 pub use compile::{compile, types};
@@ -48,13 +48,13 @@ use crate::product::Grades;
 use crate::table::{self, G3};
 use std::fmt;
 
-/// Most names, numbers and operations in a formula, definitions written out.
+/// Maximum number of names, numbers and operations in a formula with its definitions expanded.
 pub const MAX_NODES: usize = 10_000;
 
-/// Most brackets within each other.
+/// Maximum depth of nested brackets.
 pub const MAX_DEPTH: usize = 100;
 
-/// Why a text is no formula, or a formula has no value, and where.
+/// An error in a formula, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
     /// What is wrong, and what to do.
@@ -68,7 +68,7 @@ impl Error {
         Error { message: message.into(), span }
     }
 
-    /// The message, and the place in the text with a caret.
+    /// The message, and the line of the text with carets under the place.
     pub fn shown(&self, text: &str) -> String {
         format!("{}{}", self.message, marked(text, self.span.start..self.span.end))
     }
@@ -82,12 +82,12 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The algebra a formula is about.
+/// The algebra of a formula.
 #[derive(Clone, Copy)]
 pub struct Space<'a> {
     /// Its table.
     pub algebra: &'a table::Algebra,
-    /// Its functions; 3-d space has its own.
+    /// Its functions; none for 3-d space, which has its own.
     calculus: Option<&'a Calculus>,
 }
 

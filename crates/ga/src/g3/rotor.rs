@@ -63,16 +63,6 @@ impl Rotor {
         Rotor::from_unit_components(rotor_functions::exp_one(b.0))
     }
 
-    /// `exp(B)` to a few roundings of its norm 1: a component that nearly vanishes may be off by many of
-    /// its own. For integrators, whose turns are many and small: the library's sine and cosine take them
-    /// in half the time of [`Rotor::exp`], which made whole runs a third slower.
-    pub fn exp_fast(b: Bivector) -> Rotor {
-        let angle = b.norm();
-        // sin x / x is 1 to rounding long before x underflows.
-        let sinc = if angle == 0.0 { 1.0 } else { angle.sin() / angle };
-        Rotor { scalar: angle.cos(), bivector: b * sinc }
-    }
-
     /// Turns by `angle` in the plane and sense of `plane`, whose size is ignored.
     pub fn from_plane_angle(plane: Bivector, angle: f64) -> Result<Rotor, MathError> {
         if !angle.is_finite() {

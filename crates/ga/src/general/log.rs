@@ -17,7 +17,7 @@
 //!
 //! Every result is checked: `exp(log R)` must be R again.
 
-use super::eigen::symmetric_eigen;
+use super::eigen::diagonalize;
 use super::exp::unit_of_grade_4;
 use super::pair::{Pair, Ring, SPLITS};
 use super::{Calculus, SAME_DIRECTION, add_scaled, dot, grade, part, reverse, scaled};
@@ -321,13 +321,16 @@ impl Calculus {
         };
         let commutators: Vec<Vec<f64>> = basis.iter().map(commutator).collect();
         let row = |a: &Vec<f64>| commutators.iter().map(|b| dot(a, b)).collect();
-        let (values, vectors) = symmetric_eigen(commutators.iter().map(row).collect());
+        let mut matrix: Vec<Vec<f64>> = commutators.iter().map(row).collect();
+        let unit = |i| (0..basis.len()).map(|j| f64::from(i == j)).collect();
+        let mut vectors: Vec<Vec<f64>> = (0..basis.len()).map(unit).collect();
+        diagonalize(&mut matrix, &mut vectors);
         let own = part(r, |k| k == 2);
         let bound = self.tolerances.rounding * norm(r).powi(2);
         let others =
-            values.iter().zip(vectors).filter(|(value, _)| **value <= bound).map(|(_, components)| {
+            vectors.iter().enumerate().filter(|&(i, _)| matrix[i][i] <= bound).map(|(_, components)| {
                 let mut y = vec![0.0; r.len()];
-                basis.iter().zip(components).for_each(|(&b, c)| y[b] = c);
+                basis.iter().zip(components).for_each(|(&b, &c)| y[b] = c);
                 if dot(&own, &own) > bound {
                     let along = dot(&y, &own) / dot(&own, &own);
                     add_scaled(&mut y, &own, -along);

@@ -16,7 +16,7 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// `a + b` and its rounding error, for `a = 0` or `|a| >= |b|`.
 #[inline(always)]
-pub(crate) fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
+pub fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     let hi = a + b;
     (hi, b - (hi - a))
 }

@@ -1,4 +1,4 @@
-//! The type of all values in Python: the methods of its native half.
+//! Methods of the native half of Python's `Multivector` and `Rotor`.
 
 use super::operators::{equal, function, infix, infix_right, named, sum, turned};
 use super::signature::{Algebra, g3};
@@ -25,7 +25,7 @@ impl Multivector {
         Err(not_made_directly(cls))
     }
 
-    /// Wraps an array (…, K) that nobody else writes to; K components of these grades, as bits.
+    /// Wraps an array (…, K) that must not be written to afterwards; K components of these grades, as bits.
     #[staticmethod]
     #[pyo3(signature = (data, grades, algebra=None))]
     fn _of<'py>(
@@ -37,7 +37,7 @@ impl Multivector {
         wrap(py, held(py, data, Grades(grades), algebra)?, false)
     }
 
-    /// The components of the grades present: of a single value a new array.
+    /// The components of the grades present; for a single value a new array.
     #[getter]
     fn _data<'py>(&self, py: Python<'py>) -> Object<'py> {
         match &self.held {
@@ -55,8 +55,8 @@ impl Multivector {
         }
     }
 
-    /// A single value of 3-d space from a list or tuple of as many floats, or integers that floats hold, as the
-    /// grades have components; None of anything else.
+    /// A single value of 3-d space from a list or tuple of floats, or integers that floats represent, one for each
+    /// component of the grades; None for anything else.
     #[staticmethod]
     fn _of_numbers<'py>(py: Python<'py>, numbers: &Bound<'py, PyAny>, grades: u16) -> Object<'py> {
         match row(numbers).and_then(|(row, count)| Graded::new(&row[..count], Grades(grades))) {
@@ -76,7 +76,7 @@ impl Multivector {
         self.single().is_some()
     }
 
-    /// The algebra it belongs to.
+    /// The algebra of the value.
     #[getter]
     fn algebra(&self, py: Python<'_>) -> PyResult<Py<Algebra>> {
         match &self.held {
@@ -93,10 +93,10 @@ impl Multivector {
         infix_right(slf, Product::Geometric, other)
     }
 
-    /// ``A^B``, the wedge; but Python binds ``^`` looser than ``+`` and ``*``, on paper it binds tighter.
+    /// ``A^B``, the wedge. Python binds ``^`` looser than ``+`` and ``*``; on paper it binds tighter.
     ///
     /// ``a + b ^ c`` is ``(a + b) ^ c``, and ``I * a ^ b`` is ``(I * a) ^ b``. Put brackets around it, or call
-    /// the method that the operator stands for: ``A.wedge(B)``.
+    /// the method: ``A.wedge(B)``.
     #[pyo3(signature = (other, /))]
     fn _xor<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
         infix(slf, Product::Wedge, other)
@@ -106,10 +106,10 @@ impl Multivector {
         infix_right(slf, Product::Wedge, other)
     }
 
-    /// ``A|B``, the dot; but Python binds ``|`` looser than ``+``, ``*`` and ``^``, on paper it binds tighter.
+    /// ``A|B``, the dot. Python binds ``|`` looser than ``+``, ``*`` and ``^``; on paper it binds tighter.
     ///
     /// ``a + b | c`` is ``(a + b) | c``, and ``a | B * c`` is ``a | (B * c)``. Put brackets around it, or call
-    /// the method that the operator stands for: ``A.dot(B)``.
+    /// the method: ``A.dot(B)``.
     #[pyo3(signature = (other, /))]
     fn _or<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> Object<'py> {
         infix(slf, Product::Dot, other)
@@ -161,7 +161,7 @@ impl Multivector {
         }
     }
 
-    /// Return the part of grade k; zero if it holds none.
+    /// Return the part of grade k; zero if there is none.
     fn grade<'py>(slf: &Bound<'py, Self>, k: &Bound<'py, PyAny>) -> Object<'py> {
         let whole: Option<u16> = k.cast_exact::<PyInt>().ok().and_then(|k| k.extract().ok());
         match (slf.get().single(), whole) {
@@ -185,7 +185,7 @@ impl Multivector {
         }
     }
 
-    /// ``A⁻¹``. A ValueError, with the batch index, where A is singular to rounding (``1 + e1``).
+    /// ``A⁻¹``. Raises a ValueError, with the batch index, where A is singular to rounding (``1 + e1``).
     fn inverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
         function(slf, Function::Inverse)
     }
@@ -199,9 +199,9 @@ impl Multivector {
 
     /// Return a logarithm: ``exp(log A) = A``.
     ///
-    /// Even elements (scalar and bivector) have an even one, so that ``log(−1) = π e1∧e2``; others the
-    /// principal one. A ValueError, with the batch index, where A is singular. In other algebras: of
-    /// rotors and motors, times a positive number.
+    /// The logarithm of an even element (scalar and bivector) is even, so ``log(−1) = π e1∧e2``; others have the
+    /// principal one. Raises a ValueError, with the batch index, where A is singular. In other algebras it exists
+    /// for positive multiples of rotors and motors.
     fn log<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
         function(slf, Function::Log)
     }
@@ -213,8 +213,8 @@ impl Multivector {
 
     /// ``A B``, the geometric product by name.
     ///
-    /// `out` is a writable float array in C order of the shape of the result's components (..., K), which
-    /// they are written to; the result is a view of it. It may not overlap the factors.
+    /// `out` receives the components of the result: a writable float array in C order of their shape (..., K).
+    /// The result is a view of it. It must not overlap the factors.
     #[pyo3(signature = (other, *, out=None))]
     fn geometric_product<'py>(
         slf: &Bound<'py, Self>,
@@ -298,7 +298,7 @@ impl Rotor {
         Err(not_made_directly(cls))
     }
 
-    /// Wraps rows (…, 4) of rotor components, of norm 1, that nobody else writes to.
+    /// Wraps rows (…, 4) of rotor components of norm 1 that must not be written to afterwards.
     #[staticmethod]
     fn _from_rows<'py>(py: Python<'py>, data: Bound<'py, PyAny>) -> Object<'py> {
         wrap(py, held(py, data, Grades::EVEN, None)?, true)
@@ -321,8 +321,8 @@ impl Rotor {
 
     /// ``R X ~R``: turns a value of any grade (handout eq. 2.4, 2.6); scalars and trivectors stay.
     ///
-    /// `out` is a writable float array in C order of the shape of the result's components, which they are
-    /// written to; the result is a view of it. It may not overlap the operands.
+    /// `out` receives the components of the result: a writable float array in C order of their shape. The
+    /// result is a view of it. It must not overlap the operands.
     #[pyo3(signature = (x, *, out=None))]
     fn apply<'py>(
         slf: &Bound<'py, Self>,
@@ -340,5 +340,5 @@ fn not_made_directly(cls: &Bound<'_, PyType>) -> PyErr {
         "Rotor" => "Rotor.from_components, Rotor.from_plane_angle, or another of its from_… constructors",
         _ => "ph.scalar, ph.vector, ph.bivector, ph.trivector or ph.multivector",
     };
-    PyTypeError::new_err(format!("{name} is not made directly; use {makers}"))
+    PyTypeError::new_err(format!("{name} has no public constructor; use {makers}"))
 }

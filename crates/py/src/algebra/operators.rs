@@ -1,4 +1,4 @@
-//! Operators of single values. Where an operand is none, the Python half of the type does the work.
+//! Operators of single values; the Python half of the type handles all other operands.
 
 use super::value::{
     Held, Multivector, Object, Operand, Rotor, number, one, one_rotor, operand, scalar, unit_rotor, wrap,
@@ -80,7 +80,7 @@ pub(crate) fn infix<'py>(
     product(left, kind, right, || left.call_method1(intern!(left.py(), "_product"), (kind.name(), right)))
 }
 
-/// `x op A` for a left factor x that is no multivector.
+/// `x op A` for a left factor x that is not a multivector.
 pub(crate) fn infix_right<'py>(
     right: &Bound<'py, Multivector>,
     kind: Product,
@@ -119,7 +119,7 @@ pub(crate) fn function<'py>(value: &Bound<'py, Multivector>, f: Function) -> Obj
     wrap(py, Held::One(result), unit)
 }
 
-/// Whether two single values have the same components; None if one is no single value.
+/// Whether two single values have the same components; None if one is not a single value.
 pub(crate) fn equal(left: &Bound<'_, Multivector>, right: &Bound<'_, PyAny>) -> Option<bool> {
     let a = left.get().single()?.full();
     match operand(right) {

@@ -1,4 +1,4 @@
-//! The algebra over arrays: rows of components in, rows out.
+//! The algebra over arrays of rows of components.
 
 use super::signature::Algebra;
 use crate::support::arrays::{
@@ -70,7 +70,7 @@ fn fill<T: Element + numpy::Element>(
     Ok(())
 }
 
-/// The functions of an algebra for components that were, or were not, rounded to float32.
+/// The functions of an algebra, for components rounded to float32 or not.
 fn calculus(algebra: &Algebra, single: bool) -> &Calculus {
     if single { algebra.single_calculus() } else { algebra.calculus() }
 }
@@ -271,7 +271,7 @@ pub(crate) fn rotor_apply<'py>(
     out: &Bound<'py, PyAny>,
 ) -> PyResult<()> {
     if grades == 0 || grades >= 16 {
-        return Err(bad("a value of 3-d space has some of the grades 0 to 3"));
+        return Err(bad("a value of 3-d space must have some of the grades 0 to 3"));
     }
     let grades = Grades(grades);
     let size = grades.indices(&G3).len();

@@ -37,20 +37,20 @@ pub(crate) fn g3(py: Python<'_>) -> PyResult<&Py<Algebra>> {
     G3.get_or_try_init(py, || Py::new(py, Algebra::new(3, 0, 0)?))
 }
 
-/// An algebra of as many generators as there are.
+/// An algebra with the maximum number of generators.
 pub(crate) fn largest(py: Python<'_>) -> PyResult<&Py<Algebra>> {
     static LARGEST: PyOnceLock<Py<Algebra>> = PyOnceLock::new();
     LARGEST.get_or_try_init(py, || Py::new(py, Algebra::new(table::MAX_GENERATORS, 0, 0)?))
 }
 
 impl Algebra {
-    /// The plan of a product, made once.
+    /// The plan of a product, cached.
     pub fn plan(&self, name: &str, ga: u16, gb: u16) -> PyResult<Arc<Plan>> {
         let product = Product::from_name(name).ok_or_else(|| bad(format!("unknown product {name}")))?;
         self.plan_of(product, self.check(ga)?, self.check(gb)?)
     }
 
-    /// The plan of a product for grades of this algebra, made once.
+    /// The plan of a product for grades of this algebra, cached.
     pub fn plan_of(&self, product: Product, ga: Grades, gb: Grades) -> PyResult<Arc<Plan>> {
         let mut plans = self.plans.lock().map_err(bad)?;
         let plan = plans
@@ -59,12 +59,12 @@ impl Algebra {
         Ok(Arc::clone(plan))
     }
 
-    /// The functions of this algebra, whose tables are made once.
+    /// The functions of this algebra, with cached tables.
     pub fn calculus(&self) -> &Calculus {
         self.calculus.get_or_init(|| Calculus::new(&self.table))
     }
 
-    /// The same functions, of components that were rounded to float32.
+    /// The same functions, for components rounded to float32.
     pub fn single_calculus(&self) -> &Calculus {
         self.single_calculus.get_or_init(|| self.calculus().clone().rounded_to(f32::EPSILON.into()))
     }
@@ -93,7 +93,7 @@ impl Algebra {
         let table = if n > table::MAX_GENERATORS { None } else { table::Algebra::new(signature) };
         let Some(table) = table else {
             return Err(bad(format!(
-                "an algebra has at most {} generators, got {p} + {q} + {r}",
+                "an algebra must have at most {} generators, got {p} + {q} + {r}",
                 table::MAX_GENERATORS
             )));
         };
@@ -105,7 +105,7 @@ impl Algebra {
         })
     }
 
-    /// How many generators square to +1, −1 and 0.
+    /// The numbers of generators with square +1, −1 and 0.
     #[getter]
     fn signature(&self) -> (usize, usize, usize) {
         let Signature { p, q, r } = self.table.signature();

@@ -1,5 +1,6 @@
-//! What a value in Python holds. A single value of 3-d space over float64 lies inline; everything else is an
-//! array, of any coefficients and any algebra.
+//! Contents of a value in Python.
+//!
+//! A single value of 3-d space over float64 is held inline, all others as arrays of any coefficients and algebra.
 
 use super::signature::{Algebra, g3};
 use crate::support::arrays::bad;
@@ -78,7 +79,7 @@ pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
     number(x).map_or(Operand::Other, Operand::Number)
 }
 
-/// The numbers of a short list or tuple, and how many they are.
+/// The numbers of a short list or tuple, and their count.
 pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
     let mut row = [0.0; 8];
     let mut count = 0;

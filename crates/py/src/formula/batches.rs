@@ -1,5 +1,6 @@
-//! Calls of a formula on batches of float64 of 3-d space that are all of one shape, beside single values: without
-//! a detour through Python, which costs more than a thousand rows.
+//! Native calls of formulas on batches of float64 of 3-d space.
+//!
+//! The batches have one shape; single values are allowed too. A call through Python would cost more than a thousand rows.
 
 use super::Formula;
 use crate::algebra::signature::g3;
@@ -13,7 +14,7 @@ use polhode_ga::table::G3;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// What a name stands for.
+/// The values of a name.
 enum Rows<'py> {
     One(Graded),
     Many(PyReadonlyArrayDyn<'py, f64>),
@@ -38,7 +39,7 @@ impl<'py> Rows<'py> {
     }
 }
 
-/// The value of a formula; `None` if it is found in another way, or has none.
+/// The value of a formula; `None` if other values or errors need the general way.
 pub(crate) fn value<'py>(
     formula: &Formula,
     named: &Bound<'py, PyDict>,

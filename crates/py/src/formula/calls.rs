@@ -1,25 +1,26 @@
-//! Calls of a formula on single values. A call with the names and the kinds of values of an earlier one is
-//! known by the addresses of its names, which Python keeps once, so that little is added to the arithmetic.
-//! Linear maps are known by their addresses, too, and their matrices are at hand.
+//! Cached calls of formulas on single values.
+//!
+//! A call with the names and kinds of an earlier one is recognized by the addresses of its names, which Python interns, at
+//! little cost beside the arithmetic. Linear maps are recognized by their addresses, and their matrices are cached.
 
 use super::program::Program;
 use crate::algebra::value::{Held, Operand, operand, scalar, wrap};
+use crate::support::face::LINEAR_MAP;
 use polhode_ga::Graded;
 use polhode_ga::formula::{Given, InputKind, Type};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::PyDict;
 use std::sync::Mutex;
 
-/// So many calls of a formula are kept.
+/// Maximum number of cached calls of a formula.
 const KEPT: usize = 8;
 
 /// The calls, the latest first.
 #[derive(Default)]
 pub(crate) struct Calls(Mutex<Vec<Call>>);
 
-/// Names as the caller spells them, what they stood for, and the program for that.
+/// Names as the caller spells them, their kinds, and the program for these.
 struct Call {
     arguments: Vec<(Py<PyAny>, Argument)>,
     program: Py<Program>,
@@ -28,16 +29,16 @@ struct Call {
     values: Vec<Graded>,
 }
 
-/// What a name stands for.
+/// The kind of a name.
 pub(crate) enum Argument {
     /// A value or number, and its place among the inputs, if the formula uses it.
     Value(Type, Option<usize>),
-    /// A linear map of vectors or bivectors, whose inputs are there.
+    /// A linear map of vectors or bivectors, whose inputs are cached.
     Map(Py<PyAny>, u16),
 }
 
 impl Calls {
-    /// The value for single values; `None` if no such call is known.
+    /// The value for single values; `None` if no such call is cached.
     pub fn value<'py>(&self, named: &Bound<'py, PyDict>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let py = named.py();
         let found = {
@@ -57,7 +58,7 @@ impl Calls {
         }
     }
 
-    /// Keeps a call for the next time.
+    /// Caches a call.
     pub fn keep(&self, named: &Bound<'_, PyDict>, program: Py<Program>) -> PyResult<()> {
         let Program { order, program: steps, .. } = program.get();
         let mut inputs = vec![Given::Determinant(0.0); order.len()];
@@ -117,10 +118,8 @@ impl Argument {
             }
             Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
-                static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
                 let one =
-                    value.is_instance(CLASS.import(py, "polhode._algebra.linear_map", "LinearMap")?)?
-                        && value.getattr(intern!(py, "shape"))?.is_empty()?;
+                    LINEAR_MAP.is_class_of(value)? && value.getattr(intern!(py, "shape"))?.is_empty()?;
                 let grade = || value.getattr(intern!(py, "grade"))?.extract();
                 Ok(if one { Some(Argument::Map(value.clone().unbind(), grade()?)) } else { None })
             }

@@ -1,12 +1,15 @@
-//! Formulas in Python: texts, what they mean for values of given kinds, and calls on single values.
+//! Formulas in Python: parsing, programs for values of given kinds, and calls.
 
 pub(crate) mod batches;
 pub(crate) mod calls;
+pub(crate) mod line;
+mod magnitude;
 pub(crate) mod program;
 
 use crate::algebra::signature::{Algebra, g3, largest};
 use crate::algebra::value::Object;
 use crate::support::arrays::bad;
+use crate::support::face::CALL_FORMULA;
 use calls::{Argument, Calls};
 use polhode_ga::formula::{
     Kind, Meaning, Names, Node, Runner, Space, Style, Tree, Type, canonical, compile, define, heading, parse,
@@ -16,16 +19,14 @@ use polhode_ga::product::Grades;
 use program::{Program, characters, error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-/// A name as it was given, the grades as bits, and 0 for a value, 1 for a rotor; 2 for a linear map, of the
-/// vectors or bivectors that the bits stand for.
+/// A name as given, the grades as bits, and 0 for a value, 1 for a rotor, or 2 for a linear map of grade 1 or 2.
 pub(crate) type Said = (String, u16, u8);
 
-/// So many programs of a formula are kept, each for other kinds of values.
+/// Maximum number of cached programs of a formula, one for each combination of kinds.
 const KEPT: usize = 64;
 
 /// A formula.
@@ -43,7 +44,7 @@ type Key = ((usize, usize, usize), Vec<Said>);
 
 #[pymethods]
 impl Formula {
-    /// Reads a text, for the algebra given or any; a text that is no formula is an error now.
+    /// Parses a text, for the given algebra or any; raises a FormulaError if it is not a formula.
     #[new]
     fn new(
         py: Python<'_>,
@@ -57,13 +58,13 @@ impl Formula {
         Ok(formula)
     }
 
-    /// The text as it was given.
+    /// The text.
     #[getter]
     fn text(&self) -> &str {
         &self.text
     }
 
-    /// The algebra that was given.
+    /// The algebra, if one was given.
     #[getter]
     fn algebra(&self, py: Python<'_>) -> Option<Py<Algebra>> {
         self.algebra.as_ref().map(|algebra| algebra.clone_ref(py))
@@ -75,8 +76,8 @@ impl Formula {
         self.definitions.clone()
     }
 
-    /// The formula in canonical spelling, `unicode`, `ascii` or `latex`, for values of these kinds; without any, of
-    /// whatever names.
+    /// The formula in canonical spelling, `unicode`, `ascii` or `latex`, for values of these kinds; without any, with
+    /// open names.
     fn spelled(
         &self,
         py: Python<'_>,
@@ -109,7 +110,7 @@ impl Formula {
         Ok(program)
     }
 
-    /// The function that evaluates the formula: a slot of a Python type that holds it is called without detours.
+    /// The function that evaluates the formula, for a slot of a Python type, where calls are fast.
     fn caller<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyCFunction>> {
         let formula = slf.clone().unbind();
         let call = move |arguments: &Bound<'_, PyTuple>, named: Option<&Bound<'_, PyDict>>| {
@@ -118,7 +119,7 @@ impl Formula {
         PyCFunction::new_closure(slf.py(), Some(c"formula"), None, call)
     }
 
-    /// The tree as nested dictionaries, for values of these kinds; without any, of whatever names.
+    /// The tree as nested dictionaries, for values of these kinds; without any, with open names.
     fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<Said>) -> Object<'py> {
         let names = if given.is_empty() { Names::open() } else { names(&given)?.0 };
         let space = space(&algebra);
@@ -155,8 +156,8 @@ impl Formula {
         Ok(self.for_floats(py, said))
     }
 
-    /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and where
-    /// something is wrong, which is told by the general way.
+    /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and for an
+    /// error, which the general way reports.
     pub(crate) fn for_floats(&self, py: Python<'_>, said: Vec<Said>) -> Option<Py<Program>> {
         if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
             return None;
@@ -172,8 +173,7 @@ impl Formula {
         }
     }
 
-    /// The tree for values that are not known yet. Without an algebra there may be more basis vectors than in
-    /// 3-d space.
+    /// The tree with open names. Without an algebra there may be more basis vectors than in 3-d space.
     fn read_open(&self, py: Python<'_>) -> PyResult<Tree> {
         let read = self.read(py, self.algebra_or_g3(py)?, Names::open());
         let read = match (read, &self.algebra) {
@@ -183,14 +183,14 @@ impl Formula {
         Ok(read?.0)
     }
 
-    /// The tree, with names that include those defined.
+    /// The tree, and the names with the definitions.
     fn read(&self, py: Python<'_>, algebra: &Py<Algebra>, mut names: Names) -> PyResult<(Tree, Names)> {
         let space = space(algebra);
         for (head, body) in &self.definitions {
             let (name, _) = heading(head).map_err(|e| error(py, head, &e))?;
             if matches!(names.get(&name), Some(Meaning::Value(_) | Meaning::Map { .. })) {
                 return Err(PyTypeError::new_err(format!(
-                    "`{name}` is defined by the formula; give no value"
+                    "`{name}` is defined by the formula; omit its value"
                 )));
             }
             define(head, body, space, &mut names).map_err(|e| error(py, body, &e))?;
@@ -205,12 +205,12 @@ impl Formula {
         let program = compile(&tree, space(algebra), &names).map_err(|e| error(py, &self.text, &e))?;
         let place = |name: &String| spelled.iter().position(|other| other == name);
         let order: Option<Vec<usize>> = program.inputs.iter().map(|input| place(&input.name)).collect();
-        let order = order.ok_or_else(|| bad("a program needs a value that nobody gave"))?;
+        let order = order.ok_or_else(|| bad("the program needs a value that was not given"))?;
         let runner = Runner::new(&program);
         Ok(Program { program, order, text: self.text.clone(), runner })
     }
 
-    /// A node, its types being the next ones.
+    /// A node, whose types come next.
     fn node<'py>(
         &self,
         py: Python<'py>,
@@ -235,7 +235,7 @@ impl Formula {
     }
 }
 
-/// What the names stand for, and each of them in the canonical spelling.
+/// The meanings of names, and their canonical spellings.
 pub(crate) fn names(given: &[Said]) -> PyResult<(Names, Vec<String>)> {
     let mut names = Names::new([]);
     let mut spelled: Vec<String> = Vec::new();
@@ -247,13 +247,13 @@ pub(crate) fn names(given: &[Said]) -> PyResult<(Names, Vec<String>)> {
             _ => Meaning::Map { grade: grades.0 as u8 },
         };
         let Some(spelling) = canonical(name) else {
-            // Such as __name__, which no text can have.
+            // Such as __name__, which cannot occur in a formula.
             if name.chars().all(|c| c.is_alphanumeric() || c == '_') {
                 spelled.push(String::new());
                 continue;
             }
             return Err(PyTypeError::new_err(format!(
-                "{name:?} is no name in formulas; names are letters with subscripts and primes, or words"
+                "{name:?} is not a name in formulas; names are letters with subscripts and primes, or words"
             )));
         };
         if let Some(i) = spelled.iter().position(|other| *other == spelling) {
@@ -290,12 +290,10 @@ fn called<'py>(
             return Ok(value);
         }
     }
-    static GENERAL: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let general = GENERAL.import(py, "polhode._formula.formula", "called")?;
-    general.call1((formula, arguments, named))
+    CALL_FORMULA.get(py)?.call1((formula, arguments, named))
 }
 
-/// What a node is, and what else there is to say of it.
+/// The kind of a node, and its further value.
 fn described<'py>(py: Python<'py>, node: &Node) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
     let none = py.None().into_bound(py);
     Ok(match &node.kind {

@@ -1,41 +1,41 @@
-//! Programs of formulas in Python: what they are given, and their steps for those who walk them.
+//! Programs of formulas in Python: inputs, evaluation on arrays, and steps for interpreters.
 
+use super::magnitude::PyMagnitude;
 use crate::support::arrays::{Rows, RowsToFill, bad, numbers, numbers_to_fill, place, threads};
+use crate::support::face::FORMULA_ERROR;
 use crate::support::text::byte;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use polhode_ga::Graded;
-use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type};
+use polhode_ga::formula::{self, Given, InputKind, Op, RowError, Runner, Span, Type, term_size};
 use polhode_ga::rows::product::Element;
 use polhode_ga::table::G3;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
 
 /// A piece of text in characters, as Python counts.
 pub(crate) type Place = (usize, usize);
 
-/// What a formula does with values of known types.
+/// A formula compiled for values of known types.
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Program {
     pub(crate) program: formula::Program,
-    /// For each input, its place among the values given.
+    /// For each input, its index among the values given.
     pub(crate) order: Vec<usize>,
     pub(crate) text: String,
-    /// In 3-d space it is run here.
+    /// In 3-d space.
     pub(crate) runner: Option<Runner>,
 }
 
-/// Rows between which Python may interrupt.
+/// Rows between checks for signals.
 const PIECE: usize = 1 << 17;
 
-/// An operation: its name, the steps it needs, what else it needs, the grades of the value as bits, whether
-/// that is a rotor, and where it stands in the text.
+/// An operation: name, operands, constant or input, grades of the value as bits, whether it is a rotor, and its place in
+/// the text.
 type Step<'py> = (&'static str, Bound<'py, PyTuple>, Bound<'py, PyAny>, u16, bool, Place);
 
 #[pymethods]
 impl Program {
-    /// For each input its place among the values given, `value`, `matrix` or `determinant`, and the grade.
+    /// For each input its index among the values given, `value`, `matrix` or `determinant`, and the grade.
     #[getter]
     fn inputs(&self) -> Vec<(usize, &'static str, u16)> {
         let kind = |kind| match kind {
@@ -60,7 +60,7 @@ impl Program {
     }
 
     /// The grades of the value as bits, its number of components, and whether it is a rotor; None for an
-    /// equation, and for an algebra whose programs are not run here.
+    /// equation and for other algebras.
     #[getter]
     fn value_type(&self) -> Option<(u16, usize, bool)> {
         self.runner.as_ref()?;
@@ -79,6 +79,22 @@ impl Program {
             Ok((name, operands, detail, step.ty.grades.0, step.ty.unit, place))
         };
         self.program.steps.iter().map(step).collect()
+    }
+
+    /// The size of the terms that make up a step, from the norm of its value (of the matrix, for a linear map), and the
+    /// norms and sizes of its operands; `eps` is the spacing of the floats, `namespace` that of their library.
+    fn term_size<'py>(
+        &self,
+        step: usize,
+        length: Bound<'py, PyAny>,
+        operands: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+        eps: f64,
+        namespace: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let step = self.program.steps.get(step).ok_or_else(|| bad("there is no such step"))?;
+        let magnitude = |value| PyMagnitude { value, namespace };
+        let operands: Vec<_> = operands.into_iter().map(|(a, s)| (magnitude(a), magnitude(s))).collect();
+        Ok(term_size(&step.op, &magnitude(length), &operands, eps)?.value)
     }
 
     /// Fills `out`, of the batch shape and the components of the value, from inputs that are arrays of one row
@@ -121,7 +137,7 @@ impl Program {
         out: &mut [T],
     ) -> PyResult<()> {
         let (Some(runner), Some(ty)) = (&self.runner, self.ty()) else {
-            return Err(bad("an equation, or a formula of another algebra, is not run here"));
+            return Err(bad("only formulas of 3-d space that are not equations run on arrays"));
         };
         let size = ty.grades.indices(&G3).len();
         let rows: usize = batch.iter().product();
@@ -147,8 +163,8 @@ impl Program {
         Some(self.program.steps[result].ty)
     }
 
-    /// The value for single values, and whether it is a rotor; `None` if it is not run here. The values of the
-    /// steps are left in `values`.
+    /// The value for single values, and whether it is a rotor; `None` for other algebras. `values` receives the values of
+    /// all steps.
     pub(crate) fn value(
         &self,
         inputs: &[Given],
@@ -168,7 +184,7 @@ impl Program {
     }
 }
 
-/// The name of an operation, and what it needs beside other steps.
+/// The name of an operation, and its constant, input or power.
 fn described<'py>(py: Python<'py>, op: &Op) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
     let none = || py.None().into_bound(py);
     Ok(match *op {
@@ -204,26 +220,35 @@ pub(crate) fn characters(text: &str, span: Span) -> Place {
     (count(span.start), count(span.end))
 }
 
-/// The exception that tells what is wrong with a formula, and where.
+/// A piece of text in bytes instead of characters.
+pub(crate) fn span(text: &str, place: Place) -> Span {
+    Span { start: byte(text, place.0), end: byte(text, place.1) }
+}
+
+/// The exception for an error in a formula, with its place.
 pub(crate) fn error(py: Python<'_>, text: &str, error: &formula::Error) -> PyErr {
-    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    match CLASS.import(py, "polhode._formula.errors", "FormulaError") {
+    match FORMULA_ERROR.get(py).and_then(|class| Ok(class.cast::<PyType>()?.clone())) {
         Ok(class) => {
             let arguments = (error.message.clone(), text.to_owned(), characters(text, error.span));
-            PyErr::from_type(class.clone(), arguments)
+            PyErr::from_type(class, arguments)
         }
-        Err(_) => PyValueError::new_err(error.shown(text)),
+        Err(missing) => missing,
     }
 }
 
-/// The place in a text, in characters, with a caret, on lines of its own.
+/// The line of a text with carets under a place in characters.
 #[pyfunction]
 pub(crate) fn marked(text: &str, place: Place) -> String {
-    let span = Span { start: byte(text, place.0), end: byte(text, place.1) };
-    formula::Error { message: String::new(), span }.shown(text)
+    formula::Error { message: String::new(), span: span(text, place) }.shown(text)
 }
 
-/// The spelling under which a name is known, such as `Ω_B` or `a1` for `a_1`; None for what is no name.
+/// The relative tolerance of equations over floats of spacing `eps`.
+#[pyfunction]
+pub(crate) fn agreement_tolerance(eps: f64) -> f64 {
+    formula::tolerance(eps)
+}
+
+/// The canonical spelling of a name, such as `Ω_B` or `a1` for `a_1`; None if it is not a name.
 #[pyfunction]
 pub(crate) fn canonical(name: &str) -> Option<String> {
     formula::canonical(name)

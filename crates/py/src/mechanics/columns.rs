@@ -2,13 +2,14 @@
 
 use crate::algebra::value::{self, Operand};
 use crate::support::arrays::{Rows, bad, numbers, place};
+use crate::support::face::BATCH;
 use numpy::PyUntypedArrayMethods;
 use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Vector};
 use polhode_rigid::laws::torque::Torque;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyTuple, PyType};
+use pyo3::types::PyTuple;
+use std::convert::Infallible;
 use std::fmt::Display;
 
 /// Values of `polhode._mechanics.parameters.Batch`: a row for each body.
@@ -20,8 +21,7 @@ pub(crate) struct Batch<'py> {
 impl<'py> Batch<'py> {
     /// The value as a batch, if it is one.
     pub fn of(value: &Bound<'py, PyAny>) -> PyResult<Option<Batch<'py>>> {
-        static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-        if !value.is_instance(CLASS.import(value.py(), "polhode._mechanics.parameters", "Batch")?)? {
+        if !BATCH.is_class_of(value)? {
             return Ok(None);
         }
         Ok(Some(Batch { whole: value.clone(), rows: value.getattr("rows")?.extract()? }))

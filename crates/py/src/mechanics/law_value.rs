@@ -5,6 +5,7 @@ use crate::formula::calls::{Argument, of_map};
 use crate::formula::program::error;
 use crate::formula::{Said, names};
 use crate::support::arrays::{Rows, bad, one};
+use crate::support::face::{AS_BIVECTORS, AS_VECTORS, Slot};
 use polhode_ga::formula::{Error, Given, Input, InputKind, Names};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Rotor, Vector};
@@ -12,7 +13,6 @@ use polhode_rigid::error::TorqueError;
 use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -196,12 +196,12 @@ type What<'a> = &'a dyn Fn() -> String;
 
 /// A bivector or three numbers.
 pub(crate) fn bivector(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<Bivector> {
-    three(returned, what, Grades::BIVECTOR, "bivector").map(Bivector)
+    three(returned, what, Grades::BIVECTOR, "bivector", &AS_BIVECTORS).map(Bivector)
 }
 
 /// A vector or three numbers.
 pub(crate) fn vector(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<Vector> {
-    three(returned, what, VECTOR, "vector").map(Vector)
+    three(returned, what, VECTOR, "vector", &AS_VECTORS).map(Vector)
 }
 
 /// A number, or a scalar.
@@ -217,7 +217,13 @@ pub(crate) fn number(returned: Bound<'_, PyAny>, what: What<'_>) -> PyResult<f64
     }
 }
 
-fn three(returned: Bound<'_, PyAny>, what: What<'_>, grades: Grades, kind: &str) -> PyResult<[f64; 3]> {
+fn three(
+    returned: Bound<'_, PyAny>,
+    what: What<'_>,
+    grades: Grades,
+    kind: &str,
+    convert: &Slot,
+) -> PyResult<[f64; 3]> {
     let py = returned.py();
     if let Operand::Value(value, _) = value::operand(&returned)
         && let (true, &[x, y, z]) = (value.grades() == grades, value.components())
@@ -230,11 +236,8 @@ fn three(returned: Bound<'_, PyAny>, what: What<'_>, grades: Grades, kind: &str)
     if let Ok(three) = returned.extract::<Rows<'_>>().and_then(|rows| one(&rows)) {
         return Ok(three);
     }
-    // Any other value of three numbers, or an error that says what is wrong with it.
-    static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    let module =
-        MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
-    let rows = module.bind(py).call_method1(format!("as_{kind}s").as_str(), (returned, what()))?;
+    // Any other value of three numbers, or the error that says why it is none.
+    let rows = convert.get(py)?.call1((returned, what()))?;
     let rows: Rows<'_> = rows.call_method0(intern!(py, "copy"))?.extract()?;
     one(&rows).map_err(|error| PyValueError::new_err(format!("{} must be a single {kind}: {error}", what())))
 }

@@ -1,4 +1,4 @@
-//! Between NumPy arrays and fixed-size rows.
+//! Conversions between NumPy arrays and fixed-size rows.
 
 use super::pool;
 pub(crate) use super::pool::{Array, Out};
@@ -38,22 +38,22 @@ pub(crate) fn numbers_to_fill<'a, T: Element>(array: &'a mut RowsToFill<'_, T>) 
     Ok(array.as_slice_mut()?)
 }
 
-/// Arrays of fewer numbers are not worth asking the system how many threads there are.
+/// Arrays of fewer numbers use one thread, without asking the system.
 const SHARED: usize = 1 << 16;
 
-/// How many threads may share an array of so many numbers: `POLHODE_NUM_THREADS`, or as many as run at a time.
+/// Threads for an array of this many numbers: `POLHODE_NUM_THREADS`, or the available parallelism.
 pub(crate) fn threads(numbers: usize) -> PyResult<Threads> {
     if numbers < SHARED { Ok(Threads::ONE) } else { all_threads() }
 }
 
-/// `POLHODE_NUM_THREADS` threads, or as many as run at a time.
+/// `POLHODE_NUM_THREADS`, or the available parallelism.
 pub(crate) fn all_threads() -> PyResult<Threads> {
     match std::env::var("POLHODE_NUM_THREADS") {
         Err(std::env::VarError::NotPresent) => Ok(Threads::available()),
         Err(error) => Err(bad(error)),
         Ok(text) => match text.trim().parse() {
             Ok(count) if count > 0 => Ok(Threads::new(count)),
-            _ => Err(bad(format!("POLHODE_NUM_THREADS must be a whole number from 1 on, got {text:?}"))),
+            _ => Err(bad(format!("POLHODE_NUM_THREADS must be a positive whole number, got {text:?}"))),
         },
     }
 }
@@ -135,8 +135,8 @@ pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
 }
 
 /// A new array of a batch of rows of `size` numbers, each row filled by a function of its number. Threads take
-/// at least `least` rows, and Python may interrupt after some times as many. An error names the batch index of
-/// the first row that has one.
+/// at least `least` rows; signals are checked after a multiple of that. An error names the batch index of
+/// the first failing row.
 fn fill_rows<'py, E: std::fmt::Display + Send>(
     py: Python<'py>,
     (batch, size): (&[usize], usize),

@@ -1,7 +1,9 @@
-//! Memory for large results, used again when a result is gone: the system hands out new memory page by page
-//! and fills it with zeros, which costs several times the arithmetic of a product.
+//! Pool of memory for large results.
 //!
-//! This module holds all the unsafe code of the crate: a buffer lends out its memory.
+//! Memory is reused after a result is freed: the system provides new memory page by page and fills it with zeros, which
+//! costs several times the arithmetic of a product.
+//!
+//! This module contains all unsafe code of the crate: a buffer exposes its memory.
 #![allow(unsafe_code)]
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -19,19 +21,19 @@ pub(crate) type Out<'py> = PyResult<Array<'py>>;
 
 type Memory = Py<PyArray1<u8>>;
 
-/// Kept for later, the latest last, at most [`KEPT`] bytes of them.
+/// Free memory, the latest last, at most [`KEPT`] bytes.
 static FREE: Mutex<Vec<(usize, Memory)>> = Mutex::new(Vec::new());
 
-/// At most so many bytes are kept: two results of a million multivectors.
+/// Maximum number of free bytes to keep: two results of a million multivectors.
 const KEPT: usize = 128 << 20;
 
-/// Sizes are rounded up to this, so that results of about the same size find each other's memory.
+/// Sizes are rounded up to this, so that results of similar sizes share memory.
 const STEP: usize = 2 << 20;
 
-/// Begins at a cache line.
+/// Alignment: a cache line.
 const LINE: usize = 64;
 
-/// Memory of at least some number of bytes, given back to the pool when nobody refers to it any more.
+/// Memory of at least some number of bytes, returned to the pool when freed.
 #[pyclass(frozen)]
 pub(crate) struct Buffer {
     memory: Option<Memory>,
@@ -39,10 +41,10 @@ pub(crate) struct Buffer {
     size: usize,
 }
 
-/// Arrays of fewer bytes the allocator keeps itself.
+/// Smaller arrays use the allocator, which reuses memory itself.
 const LARGE: usize = 1 << 20;
 
-/// A new array of numbers, whatever they are; a large one of the pool's memory.
+/// A new array of unspecified numbers; a large one in memory of the pool.
 pub(crate) fn array<'py>(py: Python<'py>, shape: &[usize]) -> Out<'py> {
     let count = shape.iter().product::<usize>();
     if count * 8 < LARGE {
@@ -53,7 +55,7 @@ pub(crate) fn array<'py>(py: Python<'py>, shape: &[usize]) -> Out<'py> {
     line.reshape(shape)
 }
 
-/// Memory of `bytes` bytes, which may hold anything.
+/// Uninitialized memory of `bytes` bytes.
 #[pyfunction]
 pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
     let size = bytes.saturating_add(LINE).next_multiple_of(STEP);
@@ -63,7 +65,7 @@ pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
     });
     let memory = match kept {
         Some(memory) => memory,
-        // NumPy asks the system for huge pages.
+        // NumPy requests huge pages.
         None => py.import("numpy")?.getattr("empty")?.call1((size, "u1"))?.extract()?,
     };
     Ok(Buffer { memory: Some(memory), bytes, size })
@@ -71,7 +73,7 @@ pub(crate) fn buffer(py: Python<'_>, bytes: usize) -> PyResult<Buffer> {
 
 #[pymethods]
 impl Buffer {
-    /// Lends the memory out, from the first cache line on.
+    /// Exposes the memory from the first cache line on.
     unsafe fn __getbuffer__(slf: Bound<'_, Self>, view: *mut ffi::Py_buffer, flags: c_int) -> PyResult<()> {
         let buffer = slf.get();
         let memory = buffer.memory.as_ref().ok_or_else(|| PyBufferError::new_err("no memory"))?;
@@ -99,7 +101,7 @@ impl Drop for Buffer {
             total -= oldest.0;
             gone.push(oldest);
         }
-        // Python may run code when the memory goes: not while the pool is locked.
+        // Freeing memory may run Python code, so the pool must be unlocked first.
         drop(free);
     }
 }

@@ -16,7 +16,7 @@
 
 use super::Body;
 use crate::error::BodyError;
-use crate::numerics::eigen::symmetric_eigen;
+use polhode_ga::general::eigen::symmetric_eigen;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
 

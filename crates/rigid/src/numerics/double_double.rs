@@ -4,6 +4,7 @@
 //! Each operation is exact in its error term, so the relative error of a result is a few 2⁻¹⁰⁴. Used
 //! where an angle grows with time: `frac(ν t)` loses as many digits as `ν t` has before the point.
 
+use polhode_ga::simd::double;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `hi + lo`, `|lo| <= ulp(hi)/2`.
@@ -20,29 +21,19 @@ impl DoubleDouble {
     pub const OVER_TWO_PI: DoubleDouble =
         DoubleDouble { hi: 0.159_154_943_091_895_35, lo: -9.839_338_337_591_243e-18 };
 
-    /// `a + b` without error (Knuth).
+    /// `a + b` without error.
     pub fn two_sum(a: f64, b: f64) -> DoubleDouble {
-        let hi = a + b;
-        let part = hi - a;
-        DoubleDouble { hi, lo: (a - (hi - part)) + (b - part) }
+        double::two_sum(a, b).into()
     }
 
     /// `a + b` without error for `|a| >= |b|`.
     fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
-        let hi = a + b;
-        DoubleDouble { hi, lo: b - (hi - a) }
+        double::quick_two_sum(a, b).into()
     }
 
-    /// `a b` without error, by splitting both into halves of 26 bits (Veltkamp, Dekker).
+    /// `a b` without error.
     pub fn two_product(a: f64, b: f64) -> DoubleDouble {
-        let split = |x: f64| {
-            let c = 134_217_729.0 * x;
-            let high = c - (c - x);
-            (high, x - high)
-        };
-        let ((a1, a2), (b1, b2)) = (split(a), split(b));
-        let hi = a * b;
-        DoubleDouble { hi, lo: ((a1 * b1 - hi) + a1 * b2 + a2 * b1) + a2 * b2 }
+        double::two_product::<false>(a, b).into()
     }
 
     pub fn sqrt(self) -> DoubleDouble {
@@ -82,6 +73,12 @@ impl DoubleDouble {
 impl From<f64> for DoubleDouble {
     fn from(hi: f64) -> DoubleDouble {
         DoubleDouble { hi, lo: 0.0 }
+    }
+}
+
+impl From<(f64, f64)> for DoubleDouble {
+    fn from((hi, lo): (f64, f64)) -> DoubleDouble {
+        DoubleDouble { hi, lo }
     }
 }
 

@@ -1,7 +1,6 @@
 //! Arithmetic and functions of numbers.
 
 pub(crate) mod double_double;
-pub(crate) mod eigen;
 pub mod elliptic;
 pub(crate) mod exact_sum;
 pub(crate) mod lanes;

@@ -1,8 +1,9 @@
 //! Names that a scene defines, and formulas that use them.
 
 use crate::laws::torque::{Axes, FormulaTorque, given_names};
-use crate::units::Source;
+use crate::units::UNITS;
 use polhode_ga::Graded;
+use polhode_ga::formula::session::Source;
 use polhode_ga::formula::{
     Error, Given, Input, Meaning, Names, Runner, Space, Span, Type, canonical, compile, define, heading,
     parse,
@@ -91,6 +92,6 @@ impl Formulas {
     fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Wrong> {
         let known = |name: String| self.names.get(&name).is_some() || parameters.contains(&name);
         let is_name = |word: &str| canonical(word).is_some_and(known);
-        Source::read(text, is_name).map_err(|error| Wrong { message: error.message, span: error.span })
+        Source::read(text, is_name, UNITS).map_err(Wrong::from)
     }
 }

@@ -10,19 +10,21 @@
 //! exponent of the number's text, so that `7.85 g/cm^3` is exactly the `7850.0` of a source file.
 
 mod factor;
-mod source;
 mod table;
 #[cfg(test)]
 mod tests;
 mod within;
 
-pub use source::Source;
-pub use within::{Within, WithinError, quantities};
+pub use within::quantities;
 
 use factor::{Factor, Problem};
 use polhode_ga::diagnostic::quote;
+use polhode_ga::formula::session::Units;
 use std::fmt;
 use table::{Dimension, FREQUENCY, find_unit, near_unit};
+
+/// How sessions of formulas read quantities.
+pub const UNITS: Units = Units { quantities, near };
 
 /// What a number measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

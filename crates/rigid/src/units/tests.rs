@@ -225,9 +225,9 @@ proptest! {
 
 /// The formula with each quantity replaced by its value in angle brackets.
 fn within(text: &str, names: &[&str]) -> Result<String, String> {
-    let found = quantities(text, |name| names.contains(&name)).map_err(|error| error.message)?;
+    let found = quantities(text, &|name| names.contains(&name)).map_err(|error| error.message)?;
     let (mut shown, mut at) = (String::new(), 0);
-    for Within { span, value } in found {
+    for (span, value) in found {
         shown.push_str(&format!("{}<{value}>", &text[at..span.start]));
         at = span.end;
     }
@@ -298,9 +298,9 @@ fn what_has_two_readings_within_a_formula_is_refused() {
 proptest! {
     #[test]
     fn quantities_lie_within_any_text_in_order(text in "[0-9.e+−^*/·a-zmskg°²∧()_' ]{0,30}|\\PC*") {
-        if let Ok(found) = quantities(&text, |name| name == "x") {
+        if let Ok(found) = quantities(&text, &|name| name == "x") {
             let mut end = 0;
-            for Within { span, value } in found {
+            for (span, value) in found {
                 prop_assert!(end <= span.start && span.start < span.end && value.is_finite());
                 prop_assert!(text.get(span.clone()).is_some());
                 end = span.end;

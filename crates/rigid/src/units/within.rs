@@ -7,28 +7,14 @@
 use super::factor::{Factor, Problem, split_power};
 use super::table::{Unit, find_unit};
 use super::{split_number, value};
+use polhode_ga::formula::{Error, Span};
 use std::ops::Range;
 
-/// A quantity and where it stands.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Within {
-    /// In bytes.
-    pub span: Range<usize>,
-    /// In SI units, rad for angles.
-    pub value: f64,
-}
-
-/// Why the quantities of a formula have no value, and where in bytes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WithinError {
-    /// What is wrong, and what to do.
-    pub message: String,
-    /// The quantity, or the unit.
-    pub span: Range<usize>,
-}
+/// A quantity's place in bytes, and its value in SI units, rad for angles.
+type Found = (Range<usize>, f64);
 
 /// The quantities in a formula whose other names are those that `is_name` knows, from left to right.
-pub fn quantities(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Vec<Within>, WithinError> {
+pub fn quantities(text: &str, is_name: &dyn Fn(&str) -> bool) -> Result<Vec<Found>, Error> {
     let alone = text.trim().trim_start_matches(['-', '\u{2212}']);
     if begins_number(alone) && number_length(alone) == alone.len() {
         let start = text.find(alone).unwrap_or(0);
@@ -40,9 +26,9 @@ pub fn quantities(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Vec<With
     while let Some(c) = text[at..].chars().next() {
         if begins_number(&text[at..]) && !continues_word(before) && before != '.' {
             let end = at + number_length(&text[at..]);
-            match quantity(text, at, end, &is_name)? {
+            match quantity(text, at, end, is_name)? {
                 Some(quantity) => {
-                    at = quantity.span.end;
+                    at = quantity.0.end;
                     found.push(quantity);
                 }
                 None => at = end,
@@ -56,13 +42,17 @@ pub fn quantities(text: &str, is_name: impl Fn(&str) -> bool) -> Result<Vec<With
     Ok(found)
 }
 
+fn error(place: Range<usize>, message: String) -> Error {
+    Error { message, span: Span { start: place.start, end: place.end } }
+}
+
 /// The quantity whose number is `text[start..number_end]`.
 fn quantity(
     text: &str,
     start: usize,
     number_end: usize,
-    is_name: &impl Fn(&str) -> bool,
-) -> Result<Option<Within>, WithinError> {
+    is_name: &dyn Fn(&str) -> bool,
+) -> Result<Option<Found>, Error> {
     let before = text[..start].trim_end().chars().next_back();
     let first = skip_spaces(text, number_end);
     // What stands after `^` is a power.
@@ -73,13 +63,13 @@ fn quantity(
     let (number, written, span) = (&text[start..number_end], &text[start..end], start..end);
     if before == Some('/') {
         let message = format!("`/` before a quantity has two readings; put brackets around `{written}`");
-        return Err(WithinError { message, span });
+        return Err(error(span, message));
     }
     check_exponent(number, &span)?;
     let Some((number, _)) = split_number(number) else { return Ok(None) };
     match value(written, &number, factor) {
-        Ok(value) => Ok(Some(Within { span, value })),
-        Err(error) => Err(WithinError { message: error.to_string(), span }),
+        Ok(value) => Ok(Some((span, value))),
+        Err(problem) => Err(error(span, problem.to_string())),
     }
 }
 
@@ -88,8 +78,8 @@ fn factor(
     text: &str,
     start: usize,
     first: usize,
-    is_name: &impl Fn(&str) -> bool,
-) -> Result<(Factor, usize), WithinError> {
+    is_name: &dyn Fn(&str) -> bool,
+) -> Result<(Factor, usize), Error> {
     let (mut factor, mut end) = (Factor::default(), first);
     let mut divided = false;
     let mut next = Some((first, None));
@@ -103,7 +93,7 @@ fn factor(
                 &text[start..end],
                 &text[start..end]
             );
-            return Err(WithinError { message, span: at..at + length });
+            return Err(error(at..at + length, message));
         }
         divided |= divides;
         if is_name(word) || word.chars().all(|c| is_name(c.encode_utf8(&mut [0; 4]))) {
@@ -112,14 +102,14 @@ fn factor(
                 false => format!("({}) {word}", &text[start..end]),
             };
             let message = format!("`{word}` is a unit and a name here; for the name write `{name}`");
-            return Err(WithinError { message, span: at..at + length });
+            return Err(error(at..at + length, message));
         }
         let (power, rest) = match begins_power(after).then(|| split_power(after)) {
             None => (1, after),
             Some(Ok(power)) => power,
             Some(Err(Problem::Syntax(problem) | Problem::UnknownUnit(problem))) => {
                 let message = format!("{problem} after the unit `{word}`");
-                return Err(WithinError { message, span: at..at + length });
+                return Err(error(at..at + length, message));
             }
         };
         factor.multiply(unit, if divides { -power } else { power });
@@ -184,7 +174,7 @@ fn number_length(text: &str) -> usize {
 }
 
 /// `2e1` is twice a basis vector in a formula, and 20 everywhere else.
-fn check_exponent(number: &str, span: &Range<usize>) -> Result<(), WithinError> {
+fn check_exponent(number: &str, span: &Range<usize>) -> Result<(), Error> {
     let Some((digits, exponent)) = number.split_once('e') else { return Ok(()) };
     if !exponent.chars().all(|c| ('1'..='9').contains(&c)) {
         return Ok(());
@@ -192,7 +182,7 @@ fn check_exponent(number: &str, span: &Range<usize>) -> Result<(), WithinError> 
     let message = format!(
         "`{number}` has two readings; write `{digits}e+{exponent}` for the number, `{digits} e{exponent}` for the product"
     );
-    Err(WithinError { message, span: span.clone() })
+    Err(error(span.clone(), message))
 }
 
 /// Whether a character within a word belongs to it: letters, digits, subscripts, primes, combining marks.

@@ -1,4 +1,4 @@
-"""The command ``polhode eval``: formulas from arguments, a file or standard input, one a line."""
+"""The command ``polhode eval``: evaluate formulas from arguments, a file or standard input."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from collections.abc import Iterator
 from typing import Any, BinaryIO, NamedTuple
 
 from polhode._formula.agreement import Agreement
-from polhode._formula.shell.session import Answer, LineError, Session, told, without_comment
+from polhode._formula.shell.session import Answer, LineError, Session, text_of, without_comment
 
 OK, FALSE, BAD_INPUT = 0, 1, 3
 
-# Longer lines, in bytes, are no formulas.
+# Longer lines, in bytes, are refused.
 _LONGEST = 100_000
 _LET = re.compile(r"let\s+")
 
 
 class Line(NamedTuple):
-    """A line of some source, and what is wrong with it before it is read."""
+    """A line of some source, and its error if it cannot be read."""
 
     source: str
     number: int
@@ -30,11 +30,11 @@ class Line(NamedTuple):
 
 
 class UnreadableError(Exception):
-    """Why a file cannot be read."""
+    """A file cannot be read."""
 
 
 def run(options: argparse.Namespace) -> int:
-    """Evaluate all formulas; the exit code tells of those that are wrong, and of equations that are false."""
+    """Evaluate all formulas; return the exit code: errors before false equations."""
     session, records, codes = Session(only_finite=True), [], {OK}
     for line in _lines(options):
         try:
@@ -53,15 +53,15 @@ def run(options: argparse.Namespace) -> int:
         if options.json:
             records.append(_record(line, answer))
         else:
-            # At once, so that values and errors come in order.
-            print(_latex(answer) if options.latex else told(answer.value), flush=True)
+            # Flushed, so that values and errors appear in order.
+            print(_latex(answer) if options.latex else text_of(answer.value), flush=True)
     if options.json:
         print(json.dumps(records, indent=2, allow_nan=False))
     return max(codes)
 
 
 def _answer(session: Session, line: Line) -> Answer | None:
-    """Return what a line comes to; None of one that gives a value to a name."""
+    """Return the answer to a line; None for an assignment."""
     if line.mistake:
         raise line.mistake
     let = _LET.match(line.text)
@@ -76,7 +76,7 @@ def _answer(session: Session, line: Line) -> Answer | None:
 
 
 def _lines(options: argparse.Namespace) -> Iterator[Line]:
-    """Return what ``--let`` says, then the lines of the file or of standard input, then the arguments."""
+    """Yield the values of ``--let``, the lines of the file or of standard input, then the arguments."""
     for text in options.let:
         yield _checked(Line("--let", 1, text, assigns=True))
     if options.file or not options.formulas:
@@ -87,7 +87,7 @@ def _lines(options: argparse.Namespace) -> Iterator[Line]:
 
 
 def _file(path: str) -> Iterator[Line]:
-    """Return the lines of a file, as they come."""
+    """Yield the lines of a file as they arrive."""
     source = "<stdin>" if path == "-" else path.encode(errors="replace").decode()
     empty = True
     try:
@@ -102,7 +102,7 @@ def _file(path: str) -> Iterator[Line]:
     except OSError as error:
         raise UnreadableError(f"{source}: error: {(error.strerror or str(error)).lower()}") from error
     if empty:
-        raise UnreadableError(f"{source}: error: there is no formula; write one a line")
+        raise UnreadableError(f"{source}: error: no formula found; write one on each line")
 
 
 def _standard_input() -> BinaryIO:
@@ -126,7 +126,7 @@ def _decoded(source: str, number: int, data: bytes) -> Line:
 
 
 def _checked(line: Line) -> Line:
-    """Return an argument, which may have bytes that are no text."""
+    """Return an argument; bytes that are not UTF-8 become its error."""
     try:
         line.text.encode()
     except UnicodeEncodeError as error:
@@ -135,11 +135,11 @@ def _checked(line: Line) -> Line:
     return line
 
 
-# --- what is told
+# --- output
 
 
 def _record(line: Line, answer: Answer) -> dict[str, Any]:
-    """Return an answer as JSON has it."""
+    """Return an answer as a JSON object."""
     value = answer.value
     spelled = {"text": "unicode", "ascii": "ascii", "latex": "latex"}
     record = {"formula": line.text} | {key: answer.spelled(style) for key, style in spelled.items()}
@@ -157,8 +157,8 @@ def _record(line: Line, answer: Answer) -> dict[str, Any]:
 
 
 def _latex(answer: Answer) -> str:
-    """Return an equation, and whether it holds as a comment; or a formula and what it is equal to."""
+    """Return an equation with its result as a comment, or a formula and its value."""
     formula = answer.spelled("latex")
     if isinstance(answer.value, Agreement):
-        return f"{formula} % {told(answer.value)}"
+        return f"{formula} % {text_of(answer.value)}"
     return f"{formula} = {answer.value._repr_latex_().strip('$')}"

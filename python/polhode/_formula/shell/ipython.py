@@ -1,4 +1,4 @@
-"""``%ga`` and ``%%ga`` for notebooks: formulas that use the notebook's names and add to them."""
+"""The IPython magics ``%ga`` and ``%%ga``: formulas over the names of a notebook."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _CALLS = re.compile(rf"\b({'|'.join(FUNCTIONS)})\s*\(")
 
 
 class NotebookError(ValueError):
-    """What is wrong with a line of formulas; a notebook shows it without the calls that led there."""
+    """An error in a line of formulas; notebooks show it without a traceback."""
 
     def _render_traceback_(self) -> list[str]:
         return str(self).splitlines()
 
 
 def spelled(text: str, everything: dict[str, Any]) -> dict[str, str]:
-    """Return the names of a notebook that a text may use: by their spelling in formulas.
+    """Return the names of a notebook that a text may use, by their spelling in formulas.
 
-    Large arrays, and all values where they are of several algebras, are only given to formulas that may use
-    them: those with all the letters of their names.
+    A formula that contains all letters of a name may use it. Arrays, and any values where there are several
+    algebras, are given only to such formulas.
     """
     usable = {name: value for name, value in everything.items() if _is_usable(value)}
     algebras = {signature for value in usable.values() if (signature := _signature(value))}
@@ -55,14 +55,14 @@ def _is_usable(value: Any) -> bool:
 
 
 def _signature(value: Any) -> tuple[int, int, int] | None:
-    """Return that of the algebra a value belongs to; linear maps are of 3-d space."""
+    """Return the signature of the algebra of a value; linear maps belong to 3-d space."""
     if isinstance(value, _native.Multivector):
         return value.algebra.signature
     return (3, 0, 0) if isinstance(value, LinearMap) else None
 
 
 def magic(everything: dict[str, Any]) -> Any:
-    """Return the function behind ``%ga`` and ``%%ga`` for a notebook with these names."""
+    """Return the function of ``%ga`` and ``%%ga`` for a notebook with these names."""
     session = Session(only_finite=False)
 
     def run(text: str) -> Answer:
@@ -75,13 +75,13 @@ def magic(everything: dict[str, Any]) -> Any:
         return answer
 
     def ga(line: str, cell: str | None = None) -> Any:
-        """Evaluate formulas, one a line; the value of the last is displayed.
+        """Evaluate formulas, one on each line, and display the value of the last.
 
-        ``name = …`` gives a name of the notebook a value, in which units are read (``θ = 90 deg``), and
+        ``name = …`` assigns to a name of the notebook, with units if needed (``θ = 90 deg``), and
         ``f(x) = …`` defines a function for later lines. ``lhs == rhs`` compares; ``#`` begins a comment.
         """
         value = None
-        # The line of the magic itself is the first of a cell.
+        # The line of the magic itself is line 1 of a cell.
         for number, text in enumerate([line, *(cell or "").splitlines()], 1):
             text = without_comment(text)
             try:
@@ -96,5 +96,5 @@ def magic(everything: dict[str, Any]) -> Any:
 
 
 def load(shell: Any) -> None:
-    """Add the magics to a shell of IPython."""
+    """Register the magics in an IPython shell."""
     shell.register_magic_function(magic(shell.user_ns), magic_kind="line_cell", magic_name="ga")

@@ -1,4 +1,4 @@
-"""The command ``polhode repl``: formulas as they are typed, with a history and completion of names."""
+"""The command ``polhode repl``: an interactive prompt with history and completion."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from pathlib import Path
 from typing import Any
 
 from polhode._formula.formula import Formula
-from polhode._formula.shell.session import FUNCTIONS, LineError, Session, told, without_comment
+from polhode._formula.shell.session import FUNCTIONS, LineError, Session, text_of, without_comment
 from polhode._support.files import write_atomically
 
 _PROMPT = "> "
 _KEPT = 1000
-# What is longer, in characters, is no formula; it is read in pieces.
+# Longer lines, in characters, are read in pieces.
 _LONGEST = 100_000
-# Between these a name ends for completion.
+# Delimiters of names for completion.
 _DELIMITERS = " \t\n()[]{}⟨⟩<>=+-−*/^∧|·×⨯⌋⌊~,"
 
 _HELP = """\
-A formula, as on paper or in ASCII, prints its value:   -I a∧b   or   -I a^b
+A formula prints its value:   -I a∧b   or   -I a^b
 name = value gives a name a value, which may have units:   θ = 90 deg
 f(x) = … defines a function:   V(x) = ½ x·x
-lhs == rhs compares; _ is the last value; what follows # is a comment.
+lhs == rhs compares two sides; _ is the last value; # begins a comment.
 
-:names            what has a value
-:clear NAME       take it away
+:names            list names and their values
+:clear NAME       remove a name
 :grades FORMULA   the grades of its value
-:tree FORMULA     how it is read
+:tree FORMULA     its syntax tree
 :latex FORMULA    the formula in LaTeX
-:help, :quit      this page; leave (as Ctrl-D does)"""
+:help, :quit      this text; leave (also Ctrl-D)"""
 
 
 class Prompt:
-    """What answers to lines that are typed."""
+    """The prompt: it answers formulas and commands."""
 
     def __init__(self) -> None:
         self.session = Session(only_finite=True)
@@ -51,20 +51,20 @@ class Prompt:
         }
 
     def answer(self, line: str) -> str:
-        """Return what a line prints; a LineError if something is wrong with it, EOFError to leave."""
+        """Return the output of a line; raise LineError for an error in it, EOFError to leave."""
         if not line.startswith(":"):
             answer = self.session.run(line)
-            return "" if answer.name else told(answer.value)
+            return "" if answer.name else text_of(answer.value)
         word = line.split()[0]
         command = self._commands.get(word)
         if command is None:
             known = ", ".join(self._commands)
-            raise LineError(f"there is no command `{word}`; there are {known}", 0, len(word))
+            raise LineError(f"unknown command `{word}`; expected one of {known}", 0, len(word))
         start = len(line) - len(line[len(word) :].lstrip())
         return command(line, start)
 
     def candidates(self, text: str) -> list[str]:
-        """Return what the beginning of a name or a command may become."""
+        """Return the names or commands that begin with `text`."""
         if text.startswith(":"):
             return [command for command in self._commands if command.startswith(text)]
         session = self.session
@@ -80,7 +80,7 @@ class Prompt:
         for name in session.names:
             head, body = session.functions.get(name) or (name, repr(session.values[name]))
             lines.append(f"{head} = {body.strip()}")
-        return "\n".join(lines) or "no name has a value yet; `a = 2 e1 + e2` gives one"
+        return "\n".join(lines) or "no names have values yet; assign one with `a = 2 e1 + e2`"
 
     def _clear(self, line: str, start: int) -> str:
         name = line[start:]
@@ -109,7 +109,7 @@ class Prompt:
 
 
 def _branches(node: dict[str, Any], indent: str) -> Iterator[str]:
-    """Return a syntax tree line by line: what each part is, how it is written, and its grades."""
+    """Yield the lines of a syntax tree: kind, text and grades of each node."""
     grades = "" if node["grades"] is None else f"  grade {', '.join(map(str, node['grades']))}"
     yield f"{indent}{node['kind']}  {node['text']}{grades}"
     for child in node["children"]:
@@ -117,7 +117,7 @@ def _branches(node: dict[str, Any], indent: str) -> Iterator[str]:
 
 
 def run() -> int:
-    """Answer to standard input, line by line, until it ends."""
+    """Answer the lines of standard input until it ends."""
     prompt = Prompt()
     if getattr(sys, "stdin", None) is None:  # as after `<&-`
         raise OSError("standard input is closed")
@@ -140,7 +140,7 @@ def run() -> int:
                     raise
                 print()
             else:
-                # At once, so that values and errors come in order.
+                # Flushed, so that values and errors appear in order.
                 print(text, end="\n" if text else "", flush=True)
     return 0
 
@@ -165,7 +165,7 @@ def _piped_line() -> str | None:
 
 @contextmanager
 def _editing(prompt: Prompt) -> Iterator[None]:
-    """Let lines be edited, names completed, and keep what is typed for the next time."""
+    """Enable line editing, completion and the history."""
     try:
         import readline
     except ImportError:  # not on every system
@@ -191,7 +191,7 @@ def _editing(prompt: Prompt) -> Iterator[None]:
 
 
 def _history_path() -> Path:
-    """Return where the XDG base directories have it."""
+    """Return the path of the history by the XDG base directory standard."""
     state = os.environ.get("XDG_STATE_HOME", "")
     return Path(state if os.path.isabs(state) else "~/.local/state").expanduser() / "polhode" / "history"
 
@@ -199,12 +199,12 @@ def _history_path() -> Path:
 def _history(path: Path) -> list[str]:
     try:
         return path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:  # as the first time
+    except OSError:  # none yet
         return []
 
 
 def _keep(path: Path, lines: list[str]) -> None:
-    """Add lines to the history, in which another prompt may have written meanwhile."""
+    """Append lines to the history, which another prompt may have extended meanwhile."""
     if not lines:
         return
     kept = [*_history(path), *lines][-_KEPT:]
@@ -212,4 +212,4 @@ def _keep(path: Path, lines: list[str]) -> None:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         write_atomically({path: "".join(f"{line}\n" for line in kept).encode(errors="replace")})
     except OSError as error:
-        print(f"polhode: the history is not kept: {error}", file=sys.stderr)
+        print(f"polhode: cannot save the history: {error}", file=sys.stderr)

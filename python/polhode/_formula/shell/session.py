@@ -1,8 +1,7 @@
-"""Formulas line by line, and the names they give values to: for the shell, the prompt and notebooks."""
+"""Sessions of formulas for the shell, the prompt and notebooks; the core reads their lines."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
@@ -20,14 +19,9 @@ FUNCTIONS = (
 
 T = TypeVar("T")
 
-# `_` alone: neither a subscript, `a_1`, nor the grade of a part, `⟨M⟩_2`.
-_LAST = re.compile("(?<![\\w\u0300-\u036f⟩〉>})\\]'′’∥⊥])_(?![\\w{])")
-_LAST_NAME = "last_value"
-_CALL = re.compile(r"([^()]+)\(([^()]*)\)")
-
 
 class LineError(Exception):
-    """What is wrong with a line, and where in it, in characters."""
+    """An error in a line, with its place in characters."""
 
     def __init__(self, message: str, start: int, end: int) -> None:
         super().__init__(message)
@@ -40,9 +34,9 @@ class LineError(Exception):
 
 @dataclass(frozen=True)
 class Answer:
-    """What a line came to: the value of a formula, and the name that got it, if one did.
+    """The outcome of a line: its value, and the name that got it, if any.
 
-    Where a function was defined there is no value.
+    A definition of a function has no value.
     """
 
     value: Any = None
@@ -57,19 +51,19 @@ class Answer:
 
 
 class Session:
-    """Names with values, and functions, which lines of formulas use and add to.
+    """Names with values and functions, which lines of formulas use and define.
 
     Units are read where a name gets a value, ``θ = 90 deg``, and nowhere else: in a formula ``m`` is a name.
-    ``_`` stands for the last value.
+    ``_`` is the last value.
 
     Attributes
     ----------
     only_finite
-        Whether a value that is infinite or NaN is a mistake.
+        Whether an infinite value or NaN is an error.
     values
         By canonical name.
     functions
-        Head and body, ``("V(x)", "½ x·x")``, by canonical name. They come before values of the same name.
+        Head and body, ``("V(x)", "½ x·x")``, by canonical name. They take precedence over values.
     """
 
     def __init__(self, only_finite: bool) -> None:
@@ -80,53 +74,38 @@ class Session:
 
     @property
     def names(self) -> list[str]:
-        """What has a value or is a function."""
+        """The names of values and functions."""
         return sorted({*self.values, *self.functions})
 
     def run(self, line: str) -> Answer:
-        """Return what a line comes to: ``name = …`` and ``f(x) = …`` assign, all else is a formula.
+        """Return the outcome of a line: ``name = …`` and ``f(x) = …`` assign, anything else is a formula.
 
-        What is wrong with it is a LineError.
+        Raises
+        ------
+        LineError
+            If the line is invalid or has no value.
         """
-        return self.assign(line) if assigns(line) else self.evaluate(line)
+        return self._outcome(self._line(line, 0, None))
 
-    def evaluate(self, line: str, start: int = 0) -> Answer:
-        """Return the value of the formula ``line[start:]``."""
-        return self._answer(_Source(line, start))
+    def evaluate(self, line: str) -> Answer:
+        """Return the value of a formula, or the agreement of an equation."""
+        return self._outcome(self._line(line, 0, False))
 
     def assign(self, line: str, start: int = 0) -> Answer:
         """Give a value to the name before the first ``=`` of ``line[start:]``, or define a function."""
-        written, sign, _ = line[start:].partition("=")
-        head, body = written.strip(), start + len(written) + len(sign)
-        function, name = called(head), canonical(head)
-        if not sign or not (function or name):
-            problem = f"`{head}` is no name" if sign else "expected `name = value`"
-            first = start + len(written) - len(written.lstrip())
-            names = "names are letters with subscripts and primes, `Ω_B`, `R'`, or words"
-            raise LineError(f"{problem}; {names}", first, first + len(head))
-        parameters = head.removesuffix(")").partition("(")[2].split(",") if function else []
-        source = _Source(line, body, self._quantities(line, body, parameters))
-        if function:
-            self._define(function, head, source)
-            return Answer(name=function)
-        answer = self._answer(source)
-        if isinstance(answer.value, Agreement):
-            raise source.mistake(f"an equation is no value for `{head}`; compare with `==`")
-        self.values[str(name)] = answer.value
-        self.functions.pop(str(name), None)
-        return replace(answer, name=name)
+        return self._outcome(self._line(line, start, True))
 
     def about(self, line: str, start: int, what: Callable[..., T]) -> T:
-        """Return what `what` makes of the formula ``line[start:]`` and of the values of names."""
-        source = _Source(line, start)
-        read, given = self._read(source)
+        """Return the result of `what` for the formula ``line[start:]`` and the values of names."""
+        read = self._line(line, start, False)
+        parsed, given = self._parsed(read)
         try:
-            return what(read, **given)
+            return what(parsed, **given)
         except FormulaError as error:
-            raise source.mistake_of(error) from None
+            raise _placed(read, error) from None
 
     def forget(self, name: str) -> None:
-        """Take its value or its formula from a name; a LookupError says why not."""
+        """Remove a name; a LookupError says why this is not possible."""
         key = canonical(name) or name
         if key not in self.names:
             raise LookupError(f"`{name}` has no value")
@@ -140,57 +119,67 @@ class Session:
 
     # --- how
 
-    def _read(self, source: _Source) -> tuple[Formula, dict[str, Any]]:
-        given = _given(self.functions, self.values)
-        if source.uses_last:
-            if self._last is None:
-                raise source.mistake("`_` is the last value; there is none yet")
-            given[_LAST_NAME] = self._last
+    def _line(self, line: str, start: int, assigns: bool | None) -> _native.Line:
         try:
-            return formula(source.text, define=dict(self.functions.values())), given
-        except FormulaError as error:
-            raise source.mistake_of(error) from None
+            return _native.Line(line, start, assigns, set(self.names))
+        except ValueError as error:
+            raise LineError(*error.args) from None
 
-    def _answer(self, source: _Source) -> Answer:
-        read, given = self._read(source)
+    def _outcome(self, read: _native.Line) -> Answer:
+        if read.name and read.function:
+            self._define(read, read.name, read.function)
+            return Answer(name=read.name)
+        answer = self._answer(read)
+        if read.name is None:
+            return answer
+        if isinstance(answer.value, Agreement):
+            raise LineError(*read.error(_native.EQUATION_AS_VALUE))
+        self.values[read.name] = answer.value
+        self.functions.pop(read.name, None)
+        return replace(answer, name=read.name)
+
+    def _parsed(self, read: _native.Line) -> tuple[Formula, dict[str, Any]]:
+        given = _given(self.functions, self.values)
+        if read.uses_last:
+            if self._last is None:
+                raise LineError(*read.error(_native.NO_LAST_VALUE))
+            given[_native.LAST_VALUE] = self._last
         try:
-            value = read(given)
+            return formula(read.text, define=dict(self.functions.values())), given
         except FormulaError as error:
-            raise source.mistake_of(error) from None
+            raise _placed(read, error) from None
+
+    def _answer(self, read: _native.Line) -> Answer:
+        parsed, given = self._parsed(read)
+        try:
+            value = parsed(given)
+        except FormulaError as error:
+            raise _placed(read, error) from None
         except (ValueError, TypeError, ArithmeticError, MemoryError) as error:
-            raise source.mistake(str(error) or "out of memory") from None
+            raise LineError(*read.error(str(error) or "out of memory")) from None
         if self.only_finite and not _is_finite(value):
-            raise source.mistake("the value is beyond the range of floating point, about 1.8e308")
+            raise LineError(*read.error(_native.NOT_FINITE))
         if not isinstance(value, Agreement):
             self._last = value
-        return Answer(value, None, read, given)
+        return Answer(value, None, parsed, given)
 
-    def _define(self, name: str, head: str, source: _Source) -> None:
+    def _define(self, read: _native.Line, name: str, head: str) -> None:
         """Define a function, whose other names must have values."""
-        functions = {**self.functions, name: (head, source.text)}
-        place = source.line.index(head)
+        functions = {**self.functions, name: (head, read.text)}
         try:
             _check(functions, self.values)
         except FormulaError as error:
-            if canonical(error.text[slice(*error.span)]) == name:
-                raise source.mistake(f"`{name}` would call itself; formulas have no recursion") from None
-            if error.text == head:
-                raise LineError(error.message, place, place + len(head)) from None
-            raise source.mistake_of(error) from None
+            raise _placed(read, error) from None
         self.functions = functions
 
-    def _quantities(self, line: str, start: int, parameters: list[str]) -> list[tuple[int, int, float]]:
-        names = {*self.names, *(canonical(name) or name for name in parameters)}
-        try:
-            found = _native.quantities(line[start:], names)
-        except ValueError as error:
-            message, first, last = error.args
-            raise LineError(message, start + first, start + last) from None
-        return [(start + first, start + last, value) for first, last, value in found]
+
+def _placed(read: _native.Line, error: FormulaError) -> LineError:
+    """Return an error with its place in the line."""
+    return LineError(*read.place(error.message, error.text, error.span))
 
 
 def _check(functions: dict[str, tuple[str, str]], values: Mapping[str, Any]) -> None:
-    """Raise a FormulaError unless the functions are functions of these values."""
+    """Raise a FormulaError unless all names in the functions have values."""
     formula("0", define=dict(functions.values()))(_given(functions, values))
 
 
@@ -198,86 +187,24 @@ def _given(functions: dict[str, tuple[str, str]], values: Mapping[str, Any]) -> 
     return {name: value for name, value in values.items() if name not in functions}
 
 
-class _Source:
-    """The formula ``line[start:]`` as it is read, with numbers for quantities, and where it comes from."""
-
-    def __init__(self, line: str, start: int, quantities: list[tuple[int, int, float]] | None = None) -> None:
-        self.line, self.has_units = line, quantities is not None
-        replaced = [(first, last, f"({value!r})") for first, last, value in quantities or []]
-        last_values = [(*match.span(), _LAST_NAME) for match in _LAST.finditer(line, start)]
-        self.uses_last = bool(last_values)
-        pieces: list[str] = []
-        self.places: list[tuple[int, int]] = []  # of each character, in the line
-        at = start
-        for first, last, text in [*sorted(replaced + last_values), (len(line), len(line), "")]:
-            pieces += [line[at:first], text]
-            self.places += [(i, i + 1) for i in range(at, first)] + [(first, last)] * len(text)
-            at = last
-        self.text = "".join(pieces)
-        self.whole = (len(line) - len(line[start:].lstrip()), len(line.rstrip()))
-
-    def mistake(self, message: str) -> LineError:
-        """Return what is wrong with all of it."""
-        return LineError(message, *self.whole)
-
-    def mistake_of(self, error: FormulaError) -> LineError:
-        """Return an error with its place in the line."""
-        if error.text != self.text:
-            return self.mistake(f"{error.message}, in the definition `{error.text}`")
-        start, end = error.span
-        if start >= len(self.places):
-            return LineError(error.message, self.whole[1], self.whole[1])
-        first, last = self.places[start]
-        last = self.places[end - 1][1] if end > start else last
-        return LineError(error.message + self._about_units(error.message, first, last), first, last)
-
-    def _about_units(self, message: str, start: int, end: int) -> str:
-        """Return what to say where a word that has no value may be a unit."""
-        word, after_number = self.line[start:end], self.line[:start].rstrip()[-1:].isnumeric()
-        if not (word.isalpha() and "has no value" in message and (unit := _native.near_unit(word))):
-            return ""
-        if unit == word and self.has_units:
-            return f". The unit `{unit}` stands right after a number, as in `0.5 {unit}`"
-        if not after_number:
-            return ""
-        if unit == word:
-            return f". Units are read where a name gets a value, as in `x = 2 {word}`"
-        return f". Is the unit `{unit}` meant?" if self.has_units else ""
-
-
-def assigns(line: str) -> bool:
-    """Whether a line gives a value to a name, ``a = …`` or ``V(x) = …``; if not it is a formula."""
-    head, sign, rest = line.partition("=")
-    head = head.strip()
-    return bool(sign and not rest.startswith("=") and (called(head) or canonical(head)))
-
-
-def called(head: str) -> str | None:
-    """Return the canonical name of the function in ``V(x)``, all of whose arguments are names."""
-    match = _CALL.fullmatch(head)
-    if match is None or not all(canonical(name) for name in match[2].split(",")):
-        return None
-    return canonical(match[1])
-
-
 def canonical(name: str) -> str | None:
-    """Return the one spelling of a name, ``a1`` for ``a_1``; None if it is no name."""
+    """Return the canonical spelling of a name, ``a1`` for ``a_1``; None if it is not a name."""
     return _native.canonical(name.strip())
 
 
 def without_comment(line: str) -> str:
-    """Return a line without what follows ``#`` and without spaces around it."""
+    """Return a line without its comment, ``# …``, and the spaces around it."""
     return line.partition("#")[0].strip()
 
 
 def _is_finite(value: Any) -> bool:
-    """Whether the numbers of a value or an agreement are numbers, not the infinity or NaN of an overflow."""
+    """Whether all numbers of a value or an agreement are finite."""
     numbers = (value.residual, value.size) if isinstance(value, Agreement) else (value.components,)
     return all(bool(np.all(np.isfinite(x))) for x in numbers)
 
 
-def told(value: Any) -> str:
-    """Return a value as it stands on paper, or whether the sides of an equation agree."""
+def text_of(value: Any) -> str:
+    """Return a value in the notation of formulas, or whether the sides of an equation agree."""
     if not isinstance(value, Agreement):
         return repr(value)
     return f"{str(bool(value)).lower()}, residual {value.residual:.2g} of terms of size {value.size:.2g}"

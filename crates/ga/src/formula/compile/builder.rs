@@ -1,4 +1,4 @@
-//! The steps of a program as they are found: equal ones once, those that nothing uses left out.
+//! Builder of programs: shares equal steps and drops unused ones.
 
 use super::program::{Id, Input, InputKind, Op, Program, Step};
 use crate::formula::syntax::names::Type;
@@ -8,13 +8,13 @@ use crate::formula::{Error, MAX_NODES, Space};
 use crate::product::Grades;
 use std::collections::HashMap;
 
-/// A program in the making.
+/// A program under construction.
 pub(crate) struct Builder<'a> {
     pub space: Space<'a>,
     pub program: Program,
-    /// Where the call stands of the definition that is being written out: the place of all its steps.
+    /// The call of the definition being expanded: the place of all its steps.
     pub call: Option<Span>,
-    /// The steps there are, by what they do.
+    /// The steps by their keys.
     known: HashMap<[u64; 5], Id>,
 }
 
@@ -45,7 +45,7 @@ impl Builder<'_> {
         Error::new(self.call.unwrap_or(span), message)
     }
 
-    /// A step, or the equal one that is there already.
+    /// Adds a step, or finds an equal one.
     pub fn step(&mut self, op: Op, ty: Type, span: Span) -> Built {
         let key = key(&op, ty);
         if let Some(&id) = self.known.get(&key) {
@@ -54,7 +54,7 @@ impl Builder<'_> {
         if self.program.steps.len() >= MAX_NODES {
             return Err(self.error(
                 span,
-                format!("the formula has more than {MAX_NODES} steps, definitions and sums written out"),
+                format!("the formula has more than {MAX_NODES} steps, with definitions and sums expanded"),
             ));
         }
         let span = self.call.unwrap_or(span);
@@ -63,7 +63,7 @@ impl Builder<'_> {
         Ok(self.program.steps.len() - 1)
     }
 
-    /// The step that reverses this one, if it is there.
+    /// The step that reverses this one, if any.
     pub fn known_reverse(&self, id: Id) -> Option<Id> {
         match self.program.steps[id].op {
             Op::Reverse(x) => Some(x),
@@ -93,14 +93,14 @@ impl Builder<'_> {
         })
     }
 
-    /// Steps and inputs that nothing uses are left out: what an inferred sandwich or a folded constant replaced.
+    /// Drops unused steps and inputs, which inferred sandwiches and folded constants replaced.
     pub fn drop_unused(&mut self) {
         let steps = std::mem::take(&mut self.program.steps);
         let mut used = vec![false; steps.len()];
         for &id in self.program.results.iter().flatten() {
             used[id] = true;
         }
-        // What a step needs comes before it.
+        // Operands come before their steps.
         for id in (0..steps.len()).rev() {
             if used[id] {
                 steps[id].op.operands().for_each(|operand| used[operand] = true);
@@ -129,7 +129,7 @@ impl Builder<'_> {
     }
 }
 
-/// What a step does, as numbers: equal for equal steps only.
+/// The key of a step: equal exactly for equal steps.
 fn key(op: &Op, ty: Type) -> [u64; 5] {
     let pair = |a: usize, b: usize| (a as u64) << 32 | b as u64;
     let [mut kind, mut first, mut second, mut third] = [0; 4];

@@ -1,4 +1,4 @@
-//! Functions and values that are defined by formulas.
+//! Definitions of functions and values by formulas.
 
 use crate::formula::syntax::names::{Definition, Meaning, Names, Type};
 use crate::formula::syntax::parser::parse;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 /// Defines a function, `V(x)`, or a value, `c`, by a formula.
 ///
 /// # Errors
-/// If the head is no name with parameters, the body no formula in them, or if the function would call itself.
+/// If the head is not a name with parameters, the body is not a formula in them, or the function calls itself.
 pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result<(), Error> {
     let (name, parameters) = heading(head)?;
     let any = Meaning::Value(Type::of(Grades::ALL));
@@ -23,7 +23,7 @@ pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result
     let tree = tree?;
     let whole = Span { start: 0, end: body.len() };
     let [body] = <[Node; 1]>::try_from(tree.sides).map_err(|_| {
-        Error::new(whole, format!("`{head}` is defined by an equation; write the value alone"))
+        Error::new(whole, format!("`{head}` cannot be defined by an equation; write one side only"))
     })?;
     if calls(&body, &name, &parameters, names) {
         return Err(Error::new(whole, format!("`{name}` would call itself; formulas have no recursion")));
@@ -39,7 +39,7 @@ pub fn define(head: &str, body: &str, space: Space, names: &mut Names) -> Result
 pub fn heading(head: &str) -> Result<(String, Vec<String>), Error> {
     let tokens = tokens(head)?;
     let whole = Span { start: 0, end: head.len() };
-    let wrong = || Error::new(whole, "what is defined is a name, `c`, or a function of names, `V(x)`");
+    let wrong = || Error::new(whole, "expected a name, `c`, or a function of distinct names, `V(x)`");
     let name = |lexeme: &Lexeme| match lexeme {
         Lexeme::Word(atoms) => joined(atoms),
         _ => None,
@@ -79,7 +79,7 @@ fn calls(body: &Node, name: &str, parameters: &[String], names: &Names) -> bool 
     false
 }
 
-/// The names in a body that are no parameters.
+/// The names in a body other than parameters.
 fn called(body: &Node, parameters: &[String]) -> Vec<String> {
     let mut called = Vec::new();
     body.visit(&mut |node| {

@@ -1,22 +1,23 @@
-//! `(…)'`: the derivative of a formula by the product rule, in terms of the derivatives of its names, which
-//! have names of their own: `(R v ~R)' = R' v ~R + R v' ~R + R v ~R'`.
+//! `(…)'`: the derivative of a formula by the product rule.
+//!
+//! It uses the derivatives of names, which are the primed names: `(R v ~R)' = R' v ~R + R v' ~R + R v ~R'`.
 
 use crate::formula::Error;
 use crate::formula::syntax::indices::is_built_in;
 use crate::formula::syntax::names::{Meaning, Names};
 use crate::formula::syntax::tree::{Kind, Named, Node};
 
-/// Powers above this are not written out.
+/// Powers above this are not expanded.
 const MOST_FACTORS: i32 = 32;
 
-/// What is said of a formula that grows beyond bounds.
+/// The error for a formula that grows beyond bounds.
 pub(crate) const TOO_LONG: &str =
-    "definitions, sums and derivatives make this formula too long when they are written out";
+    "the formula is too long when its definitions, sums and derivatives are expanded";
 
-/// The product rule. It writes each product as often as it has factors, so that what is written is counted.
+/// The product rule. A product becomes one term for each factor, so the nodes are counted.
 pub(crate) struct Derivation<'a> {
     pub names: &'a Names,
-    /// How many more nodes may be written.
+    /// The remaining number of nodes.
     pub left: &'a mut usize,
 }
 
@@ -64,14 +65,14 @@ impl Derivation<'_> {
                 Some(x) => self.of(&x),
                 None => Ok(None),
             },
-            // Linear maps, such as the inertia in body axes, do not change.
+            // Linear maps, such as the inertia in body axes, are constant.
             Kind::Call(name, arguments) if self.is_map(name) => {
                 let rate = arguments.first().map_or(Ok(None), |x| self.of(x))?;
                 Ok(rate.map(|rate| made(Kind::Call(name.clone(), vec![rate]))))
             }
             Kind::Power(..) | Kind::Function(..) | Kind::Call(..) => Err(Error::new(
                 node.span,
-                "a prime means the derivative by the product rule, which knows sums, products and linear maps only; \
+                "a prime is the derivative by the product rule, for sums, products and linear maps only; \
                  give this part a name, and its derivative the primed name",
             )),
         }
@@ -93,7 +94,7 @@ impl Derivation<'_> {
         Ok(node.clone())
     }
 
-    /// Of what is linear in x.
+    /// The derivative of an expression that is linear in x.
     fn same(&mut self, x: &Node, node: &Node, rebuild: impl Fn(Box<Node>) -> Kind) -> Derived {
         Ok(self.of(x)?.map(|x| Node::new(rebuild(Box::new(x)), node.span)))
     }

@@ -1,4 +1,4 @@
-//! A tree to a program: names get their types, grades are inferred and checked.
+//! Compiler from trees to programs: resolves names, infers and checks grades.
 
 pub(crate) mod builder;
 pub(crate) mod define;
@@ -18,22 +18,22 @@ use derivative::{Derivation, TOO_LONG};
 use program::{Id, InputKind, Op, Program};
 use std::collections::HashMap;
 
-/// Most nodes that are looked at: a node of a definition or of a sum counts each time that it is written out.
+/// Maximum number of visited nodes: a node of a definition or a sum counts each time it is expanded.
 const MOST_VISITS: usize = 20 * MAX_NODES;
 
-/// Most nodes within each other. A formula has fewer by itself, but a definition may call one that calls one ….
+/// Maximum depth of nodes. Formulas have fewer levels, but definitions may call definitions.
 const MOST_LEVELS: usize = 1000;
 
-/// What a formula does with values of these types.
+/// Compiles a formula for values of these types.
 ///
 /// # Errors
-/// Where grades do not fit, with the place in the text.
+/// If grades do not fit, with the place in the text.
 pub fn compile(tree: &Tree, space: Space, names: &Names) -> Result<Program, Error> {
     Ok(compiled(tree, space, names)?.0)
 }
 
-/// What each node of a formula is, in the order of [`Tree::nodes`]; of a node that is written out for several
-/// indices, what it is for the first.
+/// The type of each node, in the order of [`Tree::nodes`]; for a node expanded for several indices, that for the
+/// first.
 ///
 /// # Errors
 /// As [`compile`].
@@ -67,14 +67,14 @@ fn compiled(tree: &Tree, space: Space, names: &Names) -> Result<(Program, Types)
     Ok((compiler.steps.program, compiler.types))
 }
 
-/// What names mean inside a definition, or a sum.
+/// The meaning of names inside a definition or a sum.
 #[derive(Clone, Default)]
 struct Frame {
     /// The parameters of the definition.
     parameters: Vec<(String, Id)>,
     /// The values of indices.
     indices: Vec<(char, usize)>,
-    /// The functions that are being written out.
+    /// The functions being expanded.
     active: Vec<String>,
 }
 
@@ -83,14 +83,14 @@ struct Compiler<'a> {
     names: &'a Names,
     types: Types,
     frame: Frame,
-    /// How many more nodes may be looked at.
+    /// The remaining number of nodes that may be visited.
     visits: usize,
-    /// How many nodes are being looked at, each in another.
+    /// The current depth.
     depth: usize,
 }
 
 impl Compiler<'_> {
-    /// Whether an argument is of these grades; of one that is not known yet, whether it may be.
+    /// Whether an argument has these grades, or may have them if they are unknown.
     fn fits(&self, id: Id, grades: Grades) -> bool {
         let held = self.steps.ty(id).grades;
         held.within(grades) || self.names.is_open() && held.0 & grades.0 != 0
@@ -126,8 +126,7 @@ impl Compiler<'_> {
     fn node(&mut self, node: &Node) -> Built {
         self.visits = self.visits.checked_sub(1).ok_or_else(|| self.steps.error(node.span, TOO_LONG))?;
         if self.depth >= MOST_LEVELS {
-            let message =
-                format!("more than {MOST_LEVELS} levels within each other, definitions written out");
+            let message = format!("more than {MOST_LEVELS} nested levels, with definitions expanded");
             return Err(self.steps.error(node.span, message));
         }
         self.depth += 1;
@@ -204,7 +203,7 @@ impl Compiler<'_> {
         }
         let unprimed = name.trim_end_matches('\'');
         if name != unprimed && self.frame.parameters.iter().any(|(parameter, _)| parameter == unprimed) {
-            let message = format!("`{name}`, the derivative of a parameter, has to be a parameter, too");
+            let message = format!("`{name}`, the derivative of a parameter, must be a parameter too");
             return Err(self.steps.error(span, message));
         }
         let ty = match self.names.get(name) {
@@ -219,9 +218,10 @@ impl Compiler<'_> {
                 Some(id) => return Ok(id),
                 None if self.names.is_open() => Type::of(self.steps.all()),
                 None if name.ends_with('\'') => {
-                    return Err(self
-                        .steps
-                        .error(span, format!("`{name}` has no value, and a derivative here needs it")));
+                    return Err(self.steps.error(
+                        span,
+                        format!("`{name}` has no value; a derivative in this formula needs it"),
+                    ));
                 }
                 None => return Err(self.steps.error(span, format!("`{name}` has no value"))),
             },
@@ -230,7 +230,7 @@ impl Compiler<'_> {
         self.steps.step(Op::Input(input), ty, span)
     }
 
-    /// What a name stands for whose indices have values.
+    /// The value of a name whose indices have values.
     fn substituted(&mut self, name: &str, span: Span) -> Result<Option<Id>, Error> {
         let Some((base, indices)) = indexed(name) else { return Ok(None) };
         let value = |c: char| self.frame.indices.iter().rev().find(|(index, _)| *index == c).map(|(_, k)| *k);
@@ -262,7 +262,7 @@ impl Compiler<'_> {
                 Some(before) => self.steps.add(*minus, before, id, span.to(term.span))?,
             });
         }
-        sum.ok_or_else(|| self.steps.error(span, "a sum without terms"))
+        sum.ok_or_else(|| self.steps.error(span, "the sum has no terms"))
     }
 
     fn tight(&mut self, tight: Tight, operands: &[Node], span: Span) -> Built {
@@ -278,7 +278,7 @@ impl Compiler<'_> {
             if !self.steps.space.is_g3() {
                 return Err(self.steps.error(
                     span,
-                    "the cross product is one of 3-d space; elsewhere write `a∧b` or its dual",
+                    "the cross product exists only in 3-d space; elsewhere write `a∧b` or its dual",
                 ));
             }
             for (node, &id) in operands.iter().zip(&ids) {
@@ -318,8 +318,10 @@ impl Compiler<'_> {
         match (self.names.get(name), &ids[..]) {
             (Some(Meaning::Map { grade }), &[x]) => self.map(name, *grade, x, &arguments[0], span),
             (Some(Meaning::Function(definition)), ids) => self.write_out(name, definition, ids, span),
-            (Some(Meaning::Value(_)), _) => Err(self.steps.error(span, format!("`{name}` is no function"))),
-            // Not known yet.
+            (Some(Meaning::Value(_)), _) => {
+                Err(self.steps.error(span, format!("`{name}` is not a function")))
+            }
+            // An open name.
             (None, &[argument]) => {
                 let input = self.steps.input(name, InputKind::Matrix { grade: 1 });
                 let ty = Type::of(self.steps.all());
@@ -332,10 +334,10 @@ impl Compiler<'_> {
         }
     }
 
-    /// A linear map of each part.
+    /// Applies a linear map to each part.
     fn map(&mut self, name: &str, grade: u8, x: Id, node: &Node, span: Span) -> Built {
         if !self.steps.space.is_g3() {
-            return Err(self.steps.error(span, "linear maps are of 3-d space"));
+            return Err(self.steps.error(span, "linear maps exist only in 3-d space"));
         }
         if grade == 2 {
             self.require(x, Grades::BIVECTOR, &format!("`{name}`, a map of bivectors,"), node)?;
@@ -382,7 +384,7 @@ impl Compiler<'_> {
         self.steps.call = Some(call);
         let value = self.node(&definition.body);
         (self.frame, self.steps.call) = (outside, before);
-        // Of definitions within each other the innermost is named.
+        // Of nested definitions the innermost is named.
         value.map_err(|Error { message, .. }| {
             let named = message.starts_with("in `");
             Error::new(call, if named { message } else { format!("in `{name}`: {message}") })
@@ -403,10 +405,10 @@ impl Compiler<'_> {
                 Some(before) => self.steps.add(false, before, term, span)?,
             });
         }
-        sum.ok_or_else(|| self.steps.error(span, "a sum over no index"))
+        sum.ok_or_else(|| self.steps.error(span, "the sum has no index"))
     }
 
-    /// The indices for whose every value an equation is to hold.
+    /// The free indices: an equation must hold for all their values.
     fn free_indices(&self, tree: &Tree) -> Result<Vec<char>, Error> {
         let mut free = Vec::new();
         if self.names.is_open() {
@@ -419,11 +421,11 @@ impl Compiler<'_> {
         let whole = tree.sides[0].span;
         match free[..] {
             [] => Ok(free),
-            _ if free.len() > 3 => Err(Error::new(whole, "an equation has at most three free indices")),
+            _ if free.len() > 3 => Err(Error::new(whole, "an equation may have at most three free indices")),
             [index, ..] if tree.sides.len() == 1 => Err(Error::new(
                 whole,
                 format!(
-                    "the index {index} is free: a sum is written `Σ_{index}`; only an equation holds for every value"
+                    "the index {index} is free; write a sum as `Σ_{index}`, or an equation, which holds for every value"
                 ),
             )),
             _ => Ok(free),
@@ -449,7 +451,7 @@ impl Compiler<'_> {
             if a.0 & b.0 == 0 && !zeros[pair[0]] && !zeros[pair[1]] {
                 let span = tree.sides[i].span.to(tree.sides[i + 1].span);
                 let message = format!(
-                    "the sides of the equation have no grade in common, {} and {}: they agree only if both are 0",
+                    "the sides of the equation have no common grade, {} and {}: they agree only if both are 0",
                     shown(a),
                     shown(b)
                 );

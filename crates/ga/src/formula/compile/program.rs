@@ -1,7 +1,6 @@
-//! What a formula does: steps whose grades are known, each the value of an operation on earlier ones.
+//! Programs of formulas: steps of known grades, each an operation on earlier steps.
 //!
-//! The same program is run on a single value, by blocks of rows, and walked outside this crate for other
-//! coefficients.
+//! The same program runs on single values, on blocks of rows, and in Python on other coefficients.
 
 use crate::formula::syntax::names::Type;
 use crate::formula::syntax::number::Number;
@@ -11,20 +10,20 @@ use crate::graded::size;
 use crate::product::{Grades, Product};
 use crate::table::Signature;
 
-/// The number of a step, whose value it stands for.
+/// The number of a step, and of its value.
 pub type Id = usize;
 
-/// Steps in an order in which each needs earlier ones only. Equal steps occur once.
+/// Steps, each using only earlier ones. Equal steps occur once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     /// The algebra of all its values.
     pub signature: Signature,
-    /// What it is to be given, in this order; only names that it uses.
+    /// Its inputs, in order; only names that it uses.
     pub inputs: Vec<Input>,
     /// The steps.
     pub steps: Vec<Step>,
-    /// The value; or for an equation those of its sides, two or more; of an equation in free indices, the
-    /// sides for all their values one after the other.
+    /// The value, or the two or more sides of an equation; for an equation in free indices, the sides for each
+    /// of their values.
     pub results: Vec<Vec<Id>>,
 }
 
@@ -35,12 +34,12 @@ impl Program {
     }
 }
 
-/// What a program is given.
+/// An input of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// The canonical name.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: InputKind,
 }
 
@@ -60,7 +59,7 @@ pub enum InputKind {
 }
 
 impl InputKind {
-    /// How many numbers a row of it has, in 3-d space.
+    /// The number of components of a row, in 3-d space.
     pub fn size(self) -> usize {
         match self {
             InputKind::Value(ty) => size(ty.grades),
@@ -73,11 +72,11 @@ impl InputKind {
 /// A step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// What is done.
+    /// The operation.
     pub op: Op,
-    /// What comes of it.
+    /// The type of its value.
     pub ty: Type,
-    /// The text it comes from.
+    /// Its place in the text.
     pub span: Span,
 }
 
@@ -106,7 +105,7 @@ pub enum Op {
     Divide(Id, Id),
     /// ~A
     Reverse(Id),
-    /// The part in the grades of the step's type, all of which it may lack.
+    /// The part in the grades of the step's type; missing grades are zero.
     Part(Id),
     /// `A I⁻¹`
     Dual(Id),
@@ -114,7 +113,7 @@ pub enum Op {
     Undual(Id),
     /// exp, log, sqrt, inverse.
     Function(Function, Id),
-    /// The integer power of a rotor, a rotor. Of other values powers are products.
+    /// An integer power of a rotor, which is a rotor. Powers of other values are products.
     RotorPower(Id, i32),
     /// `√abs⟨A ~A⟩`
     Norm(Id),
@@ -128,19 +127,19 @@ pub enum Op {
     Map {
         /// The number of the input.
         input: usize,
-        /// What it maps.
+        /// The argument.
         argument: Id,
     },
 }
 
 impl Op {
-    /// The steps it needs.
+    /// The steps that are its operands.
     pub fn operands(&self) -> impl Iterator<Item = Id> {
         let mut op = *self;
         op.slots().map(|slot| slot.copied()).into_iter().flatten()
     }
 
-    /// Where it keeps the steps it needs.
+    /// References to its operands.
     fn slots(&mut self) -> [Option<&mut Id>; 2] {
         match self {
             Op::Input(_) | Op::Constant(..) | Op::Pi => [None, None],
@@ -165,7 +164,7 @@ impl Op {
         }
     }
 
-    /// Gives the steps and inputs it needs other numbers.
+    /// Renumbers its operands and inputs.
     pub(crate) fn renumber(&mut self, step: impl Fn(Id) -> Id, mut other_input: impl FnMut(usize) -> usize) {
         for id in self.slots().into_iter().flatten() {
             *id = step(*id);

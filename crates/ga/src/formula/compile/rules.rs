@@ -1,4 +1,4 @@
-//! Operations on steps: the grades of their values, and what is known before there are any.
+//! Rules of operations: grades of their values, and simplifications at compile time.
 
 use super::builder::{Builder, Built};
 use super::program::{Id, Op, union};
@@ -50,7 +50,7 @@ impl Builder<'_> {
         Grades(grades.map(|k| 1 << k).sum::<u16>())
     }
 
-    /// A named product, of whose grades some may be known to vanish.
+    /// A named product without the grades that are known to vanish.
     pub fn product(&mut self, product: Product, a: Id, b: Id, only: Grades, span: Span) -> Built {
         if let (Some((m, i)), Some((n, j))) = (self.is_constant(a), self.is_constant(b)) {
             let (sign, index) = product.of_basis(self.space.algebra, i, j);
@@ -77,13 +77,13 @@ impl Builder<'_> {
         self.product(Product::Geometric, a, b, self.all(), span)
     }
 
-    /// The sign that reversal gives all these grades, if it gives them the same.
+    /// Whether reversal keeps all these grades or negates all; none if it does neither.
     fn symmetry(&self, grades: Grades) -> Option<bool> {
         [true, false].into_iter().find(|&kept| grades.within(self.kept_by_reversal(kept)))
     }
 
-    /// The geometric product of several factors. Scalars are multiplied first, since they commute; what stands
-    /// between a factor and its reverse is turned by it, which keeps the grades that reversal does.
+    /// The geometric product of several factors. Scalars are multiplied first, since they commute; a factor
+    /// and its reverse form a sandwich with the factors between them, which keeps the grades that reversal does.
     pub fn chain(&mut self, factors: &[Id], span: Span) -> Built {
         let (mut scalar, mut number) = (None, Number::whole(1));
         let mut stack: Vec<Id> = Vec::new();
@@ -241,7 +241,7 @@ impl Builder<'_> {
         if ty.grades == grades {
             return Ok(id);
         }
-        // Of a product only what is asked for is computed.
+        // Only the requested grades of a product are computed.
         if let Op::Product(product, a, b) = self.program.steps[id].op
             && grades.within(ty.grades)
         {
@@ -252,14 +252,14 @@ impl Builder<'_> {
 
     pub fn dual(&mut self, id: Id, back: bool, span: Span) -> Built {
         if self.space.algebra.signature().r > 0 {
-            return Err(self.error(span, "no dual: a generator squares to zero, so that I has no inverse"));
+            return Err(self.error(span, "no dual: a generator squares to zero, so I has no inverse"));
         }
         let (n, ty) = (self.count(), self.ty(id));
         let grades = (0..=n).filter(|&k| ty.grades.contains(n - k)).map(|k| 1 << k).sum::<u16>();
         self.step(if back { Op::Undual(id) } else { Op::Dual(id) }, Type::of(Grades(grades)), span)
     }
 
-    /// Which steps are 0 whatever the values: 0 itself, its products and sums.
+    /// Marks steps that are 0 for all values: 0 itself, its products and sums.
     pub fn zeros(&self) -> Vec<bool> {
         let mut zeros = Vec::new();
         for step in &self.program.steps {

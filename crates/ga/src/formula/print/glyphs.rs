@@ -24,7 +24,7 @@ pub(crate) fn word(name: &str, accent: &str) -> String {
     if !indices.is_empty() {
         text += &format!("_{{{}}}", subscript(indices.trim_start_matches('_')));
     }
-    // A label is a number, or a name without one of its own.
+    // A label is a number or a name without a label.
     let label = label.trim_start_matches('(').trim_end_matches(')');
     let label = match label.chars().next() {
         None => String::new(),
@@ -34,7 +34,7 @@ pub(crate) fn word(name: &str, accent: &str) -> String {
     text + primes + &label
 }
 
-/// More than three Latin letters are a word, set upright; fewer may be factors, and are set as such.
+/// More than three Latin letters are a word, set upright; fewer may be factors and are set as such.
 fn upright(letters: &str) -> String {
     if letters.len() > 3 && letters.bytes().all(|c| c.is_ascii_alphabetic()) {
         return format!("\\mathrm{{{letters}}}");

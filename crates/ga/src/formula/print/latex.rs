@@ -1,7 +1,7 @@
-//! A formula in LaTeX, for amsmath, KaTeX, MathJax and Matplotlib's mathtext alike.
+//! Formulas in LaTeX, for amsmath, KaTeX, MathJax and Matplotlib's mathtext.
 //!
-//! A fraction and an exponent need no brackets inside, so that they are fewer than in a line of text. As a
-//! factor, a tight product is set close, `a{\wedge}b`, so that one sees what binds first.
+//! Fractions and exponents need no inner brackets, so there are fewer than in text. As a factor, a tight product is set
+//! close, `a{\wedge}b`, to show that it binds first.
 
 use super::glyphs::{core, subscript, word};
 use super::{Hold, blade};
@@ -43,13 +43,13 @@ fn hold(node: &Node) -> Hold {
     }
 }
 
-/// With brackets round it if it holds together less firmly.
+/// In brackets if it binds less tightly.
 fn part(node: &Node, least: Hold) -> String {
     let text = bare(node, false);
     if hold(node) < least { bracketed(&text) } else { text }
 }
 
-/// Brackets as high as what is in them.
+/// Brackets as high as their content.
 fn bracketed(text: &str) -> String {
     if is_tall(text) { format!("\\left({text}\\right)") } else { format!("({text})") }
 }
@@ -125,7 +125,7 @@ fn product(factors: &[Node], followed: bool) -> String {
     text
 }
 
-/// A tight product without the space round its sign.
+/// A tight product without space around its sign.
 fn close(node: &Node) -> String {
     let Kind::Tight(product, operands) = &node.kind else { return part(node, Hold::Tight) };
     let operands: Vec<String> = operands.iter().map(|x| part(x, Hold::Prefix)).collect();
@@ -174,10 +174,10 @@ fn applied(function: &str, arguments: &str) -> String {
     if is_tall(arguments) { format!("{function}{{{brackets}}}") } else { function.to_owned() + &brackets }
 }
 
-/// The most letters under one tilde.
+/// Maximum number of letters under one tilde.
 const SHORT: usize = 3;
 
-/// How many letters it is made of, if of nothing else.
+/// The number of letters, if it consists of letters only.
 fn leaves(node: &Node) -> Option<usize> {
     match &node.kind {
         Kind::Name(_) | Kind::Blade(_) | Kind::Pseudoscalar => Some(1),

@@ -1,8 +1,7 @@
-//! A formula as text again, in one canonical spelling.
+//! Canonical spelling of formulas as text.
 //!
-//! Brackets stand only where the text would be read as another tree without them: round a part that holds
-//! together less firmly than its place asks for. Factors have a space between them, so that their names
-//! never run together and mean the same whatever else is bound.
+//! Brackets appear only where the text would otherwise parse as another tree: around a part that binds less tightly
+//! than its place requires. Spaces separate factors, so that names never run together, whatever else is bound.
 
 pub(crate) mod glyphs;
 pub(crate) mod latex;
@@ -12,17 +11,17 @@ use super::syntax::tree::is_numeric;
 use super::syntax::tree::{Kind, Named, Node, Tight, Tree};
 use crate::product::Grades;
 
-/// The characters a formula is spelled in.
+/// The characters of a spelling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// As on paper: `−½ Ω_S R`, `a∧b`, `R⁻¹`, `⟨A B⟩_2`.
     Unicode,
-    /// On any keyboard, but for names, which stay as they are: `-1/2 Ω_S R`, `a^b`, `R^-1`, `<A B>_2`.
+    /// ASCII apart from names, which stay as they are: `-1/2 Ω_S R`, `a^b`, `R^-1`, `<A B>_2`.
     Ascii,
 }
 
 impl Tree {
-    /// The formula in canonical spelling, which is read as the same tree where the same names are bound.
+    /// The formula in canonical spelling, which parses as the same tree where the same names are bound.
     pub fn text(&self, style: Style) -> String {
         let mut printer = Printer { style, out: String::new() };
         printer.list(&self.sides, " = ");
@@ -39,7 +38,7 @@ impl Node {
     }
 }
 
-/// How firmly the parts of a node hold together, the loosest first.
+/// The precedence of a node, the loosest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Hold {
     Sum,
@@ -78,7 +77,7 @@ impl Printer {
         }
     }
 
-    /// Brackets round it if it holds together less firmly.
+    /// In brackets if it binds less tightly.
     fn part(&mut self, node: &Node, least: Hold) {
         if self.hold(node) < least {
             self.bracketed(node);
@@ -187,7 +186,7 @@ impl Printer {
         }
     }
 
-    /// What a `/` divides is all of the product before it.
+    /// A `/` divides the whole product before it.
     fn dividend(&mut self, node: &Node) {
         match node.kind {
             Kind::Product(_) | Kind::Quotient(_) => self.bare(node, true),
@@ -214,7 +213,7 @@ impl Printer {
                 let symbol = tight.symbol().encode_utf8(&mut [0; 4]).to_owned();
                 self.push(&symbol, if tight == Tight::Wedge { "^" } else { "|" });
             }
-            // `e^x` is the exponential, where e has no value.
+            // `e^x` is the exponential if e has no value.
             match &operand.kind {
                 Kind::Name(name) if name == "e" && self.ascii() => self.bracketed(operand),
                 _ => self.part(operand, Hold::Prefix),
@@ -222,8 +221,8 @@ impl Printer {
         }
     }
 
-    /// Whether the product is written as a function: where it has no sign of its own, or where a number after
-    /// `^` would be an exponent.
+    /// Whether the product is written as a function: if it has no sign in this style, or if a number after `^` would be an
+    /// exponent.
     fn is_called(&self, tight: Tight, operands: &[Node]) -> bool {
         self.ascii()
             && match tight {
@@ -277,7 +276,7 @@ fn superscript(c: char) -> char {
     c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])
 }
 
-/// Whether it would be taken for an exponent after `^`: a number, or `(2)'`.
+/// Whether it would be an exponent after `^`: a number, or `(2)'`.
 fn is_exponent(node: &Node) -> bool {
     match &node.kind {
         Kind::Derivative(x) => is_numeric(x),
@@ -285,7 +284,7 @@ fn is_exponent(node: &Node) -> bool {
     }
 }
 
-/// Two numbers side by side could be one that fell apart, and `I (B)` the value of a map I, as of the inertia.
+/// Whether adjacent factors need a sign: two numbers could be one, and `I (B)` the value of a map I, as of the inertia.
 fn needs_star(before: &str, after: &str) -> bool {
     let is_digit = |c: char| c.is_ascii_digit() || FRACTIONS.iter().any(|&(fraction, ..)| fraction == c);
     let is_pseudoscalar = before.strip_suffix('I').is_some_and(|rest| !rest.ends_with(char::is_alphanumeric));

@@ -112,7 +112,7 @@ fn row<const W: usize>(lanes: &[Lane<W>], l: usize) -> [f64; 8] {
     std::array::from_fn(|k| lanes.get(k).map_or(0.0, |lane| lane.0[l]))
 }
 
-/// A function of the first rows, one by one; whether each has a value.
+/// Evaluates a function for the first rows, one by one; whether each has a value.
 fn function<const W: usize>(
     f: Function,
     grades: [Grades; 2],
@@ -129,7 +129,7 @@ fn function<const W: usize>(
 }
 
 impl Ready {
-    /// Does the step for a block of rows, `count` of them wanted. False if perhaps some row has no value.
+    /// Evaluates the step for a block of rows, `count` of which matter. False if some row may have no value.
     pub fn block<const W: usize>(
         &self,
         path: Path,

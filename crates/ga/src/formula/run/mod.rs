@@ -1,4 +1,4 @@
-//! A program over many rows: each block of rows goes through all its steps before the next one is read.
+//! Programs over many rows: each block of rows runs through all steps before the next block.
 
 pub(crate) mod lanes;
 pub(crate) mod schedule;
@@ -21,31 +21,31 @@ use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
 use steps::Work;
 
-/// Below so many rows, turning them into lanes does not pay.
+/// Below this number of rows, transposing them into lanes does not pay.
 const FEW: usize = 8;
 
-/// From so many bytes on, inputs and results together, the results go past the caches: earlier than those of
-/// a single product, for what is read comes from all inputs at once.
+/// From this many bytes on, inputs and results together, results bypass the caches: earlier than for a single
+/// product, since all inputs are read at once.
 const STREAMED: usize = 8 << 20;
 
-/// So many lanes of 128 rows leave room in the first-level cache. Each step of a block costs some nanoseconds
-/// besides the arithmetic, so that large blocks are faster.
+/// This many lanes of 128 rows leave room in the first-level cache. Each step of a block has an overhead of some
+/// nanoseconds, so large blocks are faster.
 const FEW_LANES: usize = 24;
 
-/// So many lanes of 64 rows still fit it.
+/// This many lanes of 64 rows still fit.
 const MANY_LANES: usize = 64;
 
-/// How many bytes before the next block lines are asked for.
+/// Prefetch distance in bytes.
 const AHEAD: usize = 2048;
 
-/// The first row that has no value, and the first of its steps that has none.
+/// The first row without a value, and its first failing step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowError {
-    /// Its number.
+    /// The row.
     pub row: usize,
     /// The step.
     pub step: Id,
-    /// Why.
+    /// The error.
     pub error: MathError,
 }
 
@@ -59,10 +59,9 @@ fn given<T: Element>(kind: InputKind, numbers: &[T]) -> Given {
 }
 
 impl Runner {
-    /// Runs some rows of all: each input has one row for all, or one for each. The results, in the order of
-    /// the program, are written to the same rows of the outputs. Each row has the bits of
-    /// [`Runner::value`], on any machine and by any number of threads. After an error the outputs are of
-    /// no use.
+    /// Evaluates a range of rows; each input has one row for all, or one for each. The results, in the order of
+    /// the program, are written to the same rows of the outputs. Each row has the bits of [`Runner::value`], on any
+    /// machine and with any number of threads. After an error the outputs are unspecified.
     ///
     /// # Panics
     /// If the numbers of rows do not fit together.
@@ -114,7 +113,7 @@ impl Runner {
             .collect();
         let of_first = |i: usize| given(self.inputs[i], factors[i].rows(0, 1));
         let Ok(values) = self.values(of_first, |id| fixed[id]) else {
-            // Some step before it may fail in the first row, too.
+            // An earlier step may fail in the first row too.
             return self.by_rows(&factors, &mut targets, 1).map_err(late);
         };
         let schedule = self.schedule(&fixed, &values, &maps);
@@ -122,7 +121,7 @@ impl Runner {
         let streamed = path.streams() && bytes >= STREAMED;
         let sweep = Sweep { runner: self, schedule, path, streamed, failure: Mutex::new(None) };
         match sweep.schedule.lanes {
-            // Small blocks mix reading and writing memory with the arithmetic more finely.
+            // Small blocks interleave memory access and arithmetic more finely.
             0..=FEW_LANES if !streamed => sweep.run::<T, 128>(threads, &factors, targets, rows.len()),
             0..=MANY_LANES => sweep.run::<T, 64>(threads, &factors, targets, rows.len()),
             _ => sweep.run::<T, 16>(threads, &factors, targets, rows.len()),
@@ -158,8 +157,7 @@ impl Runner {
         values.map_err(|(step, error)| RowError { row, step, error })
     }
 
-    /// How much there is to do for a row, in units of reading or writing a number; several threads pay from
-    /// a million units on.
+    /// The work for a row, in units of reading or writing a number; several threads pay from a million units on.
     pub fn weight(&self) -> usize {
         let of_step = |work: &Work| if matches!(work, Work::Function(_)) { 300 } else { 2 };
         self.inputs.iter().map(|&kind| kind.size()).sum::<usize>()
@@ -208,7 +206,7 @@ impl Sweep<'_> {
         targets: &mut [Target<T>],
         total: usize,
     ) -> Result<(), RowError> {
-        // What lies beyond the last rows is computed too; few functions have difficulties with 1.
+        // Lanes beyond the last rows are computed too; 1 is in the domain of nearly all functions.
         let mut lanes = vec![Lane::<W>::filled(1.0); self.schedule.lanes];
         for (first, numbers) in &self.schedule.fixed {
             lanes[*first..].iter_mut().zip(numbers).for_each(|(lane, &x)| *lane = Lane::filled(x));
@@ -224,8 +222,8 @@ impl Sweep<'_> {
         result
     }
 
-    /// Beyond the caches, the cache lines of a block that each task asks for ahead, of some inputs. Memory
-    /// answers only so many at a time, and would wait while the arithmetic is done.
+    /// Beyond the caches, the cache lines of a block that each task prefetches, of some inputs. Memory serves a limited
+    /// number of requests at a time, and would idle during the arithmetic.
     fn ahead<T: Element, const W: usize>(&self, factors: &[Factor<T>]) -> Vec<Vec<(usize, Range<usize>)>> {
         let tasks = self.schedule.tasks.len();
         let lines = |factor: &Factor<T>| W * size_of_val(factor.rows(0, 1)) / 64;
@@ -240,7 +238,7 @@ impl Sweep<'_> {
         (0..tasks).map(share).collect()
     }
 
-    /// A block of rows; false if perhaps one has no value.
+    /// Evaluates a block of rows; false if some row may have no value.
     fn block<T: Element, const W: usize>(
         &self,
         factors: &[Factor<T>],

@@ -1,4 +1,4 @@
-//! In which lanes each value lies, and in which order they are filled.
+//! Assignment of values to lanes, and the order of evaluation.
 
 use super::single::Runner;
 use super::steps::Work;
@@ -14,14 +14,14 @@ pub(crate) enum Task {
     Do { step: Id, operands: [Range<usize>; 2], to: Range<usize> },
 }
 
-/// What is done for each block of rows.
+/// The tasks for each block of rows.
 pub(crate) struct Schedule {
-    /// What is the same for all rows: numbers, each for a lane, and the first lane.
+    /// Values common to all rows: numbers, each for a lane, and the first lane.
     pub fixed: Vec<(usize, Vec<f64>)>,
     pub tasks: Vec<Task>,
     /// The first lane of each result.
     pub results: Vec<usize>,
-    /// How many lanes there are.
+    /// The number of lanes.
     pub lanes: usize,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct Schedule {
 struct Lanes(Vec<bool>);
 
 impl Lanes {
-    /// The first so many free lanes in a row.
+    /// The first `count` adjacent free lanes.
     fn take(&mut self, size: usize) -> Range<usize> {
         let mut first = 0;
         while let Some(taken) = self.0.iter().skip(first).take(size).rposition(|&taken| taken) {
@@ -47,7 +47,7 @@ impl Lanes {
 }
 
 impl Runner {
-    /// Which steps have the same value for all rows, given which inputs do.
+    /// Marks the steps with one value for all rows, given the inputs that have one.
     pub(crate) fn fixed(&self, one: &[bool]) -> Vec<bool> {
         let mut fixed: Vec<bool> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
@@ -60,8 +60,8 @@ impl Runner {
         fixed
     }
 
-    /// Lanes for the values of steps, those `fixed` given. A lane is used again when its value is not
-    /// needed any more, so that all stay in the first-level cache.
+    /// Lanes for the values of steps, those `fixed` given. Lanes are reused after the last use of
+    /// their value, so that all stay in the first-level cache.
     pub(crate) fn schedule(&self, fixed: &[bool], values: &[Graded], maps: &[Option<Vec<f64>>]) -> Schedule {
         let mut last = vec![0; self.steps.len()];
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
@@ -72,7 +72,7 @@ impl Runner {
         let mut schedule = Schedule { fixed: Vec::new(), tasks: Vec::new(), results: Vec::new(), lanes: 0 };
         let mut places = vec![0..0; self.steps.len()];
         let mut of_maps = vec![0..0; self.inputs.len()];
-        // What is the same for all rows stays where it is.
+        // Values common to all rows keep their lanes.
         for id in (0..self.steps.len()).filter(|&id| fixed[id] && last[id] > 0) {
             places[id] = lanes.take(size(self.steps[id].grades));
             schedule.fixed.push((places[id].start, values[id].components().to_vec()));

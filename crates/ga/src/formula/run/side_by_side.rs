@@ -1,4 +1,4 @@
-//! A program on lanes that its caller fills, again and again: for what is stepped side by side.
+//! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
 use super::apart;
 use super::schedule::{Schedule, Task};
@@ -7,7 +7,7 @@ use crate::formula::InputKind;
 use crate::graded::Graded;
 use crate::simd::{Lane, Path};
 
-/// A program with memory for `W` rows, a multiple of 8, as lanes. What is the same for all rows and times is computed once.
+/// A program with memory for `W` rows, a multiple of 8, as lanes. Steps common to all rows and times are computed once.
 pub struct Beside<'r, const W: usize> {
     runner: &'r Runner,
     path: Path,
@@ -18,8 +18,8 @@ pub struct Beside<'r, const W: usize> {
 }
 
 impl Runner {
-    /// Makes lanes ready. `known` are the inputs that are the same for all rows and times; `None` if a step that needs
-    /// no other input has no value.
+    /// Prepares the lanes. `known` are the inputs common to all rows and times; `None` if a step that depends only on
+    /// these has no value.
     ///
     /// # Panics
     /// If the inputs are not of their kinds and grades.
@@ -52,7 +52,7 @@ impl Runner {
 }
 
 impl<const W: usize> Beside<'_, W> {
-    /// The numbers of an input, to be set before they are needed; they stay what they are.
+    /// The numbers of an input, to be set before evaluation; they keep their values.
     pub fn input(&mut self, number: usize) -> &mut [Lane<W>] {
         &mut self.inputs[number]
     }
@@ -63,8 +63,7 @@ impl<const W: usize> Beside<'_, W> {
         &self.lanes[first..first + self.runner.size_of_result(number)]
     }
 
-    /// Evaluates all rows, each with the bits of [`Runner::value`]; the results of a row of which some step has no value
-    /// are NaN.
+    /// Evaluates all rows, each with the bits of [`Runner::value`]; a row with a failing step has NaN as its results.
     pub fn run(&mut self) {
         let mut known = true;
         for task in &self.schedule.tasks {
@@ -82,7 +81,7 @@ impl<const W: usize> Beside<'_, W> {
         }
     }
 
-    /// A row by itself, as others stopped its block.
+    /// Evaluates one row, where another one failed in its block.
     #[cold]
     fn complete(&mut self, row: usize) {
         let runner = self.runner;
@@ -97,7 +96,7 @@ impl<const W: usize> Beside<'_, W> {
         let values = runner.values(given, |_| true);
         for (number, (&id, &first)) in runner.results.iter().zip(&self.schedule.results).enumerate() {
             if self.schedule.fixed.iter().any(|(fixed, _)| *fixed == first) {
-                // It is there, and would not come again.
+                // Constant lanes keep their values.
                 continue;
             }
             for k in 0..runner.size_of_result(number) {

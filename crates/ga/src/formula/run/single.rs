@@ -1,4 +1,4 @@
-//! A program on single values.
+//! Programs on single values.
 
 use super::steps::{Ready, Selection, Sum, Work, applied};
 use crate::MathError;
@@ -11,7 +11,7 @@ use crate::rows::rotor_functions::{self, Cos, Sin, Tan};
 use crate::simd::map::Map;
 use crate::table::G3;
 
-/// What a program is given for an input.
+/// The value of an input.
 #[derive(Clone, Copy, Debug)]
 pub enum Given {
     /// A value of the input's grades.
@@ -22,16 +22,16 @@ pub enum Given {
     Determinant(f64),
 }
 
-/// A program of 3-d space made ready to run.
+/// A program of 3-d space, ready to run.
 pub struct Runner {
     pub(crate) inputs: Vec<InputKind>,
     pub(crate) steps: Vec<Ready>,
-    /// The steps that are results, one after the other.
+    /// The steps that are results.
     pub(crate) results: Vec<Id>,
 }
 
 impl Runner {
-    /// Makes a program ready; `None` if its algebra is not that of 3-d space.
+    /// Prepares a program; `None` if its algebra is not that of 3-d space.
     pub fn new(program: &Program) -> Option<Runner> {
         (program.signature == G3.signature()).then(|| Runner {
             inputs: program.inputs.iter().map(|input| input.kind).collect(),
@@ -40,8 +40,8 @@ impl Runner {
         })
     }
 
-    /// The values of all steps, by their numbers, each with the bits of the same call by hand. Fails with the
-    /// first step that has none.
+    /// The values of all steps, each with the bits of the corresponding method. Fails with the first step without a
+    /// value.
     ///
     /// # Panics
     /// If the inputs are not of their kinds and grades.
@@ -51,7 +51,7 @@ impl Runner {
         Ok(values)
     }
 
-    /// The same, in memory that may be used again and again.
+    /// The same, in memory that can be reused.
     ///
     /// # Panics
     /// As [`Runner::value`].

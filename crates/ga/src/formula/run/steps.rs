@@ -1,4 +1,4 @@
-//! The steps of a program made ready to run in 3-d space, on single values and on blocks of rows.
+//! Steps of programs in 3-d space, ready to run on single values and blocks of rows.
 
 use crate::MathError;
 use crate::formula::compile::program::{Id, Op, Program, Step};
@@ -9,14 +9,14 @@ use crate::product::{Grades, Plan, Product};
 use crate::table::G3;
 use std::f64::consts::PI;
 
-/// A step that knows its operands, and the grades of its value.
+/// A step with its operands and the grades of its value.
 pub(crate) struct Ready {
     pub work: Work,
     pub operands: Operands,
     pub grades: Grades,
 }
 
-/// The steps that a step needs, at most two.
+/// The operands of a step, at most two.
 #[derive(Clone, Copy)]
 pub(crate) struct Operands {
     ids: [Id; 2],
@@ -40,7 +40,7 @@ impl std::ops::Deref for Operands {
     }
 }
 
-/// What is done.
+/// The operation.
 pub(crate) enum Work {
     Input(usize),
     Constant(Graded),
@@ -61,11 +61,11 @@ pub(crate) enum Work {
     Sin,
     Cos,
     Tan,
-    /// By the matrix or determinant that is this input.
+    /// A linear map by the matrix or determinant of this input.
     Map(usize),
 }
 
-/// `A + sign B` over the grades of both: the places of each component in A and in B, which may lack it.
+/// `A + sign B` over the grades of both: the places of each component in A and in B, if present.
 pub(crate) struct Sum {
     pub places: Vec<[Option<usize>; 2]>,
     pub sign: f64,

@@ -1,13 +1,13 @@
-//! Names in indices, as in `ω_k I e_k` and `f_k = R e_k ~R`.
+//! Names with indices, as in `ω_k I e_k` and `f_k = R e_k ~R`.
 
 use super::names::Names;
 use super::tree::{Kind, Node};
 use crate::formula::Error;
 
-/// The letters that count from 1 to the number of generators where they stand as subscripts.
+/// The letters that, as subscripts, run from 1 to the number of generators.
 pub(crate) const INDICES: &str = "ijklmn";
 
-/// The base of a name in indices, and the indices, each in its place: `ω_k`, `ε_ijk`.
+/// The base and the indices of a name with indices: `ω_k`, `ε_ijk`.
 pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
     let plain = name.trim_end_matches('\'');
     let (base, indices) = plain.split_once('_')?;
@@ -15,15 +15,15 @@ pub(crate) fn indexed(name: &str) -> Option<(&str, &str)> {
     (some && !base.is_empty()).then_some((base, indices))
 }
 
-/// Whether a name in indices has a value of its own for each of them: `e_k`, `δ_ij`, `ε_ijk`.
+/// Whether a name with indices is built in: `e_k`, `δ_ij`, `ε_ijk`.
 pub(crate) fn is_built_in(name: &str) -> bool {
     let constant =
         |(base, indices): (&str, &str)| matches!((base, indices.len()), ("e", 1) | ("δ", 2) | ("ε", 3));
     !name.ends_with('\'') && indexed(name).is_some_and(constant)
 }
 
-/// Sums over indices that are repeated, as on paper: an index that stands twice or more in every term that has
-/// it is summed over in each, `ε_ijk e_k`; one that stands once in some term is free, `L_k = i_k ω_k`.
+/// Sums over repeated indices, as on paper: an index that occurs at least twice in every term that has it is
+/// summed over in each, `ε_ijk e_k`; one that occurs once in some term is free, `L_k = i_k ω_k`.
 pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<Node>, Error> {
     if names.is_open() {
         return Ok(sides);
@@ -42,7 +42,7 @@ pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<No
     Ok(sides)
 }
 
-/// Puts the sum around the smallest part that has the index all the times, each term of a sum for itself:
+/// Puts the sum around the smallest part that contains every occurrence of the index, in each term separately:
 /// `(a_k b_k + 1)²` is `(Σ_k a_k b_k + 1)²`.
 fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
     let count =
@@ -58,7 +58,7 @@ fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
     }
     if counts.iter().any(|&n| n > 1) {
         let message = format!(
-            "{index} stands here {} times, so that it is not clear what is summed; write `Σ_{index}`, or \
+            "the index {index} occurs {} times, so the sum is ambiguous; write `Σ_{index}`, or \
              another index in one pair",
             counts.iter().sum::<usize>()
         );
@@ -69,7 +69,7 @@ fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
     Ok(())
 }
 
-/// The terms of the sums that the sides are.
+/// Applies a function to each term of each side.
 fn for_each_term(
     sides: &mut [Node],
     f: &mut impl FnMut(&mut Node) -> Result<(), Error>,
@@ -89,8 +89,7 @@ fn indices_in(node: &Node, names: &Names) -> Vec<(char, usize)> {
     found
 }
 
-/// The indices in the names of a tree that are not bound, and how often each stands there. Those of a sum are
-/// its own.
+/// The free indices in the unbound names of a tree, and how often each occurs. A sum binds its own index.
 pub(crate) fn count_indices(node: &Node, names: &Names, found: &mut Vec<(char, usize)>) {
     if let Kind::Name(name) = &node.kind
         && names.get(name).is_none()
@@ -106,7 +105,7 @@ pub(crate) fn count_indices(node: &Node, names: &Names, found: &mut Vec<(char, u
             let before = inner.iter_mut().find(|(c, _)| *c == index);
             match before {
                 None => inner.push((index, count)),
-                // In a sum each term has the index for itself; it is repeated if it is in all that have it.
+                // Terms of a sum count separately: an index is repeated if it is in every term that has it.
                 Some((_, least)) if matches!(node.kind, Kind::Sum(_)) => *least = count.min(*least),
                 Some((_, total)) => *total += count,
             }
@@ -127,7 +126,7 @@ fn add(found: &mut Vec<(char, usize)>, index: char, count: usize) {
     }
 }
 
-/// The sign of a permutation of 1, 2, 3; 0 of anything else.
+/// The sign of a permutation of 1, 2, 3; 0 for anything else.
 pub(crate) fn permutation([i, j, k]: [usize; 3]) -> i32 {
     match (i, j, k) {
         (1, 2, 3) | (2, 3, 1) | (3, 1, 2) => 1,

@@ -1,7 +1,6 @@
-//! The characters of formulas: how letters, subscripts and superscripts are read, whichever way they are typed.
+//! Characters of formulas: letters, subscripts and superscripts in all their spellings.
 
-/// The letter that a character stands for: symbols that differ from it in style only, as Python folds the
-/// names it is given, and the capital sigma that means a sum.
+/// The plain letter for characters that differ only in style, as Python normalizes names, and for the sum sign.
 pub(crate) fn folded(c: char) -> char {
     match c {
         'µ' => 'μ',
@@ -70,7 +69,7 @@ pub(crate) fn below_tilde(c: char) -> Option<char> {
     None
 }
 
-/// What a subscript stands for.
+/// The plain character of a subscript.
 pub(crate) fn subscript(c: char) -> Option<char> {
     const PAIRS: &str = "ₐaₑeₕhᵢiⱼjₖkₗlₘmₙnₒoₚpᵣrₛsₜtᵤuᵥvₓxᵦβᵧγᵨρᵩφᵪχ";
     if let '₀'..='₉' = c {
@@ -85,7 +84,7 @@ pub(crate) fn subscript(c: char) -> Option<char> {
     None
 }
 
-/// The digit, `-` or `+` that a superscript stands for.
+/// The digit, `-` or `+` of a superscript.
 pub(crate) fn superscript(c: char) -> Option<char> {
     let plain = match c {
         '⁰' => '0',
@@ -100,30 +99,7 @@ pub(crate) fn superscript(c: char) -> Option<char> {
     Some(plain)
 }
 
-/// A fraction that is one character.
-pub(crate) fn fraction(c: char) -> Option<(i32, i32)> {
-    let ratio = match c {
-        '½' => (1, 2),
-        '⅓' => (1, 3),
-        '⅔' => (2, 3),
-        '¼' => (1, 4),
-        '¾' => (3, 4),
-        '⅕' => (1, 5),
-        '⅖' => (2, 5),
-        '⅗' => (3, 5),
-        '⅘' => (4, 5),
-        '⅙' => (1, 6),
-        '⅚' => (5, 6),
-        '⅛' => (1, 8),
-        '⅜' => (3, 8),
-        '⅝' => (5, 8),
-        '⅞' => (7, 8),
-        _ => return None,
-    };
-    Some(ratio)
-}
-
-/// Signs that stand as a subscript by themselves: parallel and perpendicular parts.
+/// Signs that are subscripts by themselves: parallel and perpendicular parts.
 pub(crate) fn part_sign(c: char) -> Option<char> {
     match c {
         '∥' | '‖' => Some('∥'),
@@ -140,7 +116,7 @@ pub(crate) fn is_mark(c: char) -> bool {
     matches!(c, '\u{300}'..='\u{36f}' | '\u{1ab0}'..='\u{1aff}' | '\u{20d0}'..='\u{20ff}')
 }
 
-/// Letters that are one character with a mark, after the letter without it: as Python composes names.
+/// Letters followed by the character that combines them with a mark, as Python normalizes names.
 const COMPOSED: [(char, &str); 8] = [
     ('\u{307}', "AȦBḂCĊDḊEĖFḞGĠHḢIİMṀNṄOȮPṖRṘSṠTṪWẆXẊYẎZŻaȧbḃcċdḋeėfḟgġhḣmṁnṅoȯpṗrṙsṡtṫwẇxẋyẏzż"),
     ('\u{308}', "AÄEËHḦIÏOÖUÜWẄXẌYŸaäeëhḧiïoötẗuüwẅxẍyÿΙΪΥΫιϊυϋ"),
@@ -155,17 +131,17 @@ const COMPOSED: [(char, &str); 8] = [
     ('\u{306}', "AĂEĔGĞIĬOŎUŬaăeĕgğiĭoŏuŭΑᾸΙῘΥῨαᾰιῐυῠ"),
 ];
 
-/// The character that a letter and a mark after it are.
+/// The character that combines a letter and a mark.
 pub(crate) fn composed(letter: char, mark: char) -> Option<char> {
     pairs().find(|&(plain, m, _)| (plain, m) == (letter, mark)).map(|(_, _, with)| with)
 }
 
-/// The letter and the mark that a character is.
+/// The letter and the mark of a combined character.
 pub(crate) fn decomposed(c: char) -> Option<(char, char)> {
     pairs().find(|&(_, _, with)| with == c).map(|(plain, mark, _)| (plain, mark))
 }
 
-/// Each letter, mark, and the letter with the mark.
+/// Each letter, mark, and their combination.
 fn pairs() -> impl Iterator<Item = (char, char, char)> {
     COMPOSED.into_iter().flat_map(|(mark, letters)| {
         let plain = letters.chars().step_by(2);
@@ -173,7 +149,7 @@ fn pairs() -> impl Iterator<Item = (char, char, char)> {
     })
 }
 
-/// How many primes it is.
+/// The number of primes in a character.
 pub(crate) fn primes(c: char) -> usize {
     match c {
         '\'' | '′' | '’' => 1,
@@ -183,14 +159,14 @@ pub(crate) fn primes(c: char) -> usize {
     }
 }
 
-/// Whether a name may begin with it. Letters above and below the line are none.
+/// Whether a name may begin with it; raised and lowered letters may not.
 pub(crate) fn is_letter(c: char) -> bool {
     c.is_alphabetic()
         && subscript(c).is_none()
         && !matches!(c, 'ª' | 'º' | '\u{2b0}'..='\u{2ff}' | '\u{1d2c}'..='\u{1d6a}' | 'ⁱ' | 'ⁿ')
 }
 
-/// Spaces, also those that only tell programs where a product is.
+/// Spaces, including invisible operators such as invisible times.
 pub(crate) fn is_space(c: char) -> bool {
     c.is_whitespace() || matches!(c, '\u{200b}' | '\u{2060}'..='\u{2064}' | '\u{feff}')
 }

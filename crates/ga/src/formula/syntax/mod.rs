@@ -1,4 +1,4 @@
-//! From the text of a formula to its tree.
+//! Syntax: from the text of a formula to its tree.
 
 pub(crate) mod indices;
 pub(crate) mod letters;

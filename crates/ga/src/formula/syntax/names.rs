@@ -1,10 +1,10 @@
-//! What the names of a formula stand for.
+//! Names of formulas and their meanings.
 
 use super::tree::Node;
 use crate::product::Grades;
 use std::collections::BTreeMap;
 
-/// What is known of a value before it is there.
+/// The type of a value: what is known before evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Type {
     /// The grades it holds.
@@ -14,7 +14,7 @@ pub struct Type {
 }
 
 impl Type {
-    /// A value of some grades, no rotor.
+    /// A value of some grades that is not a rotor.
     pub fn of(grades: Grades) -> Type {
         Type { grades, unit: false }
     }
@@ -26,7 +26,7 @@ impl Type {
     pub const ROTOR: Type = Type { grades: Grades::EVEN, unit: true };
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Debug)]
 pub enum Meaning {
     /// A value.
@@ -41,8 +41,8 @@ pub enum Meaning {
     Function(Definition),
 }
 
-/// A function defined by a formula in its parameters. It knows the names there were when it was defined, so
-/// that no function can call itself.
+/// A function defined by a formula in its parameters, parsed with the names bound at that time, so that it
+/// cannot call itself.
 #[derive(Clone, Debug)]
 pub struct Definition {
     /// The canonical names of its parameters.
@@ -60,12 +60,12 @@ pub struct Names {
 }
 
 impl Names {
-    /// Those that are bound, and no others.
+    /// These names, and no others.
     pub fn new(meanings: impl IntoIterator<Item = (String, Meaning)>) -> Names {
         Names { meanings: meanings.into_iter().collect(), open: false }
     }
 
-    /// As yet unknown: every word is one name, of a value of any grades.
+    /// Open names: every word is one name, of a value of any grades.
     pub fn open() -> Names {
         Names { meanings: BTreeMap::new(), open: true }
     }
@@ -75,22 +75,22 @@ impl Names {
         self.open
     }
 
-    /// What a canonical name stands for, if it is bound.
+    /// The meaning of a canonical name, if it is bound.
     pub fn get(&self, name: &str) -> Option<&Meaning> {
         self.meanings.get(name)
     }
 
-    /// Binds a name; what it stood for before, if anything.
+    /// Binds a name and returns its earlier meaning, if any.
     pub fn bind(&mut self, name: String, meaning: Meaning) -> Option<Meaning> {
         self.meanings.insert(name, meaning)
     }
 
-    /// Takes its meaning from a name; what it stood for, if anything.
+    /// Removes a name and returns its meaning, if any.
     pub fn forget(&mut self, name: &str) -> Option<Meaning> {
         self.meanings.remove(name)
     }
 
-    /// Gives a name back what it stood for, or nothing.
+    /// Restores an earlier meaning of a name, or removes it.
     pub(crate) fn restore(&mut self, name: &str, meaning: Option<Meaning>) {
         match meaning {
             Some(meaning) => self.meanings.insert(name.to_owned(), meaning),

@@ -1,10 +1,10 @@
-//! Numbers as they are written: `2`, `0.25`, `1e-3`, `½`.
+//! Numbers as written in formulas: `2`, `0.25`, `1e-3`, `½`.
 
 use std::fmt;
 
 /// A number, with its exact value where that is a ratio of two whole numbers of 64 bits.
 ///
-/// Over floats `value` counts; over fractions and symbols `0.1` is the tenth that was written.
+/// Over floats `value` is used; over fractions and symbols `0.1` is exactly a tenth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number {
     /// The nearest float.
@@ -32,12 +32,12 @@ impl Number {
         Number { value: f64::from(n), ratio: Some((i64::from(n), 1)) }
     }
 
-    /// A float that is not taken for a ratio, such as π.
+    /// A float without an exact ratio, such as π.
     pub fn float(value: f64) -> Number {
         Number { value, ratio: None }
     }
 
-    /// What the text of a decimal number stands for; `None` if it is none, or beyond the floats.
+    /// Parses a decimal number; `None` if it is not one, or beyond the range of floats.
     pub fn decimal(text: &str) -> Option<Number> {
         let value: f64 = text.parse().ok().filter(|x: &f64| x.is_finite())?;
         if value == 0.0 {
@@ -73,7 +73,7 @@ impl Number {
     }
 }
 
-/// As it is written again: the fewest digits that give the same number, with the same exact value.
+/// The fewest digits that parse as the same number, with the same exact value.
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shortest = self.shortest();
@@ -103,7 +103,7 @@ fn with_exponent(text: String) -> String {
     if text.contains("e-") { text } else { text.replace('e', "e+") }
 }
 
-/// A ratio as a decimal fraction that ends, if it is one.
+/// A ratio as a finite decimal fraction, if it is one.
 fn exact_digits((n, d): (i64, i64)) -> Option<String> {
     let places = (0..=38).find(|&k| 10i128.pow(k) % i128::from(d) == 0)?;
     let digits = i128::from(n).checked_mul(10i128.pow(places) / i128::from(d))?;
@@ -140,7 +140,7 @@ fn gcd(mut a: u128, mut b: u128) -> u128 {
     a.max(1)
 }
 
-/// The ratios that are written as one character; fifths and tenths are shorter as decimals.
+/// The ratios written as one character; fifths and tenths are shorter as decimals.
 pub(crate) const FRACTIONS: [(char, i64, i64); 11] = [
     ('½', 1, 2),
     ('⅓', 1, 3),
@@ -154,6 +154,15 @@ pub(crate) const FRACTIONS: [(char, i64, i64); 11] = [
     ('⅝', 5, 8),
     ('⅞', 7, 8),
 ];
+
+/// Fifths written as one character.
+const FIFTHS: [(char, i64, i64); 4] = [('⅕', 1, 5), ('⅖', 2, 5), ('⅗', 3, 5), ('⅘', 4, 5)];
+
+/// The number that a character is, such as `½`.
+pub(crate) fn fraction(c: char) -> Option<Number> {
+    let &(_, n, d) = FRACTIONS.iter().chain(&FIFTHS).find(|fraction| fraction.0 == c)?;
+    Number::ratio(n.into(), d.into())
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,4 +1,4 @@
-//! What stands between the operators of a formula: names, numbers, brackets, calls.
+//! Parser of operands: names, numbers, brackets, calls.
 
 use super::indices::count_indices;
 use super::parser::{Parsed, Parser};
@@ -97,7 +97,7 @@ impl Parser<'_> {
         let mut grades = Grades(0);
         loop {
             let Some(Item::Number(number)) = self.peek() else {
-                return Err(Error::new(self.span(), "a grade should stand here: `⟨A⟩_2`, `⟨A⟩_{0,2}`"));
+                return Err(Error::new(self.span(), "expected a grade: `⟨A⟩_2`, `⟨A⟩_{0,2}`"));
             };
             grades.0 |= self.grade(*number)?.0;
             self.at += 1;
@@ -110,7 +110,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The grade that the next item is.
+    /// The grade of this number.
     fn grade(&self, number: Number) -> Result<Grades, Error> {
         let n = self.space.algebra.signature().generators();
         let k = number.ratio.filter(|&(_, d)| d == 1).and_then(|(k, _)| usize::try_from(k).ok());
@@ -130,7 +130,7 @@ impl Parser<'_> {
         self.build(Kind::Call(name, arguments), self.since(start), height)
     }
 
-    /// The arguments in brackets, so many of them; any number if it is not known.
+    /// The arguments in brackets; `count` of them, or any number for `usize::MAX`.
     pub(crate) fn arguments(
         &mut self,
         start: Span,
@@ -141,7 +141,7 @@ impl Parser<'_> {
         if !self.eat(&Sign::Open('(')) {
             return Err(Error::new(
                 start,
-                format!("`{name}` is a function: write its argument in brackets, `{name}(…)`"),
+                format!("`{name}` is a function; write its argument in brackets, `{name}(…)`"),
             ));
         }
         self.deeper(open)?;
@@ -185,14 +185,14 @@ impl Parser<'_> {
         } else if self.names.is_open() {
             return self.build(Kind::Name("e".to_owned()), start, 0);
         } else {
-            let message = "`e` has no value; an exponential is written `e^(…)` or `exp(…)`, the basis vectors e1, e2, …";
+            let message = "`e` has no value; write an exponential as `e^(…)` or `exp(…)`, and basis vectors as e1, e2, …";
             return Err(Error::new(start, message));
         };
         let function = Kind::Function(Named::Function(Function::Exp), Box::new(exponent.node));
         self.build(function, self.since(start), exponent.height)
     }
 
-    /// `e^-Bθ` may mean `e^(-B) θ` or `e^(-Bθ)`; only brackets or a space tell.
+    /// `e^-Bθ` may mean `e^(-B) θ` or `e^(-Bθ)`; only brackets or a space decide.
     fn check_exponent(&self, start: Span) -> Result<(), Error> {
         let last = &self.items[self.at - 1].item;
         let ends = matches!(last, Item::Sign(Sign::Close(_) | Sign::CloseAngle));
@@ -200,10 +200,10 @@ impl Parser<'_> {
             return Ok(());
         }
         let span = start.to(self.span());
-        Err(Error::new(span, "where does the exponent end? Put it in brackets, `e^(…)`"))
+        Err(Error::new(span, "the end of the exponent is ambiguous; put it in brackets, `e^(…)`"))
     }
 
-    /// What stands above e: signs and one operand, without powers of its own.
+    /// The exponent of e: signs and one operand without powers.
     fn exponent(&mut self) -> Parsed {
         let start = self.span();
         if self.eat(&Sign::Minus) {
@@ -242,7 +242,7 @@ impl Parser<'_> {
                     [(index, _)] => index.to_string(),
                     _ => {
                         let message =
-                            "a sum over which index? Write `Σ_k ω_k e_k`; indices are i, j, k, l, m and n";
+                            "the sum has no index; write `Σ_k ω_k e_k`; indices are i, j, k, l, m and n";
                         return Err(Error::new(start, message));
                     }
                 }

@@ -1,5 +1,7 @@
-//! Items to a tree, by recursive descent. Brackets are counted on the way in and heights on the way out, so that
-//! neither the parser nor whoever walks its trees needs much of the stack.
+//! Recursive-descent parser from items to a tree.
+//!
+//! It limits nested brackets and the height of trees, so that neither the parser nor walks over its trees overflow the
+//! stack.
 
 use super::indices::sum_repeated;
 use super::names::Names;
@@ -13,7 +15,7 @@ use crate::formula::{Error, MAX_DEPTH, Space};
 /// Levels of a tree. A bracket makes at most four (sum, product, quotient, tight product).
 const MAX_HEIGHT: usize = 4 * MAX_DEPTH;
 
-/// Reads a formula with these names.
+/// Parses a formula with these names.
 ///
 /// # Errors
 /// With the place in the text, and what to do.
@@ -71,13 +73,13 @@ impl Parser<'_> {
         found
     }
 
-    /// Where the next item is; after the last one, the end.
+    /// The place of the next item, or the end of the text.
     pub fn span(&self) -> Span {
         let end = Span { start: self.text.len(), end: self.text.len() };
         self.ahead(0).map_or(end, |read| read.span)
     }
 
-    /// From there to the last item that was read.
+    /// From `start` to the last item that was read.
     pub fn since(&self, start: Span) -> Span {
         start.to(self.items[self.at.max(1) - 1].span)
     }
@@ -90,7 +92,7 @@ impl Parser<'_> {
         let Some(read) = self.ahead(0) else {
             return Error::new(
                 self.span(),
-                "the formula ends where a name, a number or an opening bracket should follow",
+                "the formula ends where a name, a number or an opening bracket is expected",
             );
         };
         let text = self.slice(read.span);
@@ -101,14 +103,12 @@ impl Parser<'_> {
             Item::Sign(Sign::Tight(Tight::Dot)) if text == "|" => {
                 "`|` is a dot product, `a|b`, and needs its left factor; a magnitude is `norm(a)`".to_owned()
             }
-            Item::Sign(Sign::Comma) => "a comma only stands between the arguments of a function".to_owned(),
-            Item::Sign(Sign::Underscore) => "a subscript follows a letter or `⟨…⟩` directly".to_owned(),
-            Item::Subscript(_) => "a subscript follows a letter or `⟩` directly".to_owned(),
-            Item::Sign(Sign::Prime) => "a prime follows a letter or a bracket directly".to_owned(),
-            Item::Superscript(_) => {
-                "a power follows what is raised to it; powers of powers need brackets".to_owned()
-            }
-            _ => format!("a name, a number or an opening bracket should stand here, not `{text}`"),
+            Item::Sign(Sign::Comma) => "commas are allowed only between arguments of a function".to_owned(),
+            Item::Sign(Sign::Underscore) => "a subscript must directly follow a letter or `⟨…⟩`".to_owned(),
+            Item::Subscript(_) => "a subscript must directly follow a letter or `⟩`".to_owned(),
+            Item::Sign(Sign::Prime) => "a prime must directly follow a letter or a bracket".to_owned(),
+            Item::Superscript(_) => "a power must follow its base; powers of powers need brackets".to_owned(),
+            _ => format!("expected a name, a number or an opening bracket, got `{text}`"),
         };
         Error::new(read.span, message)
     }
@@ -185,8 +185,7 @@ impl Parser<'_> {
         self.build(Kind::Product(factors), self.since(start), height)
     }
 
-    /// `x/2a` may mean `(x/2) a` or `x/(2a)`; only a space tells.
-    /// So may `1/2·x`.
+    /// `x/2a` may mean `(x/2) a` or `x/(2a)`, and only a space decides; so may `1/2·x`.
     fn check_divisor(&mut self, start: Span, divisor: Span) -> Result<(), Error> {
         if let Some(tight) = self.tight_sign() {
             let x = self.slice(self.since(divisor)).to_owned();
@@ -194,7 +193,7 @@ impl Parser<'_> {
             let begin = self.span();
             self.prefix()?;
             let (sign, y, span) = (tight.symbol(), self.slice(self.since(begin)), self.since(start));
-            let message = format!("what is divided by? Write `(…/{x}){sign}{y}` or `…/({x}{sign}{y})`");
+            let message = format!("ambiguous divisor; write `(…/{x}){sign}{y}` or `…/({x}{sign}{y})`");
             return Err(Error::new(span, message));
         }
         if !self.begins_operand() || self.ahead(0).is_some_and(|read| read.space) {
@@ -204,11 +203,11 @@ impl Parser<'_> {
         let (x, y) = (self.slice(self.since(divisor)), self.slice(self.span()));
         let y = if y == "(" || y == "[" || y == "{" || y == "⟨" || y == "<" { "(…)" } else { y };
         let message =
-            format!("what is divided by? Write `…/{x} {y}` with a space for `(…/{x}) {y}`, or `…/({x} {y})`");
+            format!("ambiguous divisor; write `…/{x} {y}` with a space for `(…/{x}) {y}`, or `…/({x} {y})`");
         Err(Error::new(span, message))
     }
 
-    /// What stands side by side without a sign between, and is probably no product.
+    /// Fails for adjacent operands that are probably not meant as a product.
     fn check_juxtaposition(&self, factors: &[Built]) -> Result<(), Error> {
         let (Some(last), Some(next)) = (factors.last(), self.ahead(0)) else { return Ok(()) };
         let before = &self.items[self.at - 1];
@@ -223,7 +222,7 @@ impl Parser<'_> {
             (Item::Sign(Sign::Close(_) | Sign::CloseAngle), Item::Number(_)) if !next.space => {
                 Err(Error::new(
                     next.span,
-                    "a number right after a bracket: a power is written `(…)^2`, a factor stands before",
+                    "a number right after a bracket; write a power as `(…)^2`, or the factor before the bracket",
                 ))
             }
             (Item::Name(name), Item::Sign(Sign::Open('(')))
@@ -235,7 +234,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `R(x)` with a value R looks like a function of x.
+    /// Fails for `R(x)` with a value R, which looks like a function of x.
     fn check_application(&self, name: &str) -> Result<(), Error> {
         let (argument, close) = (self.ahead(1), self.ahead(2));
         let alone = argument.is_some_and(|a| matches!(a.item, Item::Name(_) | Item::Number(_)))
@@ -284,8 +283,7 @@ impl Parser<'_> {
             let operand = self.prefix()?;
             spans.push(self.since(begin));
             if caret && is_numeric(&operand.node) {
-                let message =
-                    "a power is a whole number: `A^2`, `A^-1`. Other powers of a rotor are `exp(½ log(R))`";
+                let message = "a power must be a whole number: `A^2`, `A^-1`; write other powers of a rotor as `exp(½ log(R))`";
                 return Err(Error::new(self.since(begin), message));
             }
             height = height.max(operand.height);
@@ -374,7 +372,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `A~`: a tilde that stands right behind something, and not before something else.
+    /// Consumes the tilde of `A~`, which directly follows an operand and does not directly precede another.
     fn eat_tilde_behind(&mut self) -> bool {
         let behind = self.is(&Sign::Tilde) && self.ahead(0).is_some_and(|tilde| !tilde.space);
         self.at += 1;
@@ -412,7 +410,8 @@ impl Parser<'_> {
         }
         let whole = number.ratio.filter(|&(_, d)| d == 1).map(|(n, _)| if minus { -n } else { n });
         let Some(n) = whole.and_then(|n| i32::try_from(n).ok()) else {
-            let message = "a power is a whole number of 32 bits; other powers of a rotor are `exp(½ log(R))`";
+            let message =
+                "a power must be a whole number of 32 bits; write other powers of a rotor as `exp(½ log(R))`";
             return Err(Error::new(span, message));
         };
         self.at += count;
@@ -421,10 +420,10 @@ impl Parser<'_> {
 }
 
 fn too_deep(span: Span) -> Error {
-    Error::new(span, format!("more than {MAX_DEPTH} levels within each other; define the inner parts first"))
+    Error::new(span, format!("more than {MAX_DEPTH} nested levels; define the inner parts first"))
 }
 
-/// `1/2` is the number ½, as are the other fractions that are one character.
+/// `1/2` is the number ½; likewise the other fractions that are one character.
 fn written_fraction(numerator: &Node, divisor: &Node) -> Option<Number> {
     let whole = |node: &Node| match &node.kind {
         Kind::Number(Number { ratio: Some((n, 1)), .. }) => Some(*n),

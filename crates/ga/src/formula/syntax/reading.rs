@@ -1,5 +1,4 @@
-//! How words are read, once it is known what is bound: as one name, as a function, or as letters that stand
-//! side by side.
+//! Reader of words: one name, a function, or adjacent letters, depending on the names that are bound.
 
 use super::indices::{INDICES, indexed, is_built_in};
 use super::names::{Meaning, Names};
@@ -8,7 +7,7 @@ use super::tree::{Named, Span, Tight};
 use crate::diagnostic::{nearest, quote};
 use crate::formula::{Error, Number, Space};
 
-/// What a word, a number or a sign is in its formula.
+/// A word, a number or a sign with its meaning in the formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Item {
     Number(Number),
@@ -17,9 +16,9 @@ pub(crate) enum Item {
     Blade(Vec<u8>),
     /// `I`
     Pseudoscalar,
-    /// A value, or a name in an index that is not decided yet.
+    /// A value, or a name with indices whose values are not known yet.
     Name(String),
-    /// A linear map, or a defined function with so many parameters.
+    /// A linear map or a defined function, with its number of parameters.
     Callable(String, usize),
     Function(Named),
     /// A tight product by its name.
@@ -75,10 +74,10 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// A name with an argument as its label, `R(0)`, and where it ends.
+    /// A name with an argument as its label, `R(0)`, and the place of its end.
     fn labelled(&self, atoms: &[Atom], rest: &[Token]) -> Option<(String, Span)> {
         let [open, argument, close, ..] = rest else { return None };
-        // Where nothing is known yet, `R(0)`, `V(x)` and `I(B)` may be all kinds of things, and stay as they are.
+        // With open names `R(0)`, `V(x)` and `I(B)` may mean anything, so they stay one name.
         let unknown = match atoms {
             [atom] => self.names.is_open() && !matches!(&atom.name[..], "e" | "π" | "Σ"),
             _ => false,
@@ -159,7 +158,7 @@ impl Reader<'_> {
         (is_index || self.names.is_open()).then(|| Ok(Item::Name(atom.name.clone())))
     }
 
-    /// What a bound name is.
+    /// The item of a bound name.
     fn bound(&self, name: &str, span: Span, called: bool) -> Option<Result<Item, Error>> {
         let item = match self.names.get(name)? {
             Meaning::Value(_) => Item::Name(name.to_owned()),
@@ -169,7 +168,7 @@ impl Reader<'_> {
             Meaning::Map { .. } => {
                 return Some(Err(Error::new(
                     span,
-                    format!("`{name}` is a linear map: write what it maps, `{name}(…)`"),
+                    format!("`{name}` is a linear map; write its argument, `{name}(…)`"),
                 )));
             }
             Meaning::Function(definition) => match definition.parameters.len() {
@@ -177,7 +176,7 @@ impl Reader<'_> {
                 count if called => Item::Callable(name.to_owned(), count),
                 _ => {
                     let parameters = definition.parameters.join(", ");
-                    let message = format!("`{name}` is a function: write `{name}({parameters})`");
+                    let message = format!("`{name}` is a function; write `{name}({parameters})`");
                     return Some(Err(Error::new(span, message)));
                 }
             },
@@ -229,7 +228,7 @@ impl Reader<'_> {
         (self.is_indexed(&name) && atoms.iter().any(|atom| self.atom(atom, false).is_none())).then_some(name)
     }
 
-    /// Whether a name that is not bound stands for others, one for each value of its indices.
+    /// Whether an unbound name stands for several, one for each value of its indices.
     fn is_indexed(&self, name: &str) -> bool {
         let Some((base, indices)) = indexed(name) else { return false };
         let first = format!("{base}{}{}", "1".repeat(indices.len()), &name[base.len() + 1 + indices.len()..]);
@@ -240,13 +239,15 @@ impl Reader<'_> {
         let n = self.count();
         let repeated = (1..generators.len()).find(|&i| generators[..i].contains(&generators[i]));
         let why = match repeated {
-            Some(i) => format!("`{name}` has e{} twice; a blade has distinct vectors", generators[i]),
-            None => format!("`{name}` is no basis element: the basis vectors are e1 to e{n}"),
+            Some(i) => {
+                format!("`{name}` contains e{} twice; the vectors of a blade must be distinct", generators[i])
+            }
+            None => format!("`{name}` is not a basis element; the basis vectors are e1 to e{n}"),
         };
-        Error::new(span, format!("{why}. A power of ten is written `1e+{}`", name.trim_start_matches('e')))
+        Error::new(span, format!("{why}. Write a power of ten as `1e+{}`", name.trim_start_matches('e')))
     }
 
-    /// The error for a name without a value; `letters` is how the word was tried.
+    /// The error for a name without a value; `letters` are those of a word that was also read letter by letter.
     fn unknown(&self, name: &str, span: Span, letters: Option<&[Atom]>) -> Error {
         let word: String =
             letters.map_or(name.to_owned(), |atoms| atoms.iter().map(|a| a.name.as_str()).collect());
@@ -257,20 +258,20 @@ impl Reader<'_> {
             let mut shown: Vec<&str> = missing.iter().take(5).copied().collect();
             shown.dedup();
             let (verb, list) = (if shown.len() == 1 { "has" } else { "have" }, shown.join(", "));
-            message += &format!(" as one name; read as letters side by side, {list} {verb} none");
+            message += &format!(" as one name; read as adjacent letters, {list} {verb} none");
         }
         let functions = Named::ALL.iter().map(|f| f.name()).chain(Tight::ALL.iter().map(|t| t.name()));
         let known: Vec<&str> = self.names.iter().collect();
         if let Some(near) = nearest(&word, known.iter().copied().chain(functions)) {
-            message += &format!("; is `{near}` meant?");
+            message += &format!("; did you mean `{near}`?");
         } else if known.is_empty() {
             message += "; no names have values here";
         } else {
             let more = if known.len() > 8 { ", …" } else { "" };
-            message += &format!("; those that have: {}{more}", known[..known.len().min(8)].join(", "));
+            message += &format!("; names with values: {}{more}", known[..known.len().min(8)].join(", "));
         }
         if word == "x" {
-            message += ". The cross product is written `a ⨯ b` or `cross(a, b)`";
+            message += ". Write the cross product as `a ⨯ b` or `cross(a, b)`";
         }
         Error::new(span, message)
     }

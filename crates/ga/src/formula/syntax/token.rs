@@ -1,10 +1,10 @@
-//! Text cut into numbers, words and signs.
+//! Lexer: cuts text into numbers, words and signs.
 
 use super::letters::{
-    TILDE, below_tilde, composed, folded, fraction, is_letter, is_mark, is_space, part_sign, primes,
-    subscript, superscript,
+    TILDE, below_tilde, composed, folded, is_letter, is_mark, is_space, part_sign, primes, subscript,
+    superscript,
 };
-use super::number::Number;
+use super::number::{Number, fraction};
 use super::tree::{Span, Tight};
 use crate::formula::{Error, MAX_NODES};
 use std::iter::Peekable;
@@ -17,7 +17,7 @@ pub(crate) struct Atom {
     pub name: String,
     /// Whether a tilde stands above.
     pub reversed: bool,
-    /// Where.
+    /// Its place.
     pub span: Span,
 }
 
@@ -29,7 +29,7 @@ pub(crate) enum Sign {
     Slash,
     /// `^`: a wedge or a power.
     Caret,
-    /// Another product that binds tight.
+    /// Another tight product.
     Tight(Tight),
     Tilde,
     Dagger,
@@ -50,9 +50,9 @@ pub(crate) enum Lexeme {
     Number(Number),
     /// Letters without a space between them.
     Word(Vec<Atom>),
-    /// A number above the line.
+    /// A raised number.
     Superscript(i32),
-    /// A number below the line that belongs to no letter.
+    /// A lowered number that does not belong to a letter.
     Subscript(Number),
     Sign(Sign),
 }
@@ -65,7 +65,7 @@ pub(crate) struct Token {
     pub space: bool,
 }
 
-/// Cuts a text into tokens, of which letters count each.
+/// Cuts a text into tokens; each letter counts.
 pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Error> {
     let mut lexer = Lexer { text, chars: text.char_indices().peekable() };
     let mut tokens: Vec<Token> = Vec::new();
@@ -104,7 +104,7 @@ impl Lexer<'_> {
         ahead.next().map(|(_, c)| folded(c))
     }
 
-    /// Where the next character is.
+    /// The place of the next character.
     fn at(&mut self) -> usize {
         self.chars.peek().map_or(self.text.len(), |&(at, _)| at)
     }
@@ -138,11 +138,9 @@ impl Lexer<'_> {
         let Some(c) = self.peek() else { return Ok(None) };
         let lexeme = if c.is_ascii_digit() || c == '.' && self.second().is_some_and(|d| d.is_ascii_digit()) {
             self.number()?
-        } else if let Some((n, d)) = fraction(c) {
+        } else if let Some(number) = fraction(c) {
             self.chars.next();
-            Lexeme::Number(
-                Number::ratio(n.into(), d.into()).unwrap_or(Number::float(f64::from(n) / f64::from(d))),
-            )
+            Lexeme::Number(number)
         } else if is_letter(c) {
             Lexeme::Word(self.word()?)
         } else if superscript(c).is_some() {
@@ -159,7 +157,7 @@ impl Lexer<'_> {
     fn read(&mut self, digits: &str, start: usize) -> Result<Number, Error> {
         let span = self.since(start);
         Number::decimal(digits)
-            .ok_or_else(|| Error::new(span, "a number beyond the range of floating point (1.8e308)"))
+            .ok_or_else(|| Error::new(span, "the number is beyond the range of floating point (1.8e308)"))
     }
 
     /// Digits with a point; an exponent with a sign, or after a capital E: `2e1` is 2 times `e1`.
@@ -192,7 +190,7 @@ impl Lexer<'_> {
         let digits = self.run(superscript);
         let power = digits.parse().map_err(|_| {
             let span = self.since(start);
-            Error::new(span, "a power is a whole number of at most nine digits, such as ² or ⁻¹")
+            Error::new(span, "a power must be a whole number of at most nine digits, such as ² or ⁻¹")
         })?;
         Ok(Lexeme::Superscript(power))
     }
@@ -242,7 +240,7 @@ impl Lexer<'_> {
         Ok(Atom { name, reversed, span: self.since(start) })
     }
 
-    /// Takes in a subscript, if one follows, in canonical form: `1` for `_1` and `₁`, otherwise `_B`.
+    /// Reads a subscript, if one follows, in canonical form: `1` for `_1` and `₁`, otherwise `_B`.
     fn below(&mut self, c: char, below: &mut String) -> Result<bool, Error> {
         let start = self.at();
         let piece = if let Some(sign) = part_sign(c) {
@@ -264,7 +262,10 @@ impl Lexer<'_> {
             let piece = self.run(|c| Some(c).filter(|&c| c.is_ascii_digit() || is_letter(c)));
             if piece.is_empty() || in_braces && !self.eat(|c| c == '}') {
                 let span = self.since(start);
-                return Err(Error::new(span, "a subscript is letters and digits, such as `Ω_B` or `e_12`"));
+                return Err(Error::new(
+                    span,
+                    "a subscript must be letters and digits, such as `Ω_B` or `e_12`",
+                ));
             }
             piece
         } else {
@@ -314,18 +315,18 @@ impl Lexer<'_> {
         }
         if sign == Sign::Star && self.peek() == Some('*') {
             self.chars.next();
-            return Err(Error::new(self.since(start), "a power is written `A^2` or `A²`"));
+            return Err(Error::new(self.since(start), "write a power as `A^2` or `A²`"));
         }
         Ok(Lexeme::Sign(sign))
     }
 }
 
-/// What to do about a character that is no part of the language.
+/// The error for a character outside the language.
 fn no_meaning(c: char) -> String {
     let remedy = match c {
-        '\\' | '$' => "; formulas are plain text: write `θ/2 e1∧e2`, not LaTeX",
-        '.' => "; a product is written `a b`, `a·b` or `a∧b`",
-        '"' | '`' => "; names need no quotes",
+        '\\' | '$' => "; write plain text, `θ/2 e1∧e2`, not LaTeX",
+        '.' => "; write a product as `a b`, `a·b` or `a∧b`",
+        '"' | '`' => "; write names without quotes",
         '∨' => "; join and meet are methods in Python",
         '÷' | ':' => "; divide with `/`",
         '↦' | '→' | '⇒' | ';' => "; write one formula or equation at a time",
@@ -358,7 +359,7 @@ pub fn canonical(name: &str) -> Option<String> {
     }
 }
 
-/// The canonical name of letters that make up one; `None` if one of them is reversed.
+/// The canonical name of letters that form one name; `None` if one of them is reversed.
 pub(crate) fn joined(atoms: &[Atom]) -> Option<String> {
     (!atoms.iter().any(|atom| atom.reversed)).then(|| atoms.iter().map(|atom| atom.name.as_str()).collect())
 }

@@ -1,4 +1,4 @@
-//! What a formula is once it is read: a tree whose nodes know the text they come from.
+//! Syntax trees of formulas; each node has its place in the text.
 
 use super::number::Number;
 use crate::g3::functions::Function;
@@ -7,14 +7,14 @@ use crate::product::Grades;
 /// A piece of the text, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// Where it begins.
+    /// The first byte.
     pub start: usize,
-    /// Where it has ended.
+    /// The byte after the last.
     pub end: usize,
 }
 
 impl Span {
-    /// From the beginning of the one to the end of the other.
+    /// The span of both and the text between them.
     pub fn to(self, other: Span) -> Span {
         Span { start: self.start.min(other.start), end: self.end.max(other.end) }
     }
@@ -28,7 +28,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Every node, each before those it is made of.
+    /// Every node, each before its children.
     pub fn nodes(&self) -> Vec<&Node> {
         let mut nodes = Vec::new();
         for side in &self.sides {
@@ -38,16 +38,16 @@ impl Tree {
     }
 }
 
-/// A part of a formula. Brackets leave no node; they are the shape of the tree.
+/// A part of a formula. Brackets are not nodes; they shape the tree.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
-    /// Where it stands, without brackets around it.
+    /// Its place, without brackets around it.
     pub span: Span,
 }
 
-/// Two nodes are equal if they are the same formula, wherever it stands.
+/// Nodes are equal if they are the same formula, in any place.
 impl PartialEq for Node {
     fn eq(&self, other: &Node) -> bool {
         self.kind == other.kind
@@ -60,7 +60,7 @@ impl Node {
         Node { kind, span }
     }
 
-    /// Calls a function with the node and all it is made of.
+    /// Calls a function with the node and all its descendants.
     pub(crate) fn visit<'n>(&'n self, f: &mut impl FnMut(&'n Node)) {
         f(self);
         for child in self.children() {
@@ -68,7 +68,7 @@ impl Node {
         }
     }
 
-    /// The nodes it is made of, from left to right.
+    /// Its children, from left to right.
     pub fn children(&self) -> Vec<&Node> {
         match &self.kind {
             Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
@@ -85,7 +85,7 @@ impl Node {
         }
     }
 
-    /// The same, to change them.
+    /// Its children, mutable.
     pub(crate) fn children_mut(&mut self) -> Vec<&mut Node> {
         match &mut self.kind {
             Kind::Number(_) | Kind::Pi | Kind::Blade(_) | Kind::Pseudoscalar | Kind::Name(_) => Vec::new(),
@@ -180,7 +180,7 @@ impl Tight {
         }
     }
 
-    /// The function of this name that it is, too: the one way to write it in ASCII but for `^` and `|`.
+    /// Its name as a function, which is also its ASCII spelling apart from `^` and `|`.
     pub fn name(self) -> &'static str {
         match self {
             Tight::Wedge => "wedge",
@@ -193,7 +193,7 @@ impl Tight {
     }
 }
 
-/// The functions of one argument that have a name of their own.
+/// The named functions of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Named {
     /// `exp`, `log`, `sqrt`, `inverse`.
@@ -250,7 +250,7 @@ impl Named {
     }
 }
 
-/// Whether it is made of numbers alone.
+/// Whether a node contains only numbers.
 pub(crate) fn is_numeric(node: &Node) -> bool {
     match &node.kind {
         Kind::Number(_) | Kind::Pi => true,

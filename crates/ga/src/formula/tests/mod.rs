@@ -195,7 +195,7 @@ fn definitions_are_written_out() {
     assert_eq!(grades("W(a, b)", &names), grades("½ a·a − ½ b·b + (a + b)·a", &names));
     // A parameter hides a name of outside while the body is read, and no longer.
     assert_eq!(grades("x", &names), [0b0010]);
-    // The derivative of a parameter is no name of outside.
+    // The derivative of a parameter is not an outer name.
     define("E(v)", "(v v)'", space, &mut names).unwrap();
     define("P(v, v')", "(v v)'", space, &mut names).unwrap();
     let error = compiled("E(a)", &names).unwrap_err();

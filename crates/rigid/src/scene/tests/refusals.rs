@@ -151,7 +151,7 @@ fn wrong_types_and_sizes_are_named() {
 
 #[test]
 fn an_attitude_of_zero_is_reported_at_its_value() {
-    let message = "4:22: all components are zero, which is no rotor; give the identity as 1, 0, 0, 0";
+    let message = "4:22: all components are zero, which is not a rotor; give the identity as 1, 0, 0, 0";
     assert_eq!(errors_with("spin", "attitude = { rotor = [0, 0, 0, 0] }\nspin"), [message]);
     let message =
         "4:22: a bivector of size zero spans no plane, expected one such as `\"e1e2\"` or `[0, 0, 1]`";
@@ -243,10 +243,7 @@ proptest! {
 #[test]
 fn formulas_are_wrong_at_a_place_of_the_file() {
     let table = [
-        (
-            "'fast'",
-            "4:9: `fast` has no value as one name; read as letters side by side, f, a, s, t have none",
-        ),
+        ("'fast'", "4:9: `fast` has no value as one name; read as adjacent letters, f, a, s, t have none"),
         ("'5 rev/s e1'", "4:8: expected a bivector, found a part of grade 1"),
         ("'5 rev/s e1∧q'", "4:20: `q` has no value"),
         ("'5 rev/s (e1∧e2'", "4:17: `(` is never closed"),

@@ -2,6 +2,7 @@ import type { ComponentChildren } from "preact";
 import type { About, LawEntry, Triple } from "../core/core.ts";
 import type { Model } from "../model/model.ts";
 import { significant, small } from "./format.ts";
+import { HOLDING } from "../vary/laws.ts";
 import { DEGREE, duration } from "./units.ts";
 
 /** What is known of the motion as a whole: its kind, its times, and how far to trust it. */
@@ -26,7 +27,7 @@ export function Facts({ model }: { model: Model }) {
         {about.laws.map((law) => (
           <Fact name={labelOf(law.name, model.core.laws)} key={law.name}>
             <code>
-              {about.heavy && HEAVY.has(law.name) ? `m g l = ${weight(about.heavy)}` : shortened(law.text)}
+              {about.heavy && HOLDING.has(law.name) ? `m g l = ${weight(about.heavy)}` : shortened(law.text)}
             </code>
           </Fact>
         ))}
@@ -55,8 +56,6 @@ export function labelOf(name: string, registry: readonly LawEntry[]): string {
   };
   return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
 }
-
-const HEAVY = new Set(["gravity", "heavy"]);
 
 /** The vector m g l, in N m. */
 function weight(heavy: Triple): string {

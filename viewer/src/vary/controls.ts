@@ -2,7 +2,7 @@ import { batch, computed, effect, type ReadonlySignal, signal } from "@preact/si
 import { type About, type LawEntry, State, type Triple } from "../core/core.ts";
 import { firstRow, type Model } from "../model/model.ts";
 import { type BodyChoice, bodyOf, bodyTable, spreadOf } from "./body.ts";
-import { type LawForm, type LawsChoice, lawsFor, lawTables, noLaws } from "./laws.ts";
+import { HOLDING, type LawForm, type LawsChoice, WEIGHT, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";
 import { rateUnit, timeUnit } from "../panels/units.ts";
 import { fields, table } from "./toml.ts";
@@ -54,7 +54,7 @@ export class Controls {
   /** Whether the body may be given by its masses, or by a solid, although it is held: only gravity may act then. */
   readonly free = computed(() => {
     const about = this.about.value;
-    return !about?.held || about.laws.every(({ name }) => name === "gravity" || name === "heavy");
+    return !about?.held || about.laws.every(({ name }) => HOLDING.has(name));
   });
 
   setBody(body: BodyChoice): void {
@@ -131,14 +131,14 @@ export class Controls {
       parts.push(bodyTable(body));
       const moved = body.form === "masses" || !about.body.solid;
       if (about.held && moved && !chosen) parts.push(this.weightAsBefore(about));
-    } else if (chosen && laws.on.has("heavy")) {
+    } else if (chosen && laws.on.has(WEIGHT)) {
       // The weight acts on a body that is held at the origin of its axes, so its moments are said about that.
       parts.push(bodyTable({ ...body, form: "masses" }));
     }
     if (this.touched.has("start")) parts.push(startTable(start, rateUnit(start.spin.rate)));
     if (chosen) {
       parts.push(lawTables(laws, this.forms.value, about));
-      const held = laws.on.has("gravity") || laws.on.has("heavy");
+      const held = [...laws.on].some((name) => HOLDING.has(name));
       if (held && start.path) parts.push(table("force"));
     }
     return parts.join("\n");

@@ -55,6 +55,7 @@ __all__ = [
     "magnetic",
     "pd_control",
     "quadratic_damping",
+    "radiation_pressure",
     "tabulated",
     "torsion_spring",
     "viscous_damping",
@@ -213,6 +214,31 @@ def larmor(b: Any) -> Torque:
     L is the angular momentum in space, that of a `gyrostat` included; it turns about b at the rate ``−|b|``.
     """
     return _law("larmor", b)
+
+
+def radiation_pressure(
+    area: Any, offset: Any, sun: Any, coefficient: Any = 1.0, pressure: Any = 4.56e-6
+) -> Torque:
+    """Return the torque of sunlight on a sphere whose centre is not the centre of mass.
+
+    The "cannonball" model: with s the unit vector to the Sun, light exerts the force ``F = −C P A s`` at the
+    centre of pressure c at any attitude. The torque in body axes is ``c∧(~R F R)``, its potential
+    ``V = −c·(~R F R)`` (Montenbruck & Gill, *Satellite Orbits*, sec. 3.4). For plates write a `formula`.
+
+    Parameters
+    ----------
+    area
+        The cross-section A in m², (...), not negative.
+    offset
+        The centre of pressure c from the centre of mass, a vector or (..., 3) in body axes in m.
+    sun
+        The direction to the Sun, a vector or (..., 3) in space; its size is ignored.
+    coefficient
+        The radiation pressure coefficient C, (...): 1 if all light is absorbed.
+    pressure
+        The pressure P of sunlight in N/m², (...); by default that at 1 au.
+    """
+    return _law("radiation_pressure", area, offset, sun, coefficient, pressure)
 
 
 # --- springs, dampers, control

@@ -24,6 +24,7 @@ ATTITUDE = {
     "constant_space": ph.torque.constant_space([0.1, 0.2, 0.3]),
     "magnetic": ph.torque.magnetic([1, 0.2, 0.3], [0.3, 0.1, 0.4]),
     "torsion_spring": ph.torque.torsion_spring(0.5, ph.Rotor.from_components([1, 2, 0, 0])),
+    "radiation_pressure": ph.torque.radiation_pressure(2.0, [0.3, -0.7, 0.2], [0.2, -0.4, 1.1], 1.5, 0.25),
     "damping": ph.torque.damping(0.25),
     "gyrostat": ph.torque.gyrostat([0.1, 0.2, 0.3]),
     "tabulated": ph.torque.tabulated([-1, 1.5, 3, 3.5, 5], ROWS),

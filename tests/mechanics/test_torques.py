@@ -18,6 +18,7 @@ LAWS = {
     "heavy": ph.torque.heavy([0.5, 0.25, 1.0]),
     "gravity_gradient": ph.torque.gravity_gradient(0.7, 0.3, 0.2),
     "magnetic": ph.torque.magnetic([0.3, -0.7, 0.2], [0.2, -0.4, 1.1]),
+    "radiation_pressure": ph.torque.radiation_pressure(2.0, [0.3, -0.7, 0.2], [0.2, -0.4, 1.1], 1.5, 0.25),
     "larmor": ph.torque.larmor([0.125, 0.5, 1.0]),
     "damping": ph.torque.damping(0.125),
     "viscous_damping": ph.torque.viscous_damping([0.1, 0.2, 0.4]),
@@ -98,6 +99,28 @@ def test_gravity_and_magnetic_torques_come_from_their_potentials():
         np.testing.assert_allclose(torque(LAWS["heavy"], state=state), N, rtol=0, atol=4 * EPS)
         N = from_potential(lambda R: -dot([0.3, -0.7, 0.2], mp_back(R, [0.2, -0.4, 1.1])), rotor)
         np.testing.assert_allclose(torque(LAWS["magnetic"], state=state), N, rtol=0, atol=4 * EPS)
+
+
+def test_radiation_pressure_is_that_of_the_cannonball():
+    """The force −C P A s of light from the direction s of the Sun, at the centre of pressure."""
+    offset, sun = ph.vector([0.3, -0.7, 0.2]), ph.vector([0.2, -0.4, 1.1])
+    force = -1.5 * 0.25 * 2.0 * sun.normalized()
+    found = LAWS["radiation_pressure"].at(BODY, START)
+    assert found.is_close(offset ^ (~R0)(force), rtol=0, atol=8 * EPS)
+    # By default the pressure at 1 au on a body that absorbs all light; the size of `sun` is ignored.
+    found = ph.torque.radiation_pressure(2.0, ph.e1, 150e9 * ph.e2).at(
+        BODY, ph.State(ph.Rotor.identity(), OMEGA)
+    )
+    assert found.is_close(-2 * 4.56e-6 * (ph.e1 ^ ph.e2), rtol=8 * EPS)
+    times = np.linspace(0, 20, 11)
+    motion = ph.simulate(BODY, START, times, LAWS["radiation_pressure"], rtol=1e-10)
+    about = motion.momentum_space.dual().components @ sun.normalized().components
+    np.testing.assert_allclose(about, about[0], rtol=0, atol=1e-9 * abs(about[0]))
+    V = -(offset | (~motion.rotor)(force)).components[:, 0]
+    kinetic = 0.5 * np.sum(I * motion.omega_body.components**2, axis=1)
+    np.testing.assert_allclose(kinetic + V, motion.energy, rtol=0, atol=64 * EPS * kinetic.max())
+    assert {"energy", "axial_angular_momentum"} <= set(motion.certificate.conserved)
+    assert max(motion.certificate.drift.values()) < 1e-9
 
 
 @pytest.mark.parametrize("rotor", [R0, -R0, REST, ph.Rotor.from_components([0, 1, 2, 3])], ids=str)
@@ -238,6 +261,9 @@ def _turned(law, F):
     name, given = one.name, list(one.arguments)
     if name == "magnetic":
         return ph.torque.magnetic(F(ph.vector(given[0])), given[1])
+    if name == "radiation_pressure":
+        area, offset, *others = given
+        return ph.torque.radiation_pressure(area, F(ph.vector(offset)), *others)
     if name == "heavy":
         return ph.torque.heavy(F(ph.vector(given[0])))
     if name in ("gyrostat", "constant_body"):
@@ -314,6 +340,8 @@ def test_how_laws_are_shown():
         (lambda T: T.gravity_gradient(1.0, -0.1), ["eccentricity is -0.1", "at least 0"]),
         (lambda T: T.gravity_gradient(1.0, np.nan), ["eccentricity", "nan"]),
         (lambda T: T.quadratic_damping(-1), ["k is -1", "negative"]),
+        (lambda T: T.radiation_pressure([1, -2], ph.e1, ph.e2), ["at index (1,)", "area is -2", "negative"]),
+        (lambda T: T.radiation_pressure(1, ph.e1, [0, 0, 0]), ["sun is [0.0, 0.0, 0.0]", "must not be zero"]),
         (lambda T: T.viscous_damping([1, -2, 3]), ["d", "-2", "negative"]),
         (lambda T: T.viscous_damping([1, 2]), ["(2,)", "three"]),
         (lambda T: T.pd_control(np.nan, 1), ["kp", "nan"]),

@@ -34,6 +34,9 @@ LAWS = {
     "constant_body = [1, 2, 3]": ph.torque.constant_body([1, 2, 3]),
     "constant_space = [1, 2, 3]": ph.torque.constant_space([1, 2, 3]),
     "magnetic = { dipole = [1, 0, 0], field = [0, 1, 2] }": ph.torque.magnetic([1, 0, 0], [0, 1, 2]),
+    'radiation_pressure = { area = "20 m^2", offset = ["50 cm", 0, 0], sun = "e2 + e3", pressure = 0.1 }': (
+        ph.torque.radiation_pressure(20, [0.5, 0, 0], ph.e2 + ph.e3, pressure=0.1)
+    ),
     "torsion_spring = { stiffness = 2, rest = { rotor = [0.6, 0, 0, -0.8] } }": ph.torque.torsion_spring(
         2, REST
     ),

@@ -41,6 +41,7 @@ __all__ = [
     "magnetic",
     "pd_control",
     "quadratic_damping",
+    "radiation_pressure",
     "tabulated",
     "torsion_spring",
     "viscous_damping",
@@ -199,5 +200,6 @@ larmor = _law(native.larmor, _laws.Larmor)
 magnetic = _law(native.magnetic, _laws.Magnetic)
 pd_control = _law(native.pd_control, _control)
 quadratic_damping = _law(native.quadratic_damping, _laws.QuadraticDamping)
+radiation_pressure = _law(native.radiation_pressure)
 torsion_spring = _law(native.torsion_spring, _laws.TorsionSpring)
 viscous_damping = _law(native.viscous_damping, lambda d: _laws.ViscousDamping(d, None))

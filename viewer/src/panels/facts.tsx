@@ -3,6 +3,7 @@ import type { About, LawEntry, Triple } from "../core/core.ts";
 import { significant, small } from "../format/numbers.ts";
 import { DEGREE, duration } from "../format/units.ts";
 import type { Model } from "../model/model.ts";
+import { HOLDING } from "../vary/laws.ts";
 
 type Fact = [name: string, value: ComponentChildren];
 
@@ -13,7 +14,7 @@ export function Facts({ model }: { model: Model }) {
   const { body, free, top } = about;
   const facts: Fact[] = [
     ...about.laws.map(({ name, text }): Fact => {
-      const shown = about.heavy && HEAVY.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
+      const shown = about.heavy && HOLDING.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
       return [labelOf(name, model.core.laws), <code>{shown}</code>];
     }),
     ...(free ? freeFacts(free) : []),
@@ -60,8 +61,6 @@ export function labelOf(name: string, registry: readonly LawEntry[]): string {
   };
   return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
 }
-
-const HEAVY = new Set(["gravity", "heavy"]);
 
 /** The vector m g l, in N m. */
 function weight(heavy: Triple): string {

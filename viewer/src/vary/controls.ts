@@ -3,7 +3,7 @@ import { type About, State, type Triple } from "../core/core.ts";
 import { rateUnit, timeUnit } from "../format/units.ts";
 import { firstRow, type Model } from "../model/model.ts";
 import { type BodyChoice, bodyOf, bodyTable } from "./body.ts";
-import { type LawForm, type LawsChoice, lawsFor, lawTables, noLaws } from "./laws.ts";
+import { HOLDING, type LawForm, type LawsChoice, WEIGHT, lawsFor, lawTables, noLaws } from "./laws.ts";
 import { type StartChoice, startOf, startTable } from "./start.ts";
 import { fields, table } from "./toml.ts";
 
@@ -51,7 +51,7 @@ export class Controls {
   /** Whether the form of the body may change: a held body may have no laws but gravity. */
   readonly free = computed(() => {
     const about = this.about.value;
-    return !about?.held || about.laws.every(({ name }) => name === "gravity" || name === "heavy");
+    return !about?.held || about.laws.every(({ name }) => HOLDING.has(name));
   });
 
   setBody(body: BodyChoice): void {
@@ -131,14 +131,14 @@ export class Controls {
       parts.push(bodyTable(body, core));
       const moved = body.form === "masses" || !about.body.solid;
       if (about.held && moved && !chosen) parts.push(this.sameWeight(about));
-    } else if (chosen && laws.on.has("heavy")) {
+    } else if (chosen && laws.on.has(WEIGHT)) {
       // This law holds the body at the origin of its axes, so the moments must be about that point.
       parts.push(bodyTable({ ...body, form: "masses" }, core));
     }
     if (this.touched.has("start")) parts.push(startTable(start, rateUnit(start.spin.rate)));
     if (chosen) {
       parts.push(lawTables(laws, this.forms.value, about));
-      const held = laws.on.has("gravity") || laws.on.has("heavy");
+      const held = [...laws.on].some((name) => HOLDING.has(name));
       if (held && start.path) parts.push(table("force"));
     }
     return parts.join("\n");

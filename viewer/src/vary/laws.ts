@@ -30,6 +30,10 @@ export interface LawForm {
 /** The axis of a law that has one: a parameter of values 0, 1, 2. */
 export const AXIS = "axis";
 
+/** The law of a body that is held at the origin of its axes, and all laws that hold it at a point. */
+export const WEIGHT = "heavy";
+export const HOLDING: ReadonlySet<string> = new Set(["gravity", WEIGHT]);
+
 /** The parameter of a law that is a value without a table. */
 const VALUE = "value";
 
@@ -49,7 +53,7 @@ export function lawsFor(
   const spin = momentum || moment * rate;
   const suggested = (argument: LawArgument): number | null => suggestion(argument, rate, moment, spin);
   const others = registry.filter(
-    (law) => law.name !== "heavy" && required(law).every((x) => suggested(x) !== null),
+    (law) => law.name !== WEIGHT && required(law).every((x) => suggested(x) !== null),
   );
   const forms = others.map((law) => ({
     name: law.name,
@@ -107,7 +111,7 @@ function gravity(about: About, size: number, moment: number, byPivot: boolean): 
   };
   if (!byPivot) {
     const held = about.heavy ? Math.hypot(...about.heavy) : neat(moment);
-    return { name: "heavy", label, parameters: [parameter("weight", "m g l", si("N m"), held)] };
+    return { name: WEIGHT, label, parameters: [parameter("weight", "m g l", si("N m"), held)] };
   }
   const sides: Range = { min: -size, max: size, scale: "linear" };
   return {
@@ -145,8 +149,8 @@ export function lawTables(choice: LawsChoice, laws: LawForm[], about: About): st
         acceleration: values.get("acceleration")!,
         pivot: [-about.body.solid_at[0], -about.body.solid_at[1], values.get("pivot")!],
       });
-    } else if (law.name === "heavy") {
-      torque["heavy"] = unitVector(about.heavy).map((part) => part * values.get("weight")!);
+    } else if (law.name === WEIGHT) {
+      torque[WEIGHT] = unitVector(about.heavy).map((part) => part * values.get("weight")!);
     } else if (values.has(VALUE)) {
       torque[law.name] = along(values.get(VALUE)!);
     } else {

@@ -1,7 +1,7 @@
 //! Every torque law that is made of arguments.
 
 use super::Shape::{Bivectors, Gains as Factors, Numbers, Scalar, Vector as Components, Word};
-use super::{Argument, Entry, Kernel, Limit, Shape, TABLE, argument, three};
+use super::{Argument, Entry, Kernel, Limit, Shape, TABLE, argument, direction, three};
 use crate::error::TorqueError;
 use crate::laws::torque::{Gains, Orbit, Torque};
 use crate::units::Quantity;
@@ -19,7 +19,7 @@ fn rotor(numbers: &[f64]) -> Result<Rotor, TorqueError> {
 }
 
 /// Every torque law, in the order in which messages name them.
-pub static TORQUES: [Entry<Torque>; 13] = [
+pub static TORQUES: [Entry<Torque>; 14] = [
     Entry {
         name: "damping",
         label: "Damping",
@@ -149,6 +149,28 @@ pub static TORQUES: [Entry<Torque>; 13] = [
         kernel: Kernel::Native {
             build: |x| Ok(Torque::Larmor(Vector(three(x, 0)))),
             numbers: numbers!(Torque::Larmor(b) => b.0.to_vec()),
+        },
+    },
+    // The "cannonball": a sphere of this cross-section takes up the momentum of sunlight, whatever its attitude, at the
+    // centre of its surface (O. Montenbruck and E. Gill, Satellite Orbits, Springer 2000, sec. 3.4).
+    Entry {
+        name: "radiation_pressure",
+        label: "Radiation pressure",
+        formula: "-(coefficient pressure area) offset∧(~R sun R)/norm(sun)",
+        arguments: &[
+            argument("area", "area", Quantity::Area, Scalar).not_negative(),
+            argument("offset", "offset", Quantity::Length, Components),
+            direction("sun"),
+            Argument {
+                quantity: None,
+                ..argument("coefficient", "coefficient", Quantity::Area, Scalar).not_negative().or(&[1.0])
+            },
+            argument("pressure", "pressure", Quantity::Pressure, Scalar).not_negative().or(&[4.56e-6]),
+        ],
+        kernel: Kernel::Formula {
+            size: "coefficient pressure area norm(offset)",
+            potential: "(coefficient pressure area) offset·(~R sun R)/norm(sun)",
+            axis: "sun",
         },
     },
     Entry {

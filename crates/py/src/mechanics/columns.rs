@@ -9,7 +9,6 @@ use polhode_ga::{Graded, Vector};
 use polhode_rigid::laws::torque::Torque;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::convert::Infallible;
 use std::fmt::Display;
 
 /// Values of `polhode._mechanics.parameters.Batch`: a row for each body.

@@ -220,7 +220,7 @@ def test_operations_that_return_rotors():
 def test_rotors_reject_other_types(points, shape):
     # The numbers of an array of points would be scalars, which rotations do not change.
     for turn in (random_rotors(shape), random_rotors(shape).apply):
-        with pytest.raises(TypeError, match=r"turns multivectors, got .*wrap arrays with ph\.vector"):
+        with pytest.raises(TypeError, match=r"acts on multivectors, got .*wrap arrays with ph\.vector"):
             turn(points)
 
 

@@ -260,7 +260,7 @@ class Multivector(_native.Multivector):
     reject = _subspaces.reject
     reflect = _subspaces.reflect
 
-    # --- sizes
+    # --- norms
 
     norm_squared = _functions.norm_squared
     norm = _functions.norm

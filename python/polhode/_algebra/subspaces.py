@@ -50,17 +50,17 @@ def vee(left: Multivector, other: Any) -> Multivector:
     return left.right_complement().wedge(right.right_complement()).left_complement()
 
 
-def join(left: Multivector, right: Multivector) -> Multivector:
+def join(value: Multivector, other: Multivector) -> Multivector:
     """Return the unit blade of the smallest subspace that contains both blades.
 
     Directions within 1e-10 (in single precision 3e-5) of a subspace count as lying in it. Components are
     compared as lengths, the basis vectors as orthonormal, whatever the metric. For the sign see `meet`. A
     ValueError for a value that is not a blade.
     """
-    return _join_or_meet(left, right, "join")
+    return _join_or_meet(value, other, "join")
 
 
-def meet(left: Multivector, right: Multivector) -> Multivector:
+def meet(value: Multivector, other: Multivector) -> Multivector:
     """Return the unit blade of the intersection of both blades; the scalar 1 where it is {0}.
 
     Join J and meet M are oriented together: with ``A = A'∧M`` and ``B = M∧B'``, ``J = A'∧M∧B'``. The
@@ -73,7 +73,7 @@ def meet(left: Multivector, right: Multivector) -> Multivector:
 
     Tolerance as for `join`.
     """
-    return _join_or_meet(left, right, "meet")
+    return _join_or_meet(value, other, "meet")
 
 
 def _join_or_meet(left: Multivector, right: Multivector, name: str) -> Multivector:

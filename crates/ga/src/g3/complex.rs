@@ -103,7 +103,7 @@ impl Mul for Complex {
 
 impl Div for Complex {
     type Output = Complex;
-    /// Smith's division: no overflow on the way.
+    /// Smith's division, without intermediate overflow.
     fn div(self, o: Complex) -> Complex {
         if o.re.abs() >= o.im.abs() {
             let t = o.im / o.re;

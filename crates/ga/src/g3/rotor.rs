@@ -12,8 +12,8 @@ use crate::rows::rotor_functions;
 use std::f64::consts::PI;
 use std::ops::{Mul, Neg};
 
-/// A squared norm that differs from 1 by no more than this is left alone: four components, each rounded in
-/// a product of norm 1, and the sum of their squares.
+/// A squared norm within this of 1 is not rescaled: four components, each rounded in a product of norm 1, and the sum
+/// of their squares.
 const UNIT_SQUARED: f64 = 8.0 * f64::EPSILON;
 
 /// A unit even element `s + b`; the constructors keep it so.
@@ -24,7 +24,7 @@ pub struct Rotor {
 }
 
 impl Rotor {
-    /// The rotor that turns nothing.
+    /// The identity.
     pub const IDENTITY: Rotor = Rotor { scalar: 1.0, bivector: Bivector([0.0; 3]) };
 
     /// From components `(1, e2e3, e3e1, e1e2)`, divided by their norm; those that are unit to rounding
@@ -46,7 +46,7 @@ impl Rotor {
         Ok(Rotor { scalar: s, bivector: Bivector([x, y, z]) })
     }
 
-    /// From components that are already a rotor's: of norm 1 to rounding, which is not checked.
+    /// From components of norm 1 to rounding, which is not checked.
     pub fn from_unit_components([s, x, y, z]: [f64; 4]) -> Rotor {
         Rotor { scalar: s, bivector: Bivector([x, y, z]) }
     }

@@ -78,7 +78,7 @@ macro_rules! linear_space {
             pub fn norm_squared(self) -> f64 {
                 self.0.iter().map(|x| x * x).sum()
             }
-            /// `√⟨A ~A⟩`, without overflow or underflow on the way.
+            /// `√⟨A ~A⟩`, without intermediate overflow or underflow.
             pub fn norm(self) -> f64 {
                 norm(&self.0)
             }
@@ -226,7 +226,7 @@ impl Multivector {
         -self.dual()
     }
 
-    /// Any named product, straight from the table.
+    /// Any named product, by the table.
     pub fn product(self, product: Product, other: Multivector) -> Multivector {
         let plan = Plan::g3(product, Grades::ALL, Grades::ALL);
         let mut out = vec![0.0; plan.sizes.2];

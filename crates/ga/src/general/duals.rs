@@ -1,8 +1,8 @@
-//! Complements, which need no metric, and the dual, which does.
+//! Complements, independent of the metric, and the dual, which depends on it.
 //!
 //! The right complement of a basis blade E is the blade with `E ∧ rc(E) = I`; the left one has
-//! `lc(E) ∧ E = I`, and each undoes the other. They exchange the subspace with what is missing from the
-//! whole space, in degenerate algebras too, where `A I⁻¹` does not exist.
+//! `lc(E) ∧ E = I`, and each undoes the other. They exchange a subspace and its complement
+//! in the whole space, also in degenerate algebras, where `A I⁻¹` does not exist.
 
 use super::Calculus;
 use crate::error::MathError;

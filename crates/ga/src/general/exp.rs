@@ -1,13 +1,13 @@
 //! The exponential.
 //!
-//! Three ways, by what V is in `M = s + V`:
+//! Three methods, depending on V in `M = s + V`:
 //! - `V² = w` a number: `exp V = cosh √w + V sinh √w / √w`, as for vectors, blades and simple bivectors;
 //! - a bivector of up to five generators, `V² = S` of the form `x + yU` (see `pair`): the same formula,
 //!   `exp V = C + V φ` with `C = cosh √S` and `φ = sinh √S / √S`, by series and doubling in that ring;
 //! - any other: the series of `exp(M/2ᵏ)`, squared k times.
 //!
-//! In the ring nothing mixes the sizes of the parts: how often to double follows from the angles alone,
-//! however far a translation or boosted a frame.
+//! The ring does not mix the sizes of the parts: the number of doublings depends on the angles alone, however large a
+//! translation or boost.
 
 use super::pair::{Pair, Ring, SPLITS};
 use super::{Calculus, add_scaled, grade, part, scaled};
@@ -138,7 +138,7 @@ fn cosh_sinhc(s: f64, w: f64, scale: f64) -> (f64, f64) {
     }
 }
 
-/// How often to halve an argument of this binary logarithm to reach 1/2; an error beyond all certainty.
+/// The number of halvings of an argument of this binary logarithm that reach 1/2; an error beyond the precision.
 fn halvings(log2: f64) -> Result<u32, MathError> {
     if log2.is_nan() || log2 > MOST_HALVINGS {
         return Err(MathError::AngleTooLarge);

@@ -8,7 +8,7 @@ use super::{Calculus, clifford_conjugate, grade, reverse, scaled};
 use crate::error::MathError;
 use crate::g3::values::scale_of;
 
-/// How near to a number a product `M̄M` must be for `M̄/(M̄M)`: the refinement squares what is left.
+/// The deviation of `M̄M` from a number up to which `M̄/(M̄M)` is used: the refinement squares it.
 const NEARLY_A_NUMBER: f64 = 1e-8;
 
 impl Calculus {

@@ -8,14 +8,14 @@
 //! B = F g(C),   g(c) = arcosh c / √(c² − 1) = Σ tⱼ zʲ,   z = (1 − c)/2,   tⱼ/tⱼ₋₁ = 2j/(2j + 1).
 //! ```
 //!
-//! With up to five generators C is `x + yU` (see `pair`), and the whole walk takes a few numbers. With
-//! more it is walked in the algebra (see `sqrt`).
+//! With up to five generators C is `x + yU` (see `pair`), and the halvings take a few numbers. With more they are done in
+//! the algebra (see `sqrt`).
 //!
-//! The walk ends at the logarithm whose numbers `x ± y√q` have imaginary parts within ±π. It has no
+//! The halvings lead to the logarithm whose numbers `x ± y√q` have imaginary parts within ±π. It has no
 //! start where one of those of C is −1 or less: there R turns by a whole turn in some plane, or boosts
 //! besides, and R commutes with a bivector Y of that plane; then `log R = Y + log(R exp(−Y))`.
 //!
-//! Every result is checked: `exp(log R)` must be R again.
+//! Every result is checked: `exp(log R)` must equal R.
 
 use super::eigen::diagonalize;
 use super::exp::unit_of_grade_4;
@@ -33,12 +33,12 @@ const MOST_LENIENT: f64 = 1e3;
 pub(super) struct Tolerances {
     /// Rounding of the few sums of products in `M~M`, relative to `|M|²`.
     pub rounding: f64,
-    /// How far `R~R` may be from a number, and `exp(log R)` from R per unit of `1 + |log R|`: the rounding
+    /// Largest distance of `R~R` from a number, and of `exp(log R)` from R per unit of `1 + |log R|`: the rounding
     /// of thousands of products.
     pub versor: f64,
     /// No logarithm is given that is less certain than this, relative to R: half of the digits.
     pub least_certain: f64,
-    /// What [`SAME_DIRECTION`] is for them.
+    /// The value of [`SAME_DIRECTION`] for them.
     pub direction: f64,
 }
 
@@ -74,7 +74,7 @@ impl Calculus {
     /// With up to five generators it is found wherever there is one, as far as rounding lets it be seen:
     /// with two generators or more of either sign, a large boost may drown the rotation beside it. With
     /// more generators, where the sum of the angles of B over its planes is below π, and in most other
-    /// cases. What is not found is an error.
+    /// cases. Otherwise it is an error.
     ///
     /// Of parts with null generators that are not a versor's, as of the rounding that is left where larger
     /// ones cancel, those nearest by are taken: `exp(log M)` is M to `√ε` of its largest part.
@@ -222,7 +222,7 @@ impl Calculus {
         (close && (ratio - 1.0).abs() <= tolerance).then_some(ratio)
     }
 
-    /// The end of the walk, unchecked; none where it has no start.
+    /// The result of the halvings, unchecked; none where they cannot start.
     fn principal_log(&self, r: &[f64]) -> Option<Vec<f64>> {
         if self.generators > 5 {
             return self.log_by_roots(r);
@@ -244,7 +244,7 @@ impl Calculus {
         let (ring, c) = (Ring { q }, Pair { x: r[0], y });
         let negative = r[0] < y.abs() * q.max(0.0).sqrt();
         let turned = negative.then(|| self.turned_factor(ring, c, &f, &unit)).flatten();
-        Some(self.times(&f, &unit, turned.or_else(|| walk(ring, c))?))
+        Some(self.times(&f, &unit, turned.or_else(|| sinh_factor(ring, c))?))
     }
 
     /// The factor κ with `B = F κ` where a number of C is negative, so that 1 + C would cancel. Of `F = PS`,
@@ -256,7 +256,7 @@ impl Calculus {
             return None;
         }
         let s = ring.sqrt(square.scale(-1.0))?;
-        let angle = Pair { x: FRAC_PI_2, y: 0.0 }.plus(ring.mul(c, walk(ring, s)?).scale(-1.0));
+        let angle = Pair { x: FRAC_PI_2, y: 0.0 }.plus(ring.mul(c, sinh_factor(ring, s)?).scale(-1.0));
         Some(ring.mul(angle, ring.inverse(s)))
     }
 
@@ -346,7 +346,7 @@ impl Calculus {
 }
 
 /// The factor κ with `B = F κ` for `C = cosh B`: halves until C is near 1.
-fn walk(ring: Ring, mut c: Pair) -> Option<Pair> {
+fn sinh_factor(ring: Ring, mut c: Pair) -> Option<Pair> {
     let one_minus = |c: Pair| Pair { x: 1.0 - c.x, y: -c.y };
     let mut factor = Pair::ONE;
     for _ in 0..=MOST_HALVINGS {

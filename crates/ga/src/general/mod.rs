@@ -5,7 +5,7 @@
 //! generators in the bits of `b`. There the product of blades `i` and `j` is the blade `i ^ j`, and one
 //! table of signs is the whole algebra.
 //!
-//! Rooms: [`inverse`](Calculus::inverse) solves a linear system, [`exp`](Calculus::exp) and
+//! Modules: [`inverse`](Calculus::inverse) solves a linear system, [`exp`](Calculus::exp) and
 //! [`log`](Calculus::log) use that a bivector's square is nearly a number (`pair`), `duals` has the
 //! complements, `subspaces` the blades as subspaces: join and meet.
 
@@ -36,12 +36,12 @@ pub struct Calculus {
     order: Vec<(usize, f64)>,
     /// Sign of the product of canonical blades `i` and `j`, at `i · 2ⁿ + j`.
     signs: Vec<i8>,
-    /// What counts as rounding in a versor.
+    /// Tolerances for versors.
     tolerances: Tolerances,
 }
 
 impl Calculus {
-    /// Makes the table of signs of `algebra`.
+    /// Computes the table of signs of `algebra`.
     pub fn new(algebra: &Algebra) -> Calculus {
         let signature = algebra.signature();
         let generators = signature.generators();
@@ -59,7 +59,7 @@ impl Calculus {
     }
 
     /// The same functions, of components that are rounded to a spacing `epsilon` of numbers at 1, as
-    /// `f32::EPSILON`: it decides what logarithm and square root take for a versor.
+    /// `f32::EPSILON`: it sets the tolerance for versors in logarithms and square roots.
     pub fn rounded_to(self, epsilon: f64) -> Calculus {
         Calculus { tolerances: Tolerances::new(epsilon), ..self }
     }
@@ -106,7 +106,7 @@ impl Calculus {
             Function::Log => Grades(Grades::EVEN.0 & all.0),
             Function::Sqrt => even,
             // M⁻¹ is M̃ or M times something central and even: blades keep their grade, and so do
-            // bivectors while B² has but one part besides the scalar.
+            // bivectors while B² has only one part besides the scalar.
             Function::Inverse => {
                 let bivector = if n <= 5 { of(2) } else { Grades::SCALAR };
                 let kept = [Grades::SCALAR, of(1), of(n.saturating_sub(1)), of(n), bivector];

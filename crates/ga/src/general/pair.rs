@@ -1,8 +1,8 @@
-//! The numbers that the square of a bivector makes: `x + yU`, with U of grade 4 and `U² = q` a number.
+//! Squares of bivectors as numbers `x + yU`, with U of grade 4 and `U² = q` a number.
 //!
 //! With up to five generators a bivector has `B² = s + W`, W of grade 4, and `W²` is a number: complex
 //! numbers for q < 0, dual ones for q = 0, split ones for q > 0. Every function below is smooth in q, so
-//! that rotations, boosts, translations and all that lies between need no cases. Only where q is well
+//! rotations, boosts, translations and everything between need no special cases. Only where q is well
 //! above 0 the two numbers are better kept apart: one may be a large boost, the other a rotation.
 
 /// From this q on the idempotents `½(1 ± U/√q)` split the ring into two numbers, losing but three bits.

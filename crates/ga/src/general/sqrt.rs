@@ -8,7 +8,7 @@ use crate::g3::values::norm;
 const MOST_STEPS: u32 = 40;
 
 impl Calculus {
-    /// The bivector logarithm of a rotor by the walk of `log`, with C and F as elements of the algebra;
+    /// The bivector logarithm of a rotor by the halvings of `log`, with C and F as elements of the algebra;
     /// none where the principal logarithm is not a bivector.
     pub(super) fn log_by_roots(&self, r: &[f64]) -> Option<Vec<f64>> {
         let mut c = r.to_vec();

@@ -1,7 +1,7 @@
-//! Blades as subspaces: the smallest that contains two of them, and what they have in common.
+//! Blades as subspaces: the join and the meet.
 //!
-//! A blade `A = a1∧…∧ak` stands for the span of its vectors; no metric enters. To have a measure of what
-//! counts as the same direction, components are compared as lengths, basis vectors as orthonormal.
+//! A blade `A = a1∧…∧ak` stands for the span of its vectors; no metric enters. To decide
+//! whether directions are the same, the basis vectors count as orthonormal.
 
 use super::{Calculus, add_scaled, dot, grade, scaled};
 use crate::error::MathError;
@@ -39,7 +39,7 @@ impl Calculus {
         let whole =
             [&a.vectors[..], &extend(&a.vectors, &b.vectors, usize::MAX, self.tolerances.direction)].concat();
         let common = a.vectors.len() + b.vectors.len() - whole.len();
-        // What A lacks of the whole and what B lacks of it together leave the common part.
+        // The complements of A and B together span the complement of the common part.
         let missing = |x: &Subspace| extend(&x.vectors, &whole, whole.len() - x.vectors.len(), 0.0);
         let (from_a, from_b) = (missing(&a), missing(&b));
         let missing = [&from_a[..], &extend(&from_a, &from_b, from_b.len(), 0.0)].concat();
@@ -72,7 +72,7 @@ impl Calculus {
         m.iter().find(|x| x.abs() >= bound).is_some_and(|&x| x < 0.0)
     }
 
-    /// The subspace of a blade; an error if it is none.
+    /// The subspace of a blade; an error if it is not a blade.
     ///
     /// The vectors of a blade are its contractions by all blades one grade lower; the k most independent
     /// of them span it, and the wedge of these is the blade again if it is one.

@@ -1,4 +1,4 @@
-//! Products of rotors over many rows, of norm 1 again.
+//! Products of rotors over many rows, renormalized.
 
 use crate::g3::rotor::Rotor;
 use crate::simd::threads::Threads;

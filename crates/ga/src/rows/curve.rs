@@ -20,7 +20,7 @@ pub trait Curve<const A: usize, const B: usize>: Sync {
 /// Numbers in the two rows of a curve.
 pub const MOST: usize = 8;
 
-/// From so many arguments on a thread more pays: they take as long as it takes to start.
+/// Arguments from which another thread pays: they take as long as starting it.
 const SHARED: usize = 4096;
 
 /// The value of a curve, the same bits as [`sample`].
@@ -55,7 +55,7 @@ pub fn sample<const A: usize, const B: usize>(
     for_each(pieces, |(arguments, a, b)| piece(path, curve, arguments, a, b));
 }
 
-/// In lanes as wide as they may be, and what is left in narrower ones.
+/// In lanes as wide as possible, and the rest in narrower ones.
 fn piece<const A: usize, const B: usize>(
     path: Path,
     curve: &impl Curve<A, B>,
@@ -90,8 +90,7 @@ fn blocks<const W: usize, const A: usize, const B: usize>(
 /// Curves that [`together`] evaluates at a time.
 pub const TOGETHER: usize = 16;
 
-/// Asks for what is read soon: a hint, for much that lies in memory. The machine's own prefetching stops at the
-/// end of each page.
+/// Prefetches data that is read soon, since hardware prefetching stops at the end of each page.
 pub fn expect<T>(soon: &T) {
     Path::best().prefetch(soon, 0..size_of::<T>().div_ceil(64));
 }
@@ -123,7 +122,7 @@ fn side_by_side<const A: usize, const B: usize>(
 struct OnLanes<'a, C, const A: usize, const B: usize>(&'a C);
 
 impl<C: Curve<A, B>, const A: usize, const B: usize> OnLanes<'_, C, A, B> {
-    /// `N` at a time: what lies between the steps of a curve is best kept in registers.
+    /// `N` at a time: intermediate results of a curve then stay in registers.
     #[inline(always)]
     fn lanes<const FMA: bool, const N: usize, const W: usize>(
         &self,

@@ -1,7 +1,7 @@
 //! Functions of rotors over many rows: exp, log and powers.
 //!
-//! The formulas are those of [`crate::Rotor`]. What they lose by rounding is kept by sums of two numbers
-//! (`simd::double`), or where that is too little by whole numbers (`simd::payne_hanek`). The steps
+//! The formulas are those of [`crate::Rotor`]. Double-double numbers (`simd::double`) keep what rounding
+//! loses, and where these do not suffice, integers (`simd::payne_hanek`). The steps
 //! of a formula are loops of their own: processors overlap short chains of operations, not long ones.
 
 use crate::g3::values::scale_of;
@@ -107,8 +107,7 @@ impl Map<4, 0, 3> for Log {
         out
     }
 
-    /// What the other way cannot do once a row is scaled is −1 but for a tiny bivector; or it is zero, no
-    /// rotor at all.
+    /// Rows beyond the fast method, once scaled, are −1 up to a tiny bivector, or zero, which is not a rotor.
     fn long(c: [f64; 4], _: [f64; 0]) -> [f64; 3] {
         const EXACT_PI: (f64, f64) = (PI, 1.224_646_799_147_353_2e-16);
         let scale = scale_of(&c);
@@ -212,7 +211,7 @@ circular_map!(
 );
 
 /// `exp(B)` of rows of bivectors, as rows of rotor components, each within 2 ulps. Fails with the index of
-/// the first row that is not finite; the result is then of no use.
+/// the first row that is not finite; the result is then unspecified.
 ///
 /// # Panics
 /// If the numbers of rows do not fit together. One row may stand for all.

@@ -10,7 +10,7 @@
 //! for `l2` passes `h1` to the left, and any two different generators anticommute. So the products of a
 //! coset by a coset fall into one coset, and are, but for signs, the 8 × 8 products of the first three
 //! generators: a tile, written out here once. The signs are one of `h1 h2` for all of it, and one more for
-//! odd `l2` if `h1` is odd. What is left of an algebra is the short list of pairs of cosets.
+//! odd `l2` if `h1` is odd. The rest of an algebra is a short list of pairs of cosets.
 //!
 //! Generators of square +1 come first, those of square 0 last: with at least three that do not square to 0,
 //! the first three square to +1 or −1, and no product in a tile vanishes.
@@ -40,7 +40,7 @@ struct Pair {
 /// The full product of an algebra of four generators or more, at least three of which do not square to 0.
 #[derive(Clone, Debug)]
 pub(crate) struct Tiles {
-    /// How many of the first three generators square to +1.
+    /// The number of the first three generators with square +1.
     positive: usize,
     /// The components of each coset, in order of the bits of `l`.
     cosets: Vec<[usize; 8]>,

@@ -1,5 +1,6 @@
-//! Sums `hi + lo` of two numbers, and circular functions of them, for lanes: no branches, so that a loop
-//! over them is vectorised.
+//! Double-double numbers `hi + lo` and circular functions of them, for lanes.
+//!
+//! There are no branches, so loops over lanes are vectorised.
 //!
 //! A rounding error of a product is itself a number (T. J. Dekker, *A floating-point technique for
 //! extending the available precision*, Numer. Math. 18, 1971). Machines with fused multiply-add find it
@@ -75,13 +76,12 @@ fn flip(x: f64, sign: u64) -> f64 {
 pub(crate) struct Size {
     /// The root of the rounded sum of the squares, rounded.
     pub hi: f64,
-    /// What is left of the sum.
+    /// The remainder of the sum.
     pub rest: f64,
 }
 
 impl Size {
-    /// Its square is nothing beside the square of what is 10¹⁰ times as large, and still has exact
-    /// rounding errors.
+    /// Its square is negligible beside the square of a number 10¹⁰ times as large, and still has exact rounding errors.
     const LEAST: f64 = 1e-120;
 
     /// The exact squares are added, their rounding errors after them.
@@ -96,7 +96,7 @@ impl Size {
         Size { hi, rest }
     }
 
-    /// What `hi` lacks, given `1/hi`: `√(h² + ρ) = h + ρ/2h` to `ρ²/8h³`.
+    /// The correction to `hi`, given `1/hi`: `√(h² + ρ) = h + ρ/2h` to `ρ²/8h³`.
     #[inline(always)]
     pub fn lo(self, reciprocal: f64) -> f64 {
         self.rest * (0.5 * reciprocal)
@@ -198,7 +198,7 @@ pub(crate) fn angle(size: f64, s: f64) -> f64 {
 pub(crate) struct Tangent {
     pub u: f64,
     pub rest: f64,
-    /// How many eighths of a turn it was turned back.
+    /// By how many eighths of a turn it was turned back.
     pub eighths: f64,
 }
 
@@ -219,7 +219,7 @@ impl Tangent {
         (Tangent { u, rest, eighths }, lo, over_size)
     }
 
-    /// What the arc tangent exceeds `u` by. The polynomial is fdlibm's, good to 2⁻⁵⁸.
+    /// The excess of the arc tangent over `u`. The polynomial is fdlibm's, good to 2⁻⁵⁸.
     #[inline(always)]
     pub fn excess(self) -> f64 {
         const A: [f64; 11] = [
@@ -249,7 +249,7 @@ impl Tangent {
         /// π/4; the first part has 50 bits, so that its product with 3 is exact.
         const EIGHTH: (f64, f64) = (std::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17);
         let Tangent { u, eighths, .. } = self;
-        // For a negative s the angle is what is missing to π.
+        // For a negative s the angle is the supplement.
         let minus = s.to_bits() & SIGN;
         let eighths = if minus == 0 { eighths } else { 4.0 - eighths };
         let u = flip(u, minus);

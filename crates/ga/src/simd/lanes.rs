@@ -2,7 +2,7 @@
 //!
 //! All is plain loops over lanes, which the compiler turns into the widest instructions where it may: inside
 //! [`fastest`]. `FUSED` says whether a product and a sum are one instruction, rounded once; then results differ from
-//! those of one lane alone, which is not fused, by roundings. What is in one lane never depends on the others.
+//! those of one lane alone, which is not fused, by roundings. Lanes never depend on each other.
 //!
 //! Closures do not inherit the instructions of the function around them, so that arithmetic is written in loops.
 
@@ -19,7 +19,7 @@ pub type One = Lanes<1, false>;
 
 /// Work that is compiled for each set of instructions and done by the best one that this machine has.
 pub trait Work {
-    /// What it gives.
+    /// Its result.
     type Output;
 
     /// Does it. `#[inline(always)]`, as is all arithmetic that it calls; `FUSED` for [`Lanes`].

@@ -59,7 +59,7 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
         value
     }
 
-    /// Rows `N` at a time: what lies between the steps of a map is best kept in registers.
+    /// Rows `N` at a time: intermediate results of a map then stay in registers.
     #[inline(always)]
     fn lanes<const FMA: bool, const N: usize, const W: usize>(
         &self,

@@ -64,7 +64,7 @@ impl<const W: usize> Lane<W> {
     }
 }
 
-/// What rows are made of: `f64`, or `f32`, which is widened as it is read and rounded as it is written.
+/// Elements of rows: `f64`, or `f32`, which is widened when read and rounded when written.
 /// The arithmetic between is that of `f64`.
 pub trait Element: Copy + Send + Sync + Into<f64> + Registers {
     /// The nearest of its numbers.
@@ -88,7 +88,7 @@ pub(crate) trait ByRow: Sync {
     /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
     const FAST_ROWS: bool = false;
 
-    /// Below so many rows, turning them into lanes does not pay.
+    /// Below this number of rows, transposing them into lanes does not pay.
     const FEW: usize = 8;
 
     /// One row. `out` may hold anything before.
@@ -156,7 +156,7 @@ pub fn multiply_adds(many: bool) -> usize {
     if many { run::<96>() } else { run::<48>() }
 }
 
-/// A set of instructions that this machine has. There is no other way to make one than to detect it.
+/// An instruction set that this machine has; it can only be obtained by detection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Path(Level);
 
@@ -273,7 +273,7 @@ impl Path {
         }
     }
 
-    /// Asks for some cache lines, counted from an address on: a hint, wherever it leads.
+    /// Prefetches some cache lines from an address on, which need not be valid.
     #[inline(always)]
     pub fn prefetch<T>(self, from: *const T, lines: Range<usize>) {
         #[cfg(target_arch = "x86_64")]
@@ -334,7 +334,7 @@ pub(crate) const fn in_line<T>() -> usize {
     64 / size_of::<T>()
 }
 
-/// How many numbers stand before the next cache line begins.
+/// The number of elements before the next cache line.
 pub(crate) fn to_next_line<T>(numbers: &[T]) -> usize {
     (numbers.as_ptr().addr() / size_of::<T>()).wrapping_neg() % in_line::<T>()
 }

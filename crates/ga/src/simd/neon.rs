@@ -1,4 +1,4 @@
-//! The path of aarch64. `gather` and `scatter` return how many rows they did; the rest is left to others.
+//! The path of aarch64. `gather` and `scatter` return the number of rows they processed; the caller does the rest.
 
 use super::lanes::Work;
 use super::squares::squares;
@@ -20,7 +20,7 @@ pub(super) fn run_neon<T: Work>(work: T) -> T::Output {
     work.run::<true>()
 }
 
-/// The machine's own prefetching is relied on.
+/// Hardware prefetching suffices.
 #[inline(always)]
 fn prefetch_ahead<T>(_: *const T) {}
 

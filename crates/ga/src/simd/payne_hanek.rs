@@ -1,8 +1,9 @@
-//! The angle of any bivector modulo quarter turns, where sums of two numbers know too little of it: the
-//! angle is huge, or it is so near to a multiple of π/2 that nearly all of it cancels.
+//! Reduction of the angle of any bivector modulo quarter turns, beyond double-double precision.
+//!
+//! It is needed where the angle is huge, or so near to a multiple of π/2 that nearly all of it cancels.
 //!
 //! Whole numbers do not round. `N = |B|²` is counted in units of 2⁻⁵¹², its root `R` in units of 2⁻²⁵⁶,
-//! and `R` is multiplied by as much of 2/π as has a say (M. Payne and R. Hanek, *Radian reduction for
+//! and `R` is multiplied by the digits of 2/π that matter (M. Payne and R. Hanek, *Radian reduction for
 //! trigonometric functions*, SIGNUM Newsletter 18, 1983). Triples of binary64 numbers are fewer than 2¹⁹²,
 //! so that none is expected nearer to a multiple of π/2 than 2⁻¹⁹²; that leaves 64 bits of what remains.
 
@@ -43,7 +44,7 @@ const TWO_OVER_PI: [u64; ROOT + 1] = [
     0x6599_855f_14a0_6840,
 ];
 
-/// `to += sign · m · by · 2^shift`, in two's complement. What runs over the end is lost.
+/// `to += sign · m · by · 2^shift`, in two's complement. Overflow is discarded.
 fn add_product(to: &mut [u64], by: &[u64], m: u64, shift: usize, negative: bool) {
     let m = u128::from(m) << (shift % 64);
     for (first, digit) in [(shift / 64, m as u64), (shift / 64 + 1, (m >> 64) as u64)] {
@@ -145,7 +146,7 @@ fn turns(root: &[u64]) -> (u64, f64, f64) {
     let k = product[point].wrapping_add(u64::from(negative)) & 3;
     let fraction = &mut product[..point];
     let (f, e) = leading(fraction);
-    // What these 53 bits leave. They count units of 2^(e + 11).
+    // The remainder beyond these 53 bits, which count units of 2^(e + 11).
     add_product(fraction, &[1], (f.abs() / 2048.0) as u64, (e + 11).max(0) as usize, f > 0.0);
     let (g, d) = leading(fraction);
     let scaled = |f: f64, e: i32| f * two_to(e - 64 * point as i32);

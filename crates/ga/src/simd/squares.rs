@@ -1,4 +1,4 @@
-//! The turning of rows by square transposes, for instruction sets of any width.
+//! Conversion between rows and lanes by square transposes, for instruction sets of any width.
 
 /// Rows to lanes and back by square transposes of `$n` rows by `$n` columns. The last square of a long
 /// row overlaps the one before. A short row is read, or written, with the beginning of the next one,

@@ -1,31 +1,30 @@
-//! Rows shared among threads.
+//! Distribution of rows over threads.
 //!
-//! A row is computed from its own numbers alone, so that results have the same bits however many threads
-//! share them.
+//! A row depends only on its own numbers, so results have the same bits for any number of threads.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// How many threads may share the rows of a call.
+/// The number of threads that may share the rows of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threads(usize);
 
 impl Threads {
-    /// The caller's own thread alone.
+    /// Only the caller's thread.
     pub const ONE: Threads = Threads(1);
 
-    /// So many, but at least one and at most 1024.
+    /// This number, but at least one and at most 1024.
     pub fn new(count: usize) -> Threads {
         Threads(count.clamp(1, 1024))
     }
 
-    /// As many as the machine runs at a time for this process.
+    /// The parallelism available to this process.
     pub fn available() -> Threads {
         thread::available_parallelism().map_or(Threads::ONE, |count| Threads::new(count.get()))
     }
 
-    /// How many.
+    /// The number.
     pub fn count(self) -> usize {
         self.0
     }
@@ -60,7 +59,7 @@ impl Threads {
     }
 }
 
-/// Calls `work` for each item, by a thread for each where they are to be had.
+/// Calls `work` for each item, in a thread of its own if one can be started.
 pub fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: impl Fn(I) + Sync) {
     let count = items.len();
     if count <= 1 {
@@ -74,7 +73,7 @@ pub fn for_each<I: Send>(items: impl ExactSizeIterator<Item = I> + Send, work: i
         }
     };
     thread::scope(|scope| {
-        // Where no more threads are to be had, those that are there do all the work.
+        // If no more threads can be started, the existing ones do all the work.
         for _ in 1..count {
             if thread::Builder::new().spawn_scoped(scope, worker).is_err() {
                 break;

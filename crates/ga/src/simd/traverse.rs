@@ -1,20 +1,20 @@
-//! A kernel over rows of numbers.
+//! Application of kernels to rows of numbers.
 //!
 //! Values lie row by row, `(rows, components)`. A block of rows is turned into lanes, each component
-//! contiguous; the kernel works on the lanes; the block is turned back. Beyond the caches all that counts
-//! is memory: rows are asked for ahead of time, and results go past the caches.
+//! contiguous; the kernel works on the lanes; the block is turned back. Beyond the caches memory
+//! is the bottleneck: rows are prefetched, and results bypass the caches.
 
 use super::threads::Threads;
 use super::{ByRow, Element, Kernel, Lane, Path, in_line, to_next_line};
 use std::ops::{ControlFlow, Range};
 
-/// From so many bytes on, factors and product together, the product goes past the caches.
+/// From this many bytes on, factors and product together, the product bypasses the caches.
 pub(crate) const STREAMED: usize = 16 << 20;
 
-/// A thread more pays from so many numbers for each on; they take three times as long as it takes to start.
+/// Numbers per thread from which another thread pays; they take three times as long as starting it.
 pub(crate) const SHARED: usize = 1 << 19;
 
-/// Whether factors and product together are too much for the caches.
+/// Whether factors and product together exceed the caches.
 pub(crate) fn beyond_caches<T>(a: &[T], b: &[T], out: &[T]) -> bool {
     size_of_val(a) + size_of_val(b) + size_of_val(out) >= STREAMED
 }
@@ -65,7 +65,7 @@ pub(crate) struct Target<'a, T> {
 }
 
 impl<'a, T> Target<'a, T> {
-    /// Takes the first rows away.
+    /// Splits off the first rows.
     pub fn split_off(&mut self, rows: usize) -> Target<'a, T> {
         let data = self.data.split_off_mut(..rows * self.size).expect("there are so many rows");
         Target { data, ..*self }
@@ -194,7 +194,7 @@ fn sweep_piece<T: Element, const W: usize, K: Kernel<W> + ByRow>(
     if total < K::FEW || K::FAST_ROWS && path.is_portable() {
         return by_rows(kernel, a, b, (out, nout));
     }
-    // What lies beyond the last rows is computed too; no function has difficulties with 1.
+    // Lanes beyond the last rows are computed too; 1 is in the domain of all functions.
     let mut lanes = vec![Lane::<W>::filled(1.0); a.size + b.size + nout];
     let mut target = [Target { data: out, size: nout, at: a.size + b.size }];
     by_blocks((path, streamed), total, &mut lanes, &mut target, |first, count, lanes| {

@@ -1,4 +1,4 @@
-//! The paths of x86-64. `gather` and `scatter` return how many rows they did; the rest is left to others.
+//! The paths of x86-64. `gather` and `scatter` return the number of rows they processed; the caller does the rest.
 
 use super::lanes::Work;
 use super::squares::squares;
@@ -45,14 +45,13 @@ pub(super) fn run_avx512<T: Work>(work: T) -> T::Output {
     work.run::<true>()
 }
 
-/// Asks for the cache line that is read 4 KiB later: across the end of a page, where the machine's own
-/// prefetching stops.
+/// Prefetches the cache line 4 KiB ahead: beyond the end of a page, where hardware prefetching stops.
 #[inline(always)]
 fn prefetch_ahead<T>(from: *const T) {
     prefetch(from.wrapping_byte_add(4096));
 }
 
-/// Asks for a cache line.
+/// Prefetches a cache line.
 #[inline(always)]
 pub(super) fn prefetch<T>(at: *const T) {
     // SAFETY: a hint; it reads nothing, so that the address may be any.

@@ -85,16 +85,22 @@ impl Session {
     }
 
     fn answer(&mut self, line: &Line) -> Result<Outcome, Error> {
-        if line.uses_last {
-            let (value, ty) = self.last.ok_or_else(|| line.error(NO_LAST_VALUE))?;
-            self.bind(LAST_VALUE, value, ty);
-        } else {
-            self.names.forget(LAST_VALUE);
-        }
         if let Some(head) = line.head.as_ref().filter(|head| head.is_function()) {
             return self.define(line, head);
         }
-        let outcome = self.evaluate(line)?;
+        let outcome = match line.uses_last {
+            false => self.evaluate(line)?,
+            true => {
+                let (value, ty) = self.last.ok_or_else(|| line.error(NO_LAST_VALUE))?;
+                let hidden = (self.names.get(LAST_VALUE).cloned(), self.values.get(LAST_VALUE).copied());
+                self.bind(LAST_VALUE, value, ty);
+                let outcome = self.evaluate(line);
+                self.names.restore(LAST_VALUE, hidden.0);
+                self.values.remove(LAST_VALUE);
+                self.values.extend(hidden.1.map(|value| (LAST_VALUE.to_owned(), value)));
+                outcome?
+            }
+        };
         let Some((value, ty)) = outcome.value else {
             return if line.head.is_none() { Ok(outcome) } else { Err(line.error(EQUATION_AS_VALUE)) };
         };

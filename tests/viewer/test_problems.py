@@ -77,7 +77,7 @@ def test_file_errors_name_the_file(opened):
     right = TUMBLING + RUN
     for given, message in (
         ({"notes__txt": "a"}, "notes.txt: the page opens scenes (.toml), documents (.json) and meshes"),
-        ({"run__nc": "a"}, "`polhode view` shows a netCDF file"),
+        ({"run__nc": "a"}, "`polhode view` shows netCDF files"),
         ({"part__stl": "solid"}, "part.stl: wrong.toml does not refer to this file"),
         ({"a__json": "{"}, "a.json is not JSON"),
         ({"b__json": "null"}, "b.json is not a viewer document"),

@@ -1,5 +1,6 @@
 import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
+import { IconButton } from "../inputs/button.tsx";
 import { type Model, words } from "../model/model.ts";
 import type { Palette } from "../palette.ts";
 import styles from "./algebra.css?inline";
@@ -101,17 +102,13 @@ function Picture(props: {
       {missing.value !== null ? (
         <p class="missing">{missing.value}</p>
       ) : (
-        <button class="quiet home" title="Fit everything into view" onClick={() => drawing.current?.home()}>
-          <svg class="icon" viewBox="0 0 20 20" aria-hidden="true">
-            <path
-              d="M3 8V3h5M12 3h5v5M17 12v5h-5M8 17H3v-5"
-              fill="none"
-              stroke="currentColor"
-              stroke-width="1.6"
-            />
-          </svg>
-          <span class="hidden">Fit everything into view</span>
-        </button>
+        <IconButton
+          id="home"
+          class="quiet home"
+          label="Fit everything into view"
+          icon="fit"
+          onClick={() => drawing.current?.home()}
+        />
       )}
     </section>
   );

@@ -60,7 +60,7 @@ export function StartPanel({ controls }: { controls: Controls }) {
         onChange={(rate) => controls.setStart({ ...start, spin: { ...spin, rate } })}
       />
       {spinAngle("off", "Off-axis angle", OFF)}
-      {spinAngle("toward", "Off-axis direction", CIRCLE)}
+      {spinAngle("toward", "Azimuth", CIRCLE)}
       {attitudeAngle("tilt", "Tilt of f₃ from e₃", HALF)}
       {attitudeAngle("turn", "Turn about e₃", CIRCLE)}
       {attitudeAngle("roll", "Roll about f₃", CIRCLE)}

@@ -87,7 +87,7 @@ export const PRESETS: Preset[] = [
     view: TOP,
     caption:
       "A heavy top that starts with its axis moving backward draws loops. Reduce “Off-axis angle”, and the loops become " +
-      "cusps; set “Off-axis direction” to 90°, and they become waves.",
+      "cusps; set “Azimuth” to 90°, and they become waves.",
   },
   {
     name: "cusps.toml",

@@ -53,7 +53,10 @@ export function reshaped(
   if (form === "scene" || form === "masses") return { ...choice, form };
   const massOnly = isThin(form) && choice.amount.kind === "density";
   const amount = massOnly ? { kind: "mass" as const, value: 1 } : choice.amount;
-  const solid = core.solid(form, motion.extents());
+  // Four digits, as those of sliders.
+  const solid = JSON.parse(JSON.stringify(core.solid(form, motion.extents())), (_, value: unknown) =>
+    typeof value === "number" ? Number(value.toPrecision(4)) : value,
+  ) as Solid;
   return { ...choice, form, amount, solid, first: solid };
 }
 

@@ -22,7 +22,7 @@ export interface Spin {
   rate: number;
   /** Angle from the axis, rad. */
   off: number;
-  /** Direction of that angle, rad: 0 towards the next axis. */
+  /** Azimuth of Ω about the axis, rad: 0 towards the next axis. */
   toward: number;
 }
 

@@ -190,7 +190,7 @@ fn revolved(profile: &[[f64; 2]]) -> Surface {
             // At a pole a quadrilateral is a triangle.
             for face in [[a, b, c], [a, c, d]].into_iter().filter(|[a, b, c]| a != b && b != c && c != a) {
                 faces.push(face);
-                tints.push((k / (SIDES / 4) % 2 == 0).into());
+                tints.push((k / (SIDES / 4)).is_multiple_of(2).into());
             }
         }
     }

@@ -282,7 +282,7 @@ def test_single_precision():
         ({"steps": 3}, "give either step, .*, or steps"),
         ({"step": None}, "give either step, .*, or steps"),
         ({"step": 0.0}, "step is 0.0; it must be positive and finite"),
-        ({"step": None, "steps": 0}, "steps is 0; it must be a whole number, 1 at least"),
+        ({"step": None, "steps": 0}, "steps is 0; it must be a positive integer"),
         ({"times": [1.0, 0.5]}, r"times\[1\] = 0.5; times must be finite and must not decrease"),
         ({"times": [[1.0]]}, "times must be one-dimensional"),
         (
@@ -319,7 +319,7 @@ def test_what_is_no_torque(torque, message):
 
 
 def test_formulas_are_checked_when_they_are_made():
-    with pytest.raises(ph.FormulaError, match="a torque is a bivector"):
+    with pytest.raises(ph.FormulaError, match="a torque must be a bivector"):
         ph.jax.torque.formula("~R e3 R")
     with pytest.raises(ValueError, match="frame is 'moon'"):
         ph.jax.torque.formula("Ω", frame="moon")

@@ -84,9 +84,9 @@ def test_it_is_a_kernel_for_a_gpu(method, monkeypatch):
     assert lowered.as_text().count("custom_call @__gpu$xla.gpu.triton") == 1
 
 
-def test_what_the_kernel_has_not():
+def test_unsupported_arguments_of_the_kernel_raise():
     law = laws.tabulated([0, 2], np.zeros((2, 3)))
-    with pytest.raises(ValueError, match="no tables, formulas and functions"):
+    with pytest.raises(ValueError, match="does not support torques by tables, formulas and functions"):
         ph.jax.advance(MOMENTS, ROTORS, OMEGAS, 1.5, law, steps=2, kernel=True)
-    with pytest.raises(ValueError, match=r"steps is 1.5; it must be a whole number"):
+    with pytest.raises(ValueError, match=r"steps is 1.5; it must be a positive integer"):
         ph.jax.advance(MOMENTS, ROTORS, OMEGAS, 1.5, steps=1.5)

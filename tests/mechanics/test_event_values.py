@@ -1,4 +1,4 @@
-"""Events as values and as data, what looking for them costs, and what is refused."""
+"""Events as values and as data, their cost, and errors."""
 
 import pickle
 
@@ -37,7 +37,7 @@ def test_events_are_values(event):
     assert sum(one == event for one in VALUES) == 1
 
 
-def test_how_events_are_shown():
+def test_repr_of_events():
     event = E.plane([2, 0, 0], ph.e3, direction=-1, terminal=True)
     assert repr(event) == "plane([1, 0, 0], [0, 0, 1], direction=-1, terminal=True)"
     assert event.name == "plane([1, 0, 0], [0, 0, 1])"
@@ -47,10 +47,10 @@ def test_how_events_are_shown():
     assert E.function(rolling).name == "function(rolling)"
 
 
-# --- what is told
+# --- reports
 
 
-def test_counts_are_honest():
+def test_events_count_evaluations_but_not_steps():
     """Looking costs evaluations; steps are those of the motion."""
     given = {"times": [10.0], "torque": ph.torque.heavy([0.5, 0.25, 1.0]), "step": 0.125}
     plain = ph.simulate(ASYMMETRIC, START, **given)
@@ -116,7 +116,7 @@ def failing(t, *state):
     ],
     ids=lambda value: "",
 )
-def test_events_that_are_none(events, kind, parts):
+def test_invalid_return_values_raise(events, kind, parts):
     with pytest.raises(kind) as error:
         ph.simulate(ASYMMETRIC, START, [1.0], events=events)
     for part in parts:
@@ -133,14 +133,14 @@ def test_events_that_are_none(events, kind, parts):
         ("x·q", ["q"]),
     ],
 )
-def test_formulas_that_are_no_event(text, parts):
+def test_formulas_that_are_not_events_raise(text, parts):
     with pytest.raises(ph.FormulaError) as error:
         E.formula(text)
     for part in parts:
         assert part in str(error.value)
 
 
-def test_arguments_that_make_no_event():
+def test_invalid_arguments_raise():
     for make in (
         lambda: E.angle(ph.e1, ph.e3, 4.0),
         lambda: E.angle(ph.e1, ph.e3, np.nan),

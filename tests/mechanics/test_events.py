@@ -1,4 +1,4 @@
-"""Events: their times against closed forms, none missed and none invented, and where they end a motion."""
+"""Events: times against closed forms, completeness, and terminal events."""
 
 import math
 
@@ -91,7 +91,7 @@ def test_a_lagrange_top_turns_every_half_nutation():
     assert np.abs(tilt[:, None] - ends).min(axis=1).max() <= 32 * EPS
 
 
-def test_a_top_that_barely_reaches_an_angle_is_seen_twice():
+def test_two_close_crossings_of_an_angle_are_found():
     """Two crossings as close as √ε: 0.2 rad apart no look would see them."""
     inertia, c = moments(1, 1, 0.5), [0, 0, 2.0]
     state = ph.State(ph.Rotor.from_components([4, 2, 1, 0]), [0.25, -0.5, 6])
@@ -176,7 +176,7 @@ FORMULAS = ["(R e1 ~R)·e3 - 0.3", "Ω_B·(e2e3) + 0.2", "(R e1 ~R)·e2 (R e2 ~R
         ("dop853", ph.torque.heavy([0.5, 0.25, 1.0]), None),
     ],
 )
-def test_events_are_those_that_a_dense_look_sees(method, torque, step):
+def test_events_agree_with_dense_sampling(method, torque, step):
     """Each change of sign between 40,000 looks is an event there, and each event is one."""
     times = [-15.0, 25.0]
     events = [E.formula(text) for text in FORMULAS]
@@ -194,7 +194,7 @@ def test_events_are_those_that_a_dense_look_sees(method, torque, step):
         assert np.all((found >= t[changes] - slack) & (found <= t[changes + 1] + slack))
 
 
-def test_the_axes_of_the_body_do_not_matter():
+def test_events_do_not_depend_on_body_axes():
     turn = ph.Rotor.from_components([1, 2, 3, 4])
     body = ph.Body(1.0, ASYMMETRIC)
     there = ph.State(START.rotor * ~turn, turn(START.omega_body))
@@ -219,14 +219,14 @@ def test_the_axes_of_the_body_do_not_matter():
     np.testing.assert_allclose(one.events[3].time, one.events[5].time, rtol=0, atol=1e-13)
 
 
-def test_where_it_starts_it_has_not_passed():
+def test_a_zero_at_the_start_is_not_an_event():
     motion = ph.simulate(BALL, ball(velocity=[1, 0, 0]), [-1.0, 1.0], events=E.position(ph.e1, terminal=True))
     assert len(motion.events[0]) == 0
     assert len(motion.time) == 2
 
 
 @pytest.mark.parametrize("method", ["auto", "kahan_li8", "dop853"])
-def test_at_an_output_time_it_happens_once(method):
+def test_an_event_at_an_output_time_is_found_once(method):
     motion = ph.simulate(
         BALL,
         ball(velocity=[1, 0, 0], omega=[0, 0, 1]),
@@ -297,7 +297,7 @@ def test_the_end_is_as_accurate_as_outputs_are(method):
     assert motion.events[0].time[0] == pytest.approx(best.events[0].time[0], rel=0, abs=1e-8)
 
 
-def test_directions_choose():
+def test_directions_select_crossings():
     state = ph.State(R0, [0.25, -0.5, 1.0])
     both, rising, falling = (
         ph.simulate(ASYMMETRIC, state, [-9.0, 30.0], events=E.plane(ph.e1, ph.e3, direction=way)).events[0]

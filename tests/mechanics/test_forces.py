@@ -1,4 +1,4 @@
-"""Forces move the centre of mass: against closed forms, as values, and what is refused."""
+"""Forces on the centre of mass: closed forms, values and errors."""
 
 import pickle
 from fractions import Fraction
@@ -48,7 +48,7 @@ def test_forces_are_values(force):
     assert sum(one == force for one in VALUES) == 1
 
 
-def test_how_forces_are_shown():
+def test_repr_of_forces():
     assert hash(F.spring(2, [0, 1, 0])) == hash(F.spring(2.0, ph.e2))
     assert repr(F.constant([0, 0, -9.81]) + F.drag(0.1)) == "constant([0.0, 0.0, -9.81]) + drag(0.1)"
     assert repr(F.thrust([0, 0, 1], at=[0.5, 0, 0])) == "thrust([0.0, 0.0, 1.0], at=[0.5, 0.0, 0.0])"
@@ -98,7 +98,7 @@ def close(motion, position, velocity, factor=1.0):
 
 
 @pytest.mark.parametrize("method", ["auto", "rk4"])
-def test_a_spring_swings(method):
+def test_a_spring_oscillates(method):
     k, anchor = 4.5, np.array([0.5, -1.0, 2.0])
     x, v = np.array([1.0, 2.0, 3.0]), np.array([-1.0, 0.5, 0.25])
     force = F.spring(k, anchor)
@@ -196,7 +196,7 @@ def test_a_thrust_beside_the_centre_of_mass_turns_the_body():
     ],
     ids=["thrust", "formula", "map", "function"],
 )
-def test_a_body_turned_in_its_axes_moves_alike(force):
+def test_motion_does_not_depend_on_body_axes(force):
     turn = ph.Rotor.from_components([1, 2, 3, 4])
     here = start([1, 0, 2], [0, 0.5, 0])
     there = start([1, 0, 2], [0, 0.5, 0], turn(here.omega_body), here.rotor * ~turn)
@@ -219,7 +219,7 @@ def test_a_body_turned_in_its_axes_moves_alike(force):
     ],
     ids=["drag", "quadratic", "spring", "central", "thrust"],
 )
-def test_formulas_and_functions_are_the_laws_they_say(law, text, function):
+def test_formulas_and_functions_equal_built_in_forces(law, text, function):
     state = start([1, 2, 0], [0, 0.5, 0.25])
     law, formula, given = (
         ph.simulate(BODY, state, TIMES, force=force, step=1 / 16)
@@ -260,14 +260,14 @@ def test_position_and_velocity_are_in_the_data():
         ("-k (x", ["(x"]),
     ],
 )
-def test_formulas_that_are_no_force(text, parts):
+def test_formulas_that_are_not_forces_raise(text, parts):
     with pytest.raises(ph.FormulaError) as error:
         F.formula(text, q=1.0, B=ph.e3, k=1.0)
     for part in parts:
         assert part in str(error.value)
 
 
-def test_names_that_the_motion_gives_are_taken():
+def test_names_of_the_motion_are_reserved():
     for name in ("x", "v", "m", "t"):
         with pytest.raises(ph.FormulaError, match=f"`{name}` is given by the motion"):
             F.formula("-k x", k=1.0, **{name: 1.0})
@@ -301,14 +301,14 @@ def failing(t, x, v, R):
         ([0, np.inf, 0], ValueError, ["the force", "inf"]),
     ],
 )
-def test_forces_that_are_none(force, kind, parts):
+def test_invalid_return_values_raise(force, kind, parts):
     with pytest.raises(kind) as error:
         ph.simulate(BODY, start(velocity=[0, 0, 1]), [1.0], force=force)
     for part in parts:
         assert part in str(error.value)
 
 
-def test_arguments_that_make_no_force():
+def test_invalid_arguments_raise():
     for make in (lambda: F.function(3), lambda: F.formula(3), lambda: F.drag("much")):
         with pytest.raises(TypeError):
             make()
@@ -318,7 +318,7 @@ def test_arguments_that_make_no_force():
 
 
 @pytest.mark.parametrize("method", ["strang", "kahan_li8", "rkn6", "midpoint", "dmv", "exact"])
-def test_methods_that_cannot_follow_a_force_say_so(method):
+def test_methods_that_do_not_support_forces_raise(method):
     with pytest.raises(ValueError, match=f"{method} .*forces"):
         ph.simulate(BODY, start(velocity=[0, 0, 1]), [1.0], force=F.drag(1.0), method=method)
 

@@ -1,4 +1,4 @@
-"""Bodies held at a pivot under gravity: the moment of the weight and the inertia follow from the body."""
+"""Bodies held at a pivot under gravity."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_the_gyroscope_of_the_readme_has_its_moments():
 
 
 @pytest.mark.parametrize("pivot", [(0, 0, 0), BENT_PIVOT])
-def test_it_is_heavy_with_the_inertia_about_the_pivot(pivot):
+def test_gravity_equals_heavy_with_the_inertia_about_the_pivot(pivot):
     motion = ph.simulate(BENT, START, TIMES, ph.torque.gravity(BENT, 1.6, pivot))
     c = moment(BENT, 1.6, pivot)
     expected = ph.simulate(BENT.inertia_about(pivot), START, TIMES, ph.torque.heavy(c))
@@ -98,7 +98,7 @@ def test_batches_of_bodies_accelerations_and_pivots():
     assert spread.inertia[0] == TOP.inertia_about(pivots[0])
 
 
-def test_a_scene_says_the_same(tmp_path):
+def test_a_scene_gives_the_same_motion(tmp_path):
     path = tmp_path / "top.toml"
     path.write_text(
         "[body]\nsolid = 'cylinder'\nradius = 0.05\nheight = 0.01\nmass = 0.5\n"
@@ -124,7 +124,7 @@ CONTRADICTIONS = {
 
 
 @pytest.mark.parametrize("name", CONTRADICTIONS)
-def test_a_weight_that_contradicts_the_body_is_refused(name):
+def test_a_weight_that_contradicts_the_body_raises(name):
     body, c = CONTRADICTIONS[name]
     law = ph.torque.heavy(c)
     remedy = r"centre of mass.*ph\.torque\.gravity\(body, g, pivot\)"
@@ -140,19 +140,19 @@ def test_a_weight_that_contradicts_the_body_is_refused(name):
     assert ph.simulate(body.inertia, START, [0.1], law).certificate.conserved.keys() >= {"energy"}
 
 
-def test_a_closed_form_asks_for_the_inertia_about_the_pivot():
+def test_closed_forms_need_the_inertia_about_the_pivot():
     with pytest.raises(TypeError, match=r"see Body\.inertia_about\(pivot\)"):
         ph.LagrangeTop(TOP, TILTED, [0.1, 0, 20], [0, 0, 0.2])
 
 
-def test_a_weight_typed_with_six_digits_is_taken():
+def test_a_weight_with_six_digits_is_accepted():
     c = moment(BENT, G, [0, 0, 0]).components
     typed = [float(f"{x:.7g}") for x in c]
     assert ph.simulate(BENT, START, [0.1], ph.torque.heavy(typed)).certificate.error_estimate < 1e-9
     assert ph.simulate(TOP, START, [0.1], ph.torque.heavy([0, 0, 0])).certificate.method == "exact"
 
 
-def test_scenes_that_contradict_themselves_are_refused_at_the_place(tmp_path):
+def test_contradictory_scenes_are_reported_at_their_place(tmp_path):
     text = (
         "[body]\nsolid = 'cylinder'\nradius = 0.05\nheight = 0.01\nmass = 0.5\n[initial]\n"
         "spin = { vector = [0.1, 0, 20] }\n[torque]\nheavy = [0, 0, 0.2]\n[run]\nduration = 2\n"
@@ -166,7 +166,7 @@ def test_scenes_that_contradict_themselves_are_refused_at_the_place(tmp_path):
     assert ph.Scene.read(path).run().certificate.method == "exact"
 
 
-def test_gravity_is_for_the_body_it_was_made_for():
+def test_gravity_of_another_body_raises():
     law = ph.torque.gravity(TOP, pivot=PIVOT)
     with pytest.raises(ValueError, match=r"made for a body of 0\.5 kg .* this body has 2\.0 kg"):
         ph.simulate(BENT, START, TIMES, law)
@@ -189,7 +189,7 @@ def test_the_position_is_that_of_the_pivot():
     assert np.all(motion.position == e1 + 2 * e2 + 3 * e3)
 
 
-def test_jax_takes_it():
+def test_jax_accepts_held_bodies():
     pytest.importorskip("jax")
     law = ph.torque.gravity(BENT, pivot=BENT_PIVOT)
     rotors, _ = ph.jax.simulate(BENT, TILTED, [0.1, 0, 2.0], [0.5], law, step=0.01)

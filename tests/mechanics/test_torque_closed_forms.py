@@ -1,4 +1,4 @@
-"""Laws whose motion is known: Euler's equations with `Torque.at`, integrated by DOP853, come to it.
+"""Torque laws with motions in closed form: DOP853 on Euler's equations with `Torque.at`.
 
 The integration errs by some 1e-13 of a turn for each radian turned, and the bounds are 100 times that.
 """

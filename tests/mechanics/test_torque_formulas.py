@@ -1,4 +1,4 @@
-"""Torques that are formulas or functions: equal to the laws built in, checked at once; where they fail."""
+"""Torques given by formulas and functions: equality with built-in laws, checks and errors."""
 
 import json
 import pickle
@@ -41,7 +41,7 @@ SAME = {
 
 
 @pytest.mark.parametrize("name", SAME)
-def test_a_formula_equals_the_law_built_in(name):
+def test_a_formula_equals_the_built_in_law(name):
     law, formula = SAME[name]
     F = ph.Rotor.from_components([1, 2, 3, 4])
     for state, body in ((START, BODY), (START, BODY), (START, ph.Body(1.0, BODY).moved(F).inertia)):
@@ -61,7 +61,7 @@ def test_a_motion_under_a_formula_is_that_of_the_law():
     assert found.certificate.drift.keys() == set()
 
 
-def test_all_that_the_motion_gives():
+def test_all_names_that_the_motion_defines():
     t, R, w = 1.25, R0, START.omega_body
     h = ph.bivector([0.4, -0.3, 0.8])
     m = BODY(w) + h
@@ -86,7 +86,7 @@ def test_all_that_the_motion_gives():
     assert found.is_close(w, rtol=16 * EPS)
 
 
-def test_values_may_be_of_every_kind():
+def test_values_of_every_kind():
     stretch = ph.LinearMap.from_function(lambda a: a + ph.e1 * (ph.e1 | a))
     values = {"a": ph.e1, "b": ph.e2, "s": 2, "S": BODY, "B": ph.e1 * ph.e2, "C": ph.e2 * ph.e3}
     law = T.formula("F(a) ∧ b + s S(B) + Q C ~Q", F=stretch, Q=REST, **values)
@@ -134,7 +134,7 @@ def test_the_manufactured_precession_of_the_reference():
         ("I(c)", ["^"]),
     ],
 )
-def test_formulas_that_are_no_torques(text, parts):
+def test_formulas_that_are_not_torques_raise(text, parts):
     with pytest.raises(ph.FormulaError) as error:
         T.formula(text, c=C)
     for part in parts:
@@ -143,7 +143,7 @@ def test_formulas_that_are_no_torques(text, parts):
     assert error.value.__context__ is None
 
 
-def test_names_of_the_motion_are_its_own():
+def test_names_of_the_motion_are_reserved():
     for name in ("R", "t", "Ω", "Omega_B", "L", "I"):
         with pytest.raises(ph.FormulaError, match=f"`{name}` is given by the motion"):
             T.formula("Ω", **{name: 1.0})
@@ -179,14 +179,14 @@ def test_laws_with_maps_and_exact_values_are_values():
         ("log(R − R)", ["log(R − R)"]),
     ],
 )
-def test_a_step_without_a_value_is_told(text, parts):
+def test_a_step_without_a_value_is_reported(text, parts):
     with pytest.raises(ValueError) as error:
         T.formula(text).at(BODY, START, 2.0)
     for part in parts:
         assert part in str(error.value)
 
 
-def test_a_run_that_comes_to_such_a_point_tells_when():
+def test_a_run_reports_the_time_of_such_a_step():
     law = T.formula("(e1∧e2)/(t − 1)")
     with pytest.raises(ValueError, match=r"at t = 1 s: .*\(e1∧e2\)/\(t − 1\)") as error:
         ph.simulate(BODY, START, [2.0], law, method="strang", step=0.25)
@@ -196,7 +196,7 @@ def test_a_run_that_comes_to_such_a_point_tells_when():
 # --- functions
 
 
-def test_a_function_is_asked_in_body_axes():
+def test_a_function_gets_body_axes():
     asked = []
 
     def torque(t, rotor, omega):
@@ -237,7 +237,7 @@ def test_a_function_may_return_three_numbers(answer):
     ],
     ids=repr,
 )
-def test_answers_that_are_no_torques(answer, parts):
+def test_invalid_return_values_raise(answer, parts):
     with pytest.raises((TypeError, ValueError)) as error:
         T.function(lambda t, rotor, omega: answer).at(BODY, START, 1.5)
     for part in parts:
@@ -252,7 +252,7 @@ def broken(t, rotor, omega):
     raise SensorError(f"no signal at {t}")
 
 
-def test_what_a_function_raises_is_raised():
+def test_exceptions_of_a_function_pass_through():
     law = T.function(broken)
     for _ in range(2):
         with pytest.raises(SensorError, match=r"no signal at 2\.5"):
@@ -262,12 +262,12 @@ def test_what_a_function_raises_is_raised():
     assert pickle.loads(pickle.dumps(law)) == law
 
 
-def test_what_a_function_may_not_return_is_told_by_a_run():
+def test_a_run_reports_invalid_return_values():
     with pytest.raises(ValueError, match=r"at t = 0.* s: the torque .*NaN"):
         ph.simulate(BODY, START, [1.0], T.function(lambda t, rotor, omega: [np.nan, 0, 0]))
 
 
-def test_laws_keep_no_error_of_others():
+def test_laws_do_not_keep_errors_of_others():
     good, bad = T.heavy(C), T.function(broken)
     with pytest.raises(SensorError):
         (good + bad).at(BODY, START)

@@ -1,4 +1,4 @@
-"""Motions under laws that depend on the attitude, against integrations by others to tight tolerances."""
+"""Motions under torques that depend on the attitude, against SciPy at tight tolerances."""
 
 import numpy as np
 import pytest
@@ -114,7 +114,7 @@ def test_motions_agree_with_dop853(name):
         (ph.torque.formula("(~R e3 R) ∧ e1"), set()),
     ],
 )
-def test_what_is_conserved_is(law, names):
+def test_conserved_quantities_stay_constant(law, names):
     """Roundings of 10,000 steps of 51 turns add up at random: √(51e4) of half an ulp, four times."""
     motion = ph.simulate(BODY, START, np.linspace(0, 200, 101), law, step=0.02)
     assert motion.certificate.drift.keys() == names
@@ -123,7 +123,7 @@ def test_what_is_conserved_is(law, names):
 
 
 @pytest.mark.parametrize("c", [[1, 0, 0], [0.6, -0.8, 0]])
-def test_the_integrals_of_special_tops_are_watched(c):
+def test_integrals_of_special_tops_are_monitored(c):
     start = ph.State(ph.Rotor.from_components([4, 1, -2, 1]), [0.5, -0.25, 1.5])
     times = np.linspace(0, 100, 11)
     motion = ph.simulate(moments(2, 2, 1), start, times, ph.torque.heavy(c), step=0.02)

@@ -1,4 +1,4 @@
-"""Each torque law against its formula in 40 digits, potentials differentiated, and laws as values."""
+"""Torque laws against their formulas in 40 digits and their potentials, and laws as values."""
 
 import math
 import pickle
@@ -124,8 +124,8 @@ def test_radiation_pressure_is_that_of_the_cannonball():
 
 
 @pytest.mark.parametrize("rotor", [R0, -R0, REST, ph.Rotor.from_components([0, 1, 2, 3])], ids=str)
-def test_the_spring_comes_from_its_potential(rotor):
-    """R and −R are one attitude: the turn counts that is the shorter one."""
+def test_spring_torque_is_the_gradient_of_its_potential(rotor):
+    """R and −R are the same attitude; the shorter rotation counts."""
     with mp.workdps(40):
         rest = mp_rotor(REST)
     N = from_potential(lambda R: mp.mpf("0.75") * turn_angle(R, rest) ** 2, rotor)
@@ -134,7 +134,7 @@ def test_the_spring_comes_from_its_potential(rotor):
     np.testing.assert_allclose(found, N, rtol=0, atol=8 * EPS * 1.5 * np.pi)
 
 
-def test_half_a_turn_away_the_spring_pulls_one_way():
+def test_spring_torque_is_discontinuous_at_half_a_turn():
     half = ph.Rotor.from_plane_angle(ph.e1 ^ ph.e2, math.pi)
     for rotor in (half, -half):
         found = torque(ph.torque.torsion_spring(2.0), state=ph.State(rotor, [0, 0, 0]))
@@ -179,7 +179,7 @@ def test_the_gravity_gradient_on_any_orbit(e, t):
 # --- torques of the rate, and of the time
 
 
-def test_torques_that_are_formulas_of_the_rate():
+def test_rate_dependent_torques_against_their_formulas():
     m, w = I * OMEGA, OMEGA
     expected = {
         "damping": -0.125 * m,
@@ -243,7 +243,7 @@ def test_a_table_in_space_turns_back_with_the_body():
 
 # Factors along body axes belong to the axes: see the next test.
 @pytest.mark.parametrize("name", sorted(LAWS.keys() - {"viscous_damping", "pd_control"}))
-def test_a_body_turned_in_its_axes_feels_the_same_torque(name):
+def test_torque_is_covariant_under_rotation_of_body_axes(name):
     """The law's body components turned by F, the rotor R ~F, the inertia moved: the torque is turned."""
     F = ph.Rotor.from_components([1, 2, 3, 4])
     body = ph.Body(1.0, BODY).moved(F).inertia
@@ -323,7 +323,7 @@ def test_laws_are_values(name):
         law.laws = ()
 
 
-def test_how_laws_are_shown():
+def test_repr_of_laws():
     law = ph.torque.heavy([0, 0, 2]) + ph.torque.damping(0.5)
     assert repr(law) == "heavy([0.0, 0.0, 2.0]) + damping(0.5)"
     assert hash(law) == hash(ph.torque.heavy(2 * ph.e3) + ph.torque.damping(0.5))
@@ -364,7 +364,7 @@ def test_how_laws_are_shown():
         ),
     ],
 )
-def test_values_that_are_no_laws(make, parts):
+def test_invalid_arguments_raise_value_errors(make, parts):
     with pytest.raises(ValueError) as error:
         make(ph.torque)
     for part in parts:
@@ -386,6 +386,6 @@ def test_values_that_are_no_laws(make, parts):
         lambda T: T.heavy([0, 0, 1]).at(np.eye(3), START),
     ],
 )
-def test_wrong_types_are_type_errors(make):
+def test_wrong_types_raise_type_errors(make):
     with pytest.raises(TypeError):
         make(ph.torque)

@@ -14,7 +14,7 @@ TERMS = {
     *("central", "constant", "damping", "drag", "gyrostat", "heavy"),
     *("larmor", "magnetic", "spring", "tabulated", "thrust"),
 }
-# `heavy` and `gyrostat` are kinds of motion too, `heavy` a field of `About` on the page: such files do not count.
+# `heavy` and `gyrostat` are kinds of motion too, `heavy` a field of `About` on the page: these do not count.
 KINDS = {"heavy", "gyrostat"}
 OF_KINDS = re.compile(r"_report/|_figures/|describe|wasm/src/about|rigid/src/facts|_viewer/recording")
 SUFFIXES = {".rs", ".py", ".pyi", ".ts", ".tsx"}

@@ -1,4 +1,4 @@
-"""Ensembles of scenes: the bodies that a seed and a number make, and what the command tells of them."""
+"""Ensembles of scenes: reproducible bodies, and reports of the command."""
 
 import json
 
@@ -34,7 +34,7 @@ def spec(path):
     return ph.Scene.read(path).ensemble
 
 
-def test_a_scene_tells_what_varies(spec):
+def test_a_scene_lists_its_random_parameters(spec):
     assert (spec.number, spec.seed) == (1000, 5)
     assert dict(spec.varied) == {
         "attitude": "uniform",
@@ -72,7 +72,7 @@ def test_bodies_are_drawn(path, spec):
     assert (gyrostat,) == ph.torque.gyrostat([0, 1, 0]).laws
 
 
-def test_a_part_is_a_part_of_the_whole(spec):
+def test_a_range_of_bodies_equals_that_of_the_whole(spec):
     whole, inertias, laws = spec.draw()
     part, part_inertias, part_laws = spec.draw(10, 5)
     np.testing.assert_array_equal(part.rotor.components, whole.rotor.components[10:15])
@@ -83,10 +83,10 @@ def test_a_part_is_a_part_of_the_whole(spec):
     assert damping.arguments == (laws[0][1][0][999],)
 
 
-def test_bodies_that_are_not_there(spec):
-    with pytest.raises(ValueError, match="there are 1000 bodies, no 2 from number 999 on"):
+def test_a_range_out_of_bounds_raises(spec):
+    with pytest.raises(ValueError, match="range 999..1001 is out of bounds for 1000 bodies"):
         spec.draw(999, 2)
-    with pytest.raises(ValueError, match="there are 1000 bodies, no 0 from number 1000 on"):
+    with pytest.raises(ValueError, match="range 1000..1000 is out of bounds for 1000 bodies"):
         spec.draw(1000)
     with pytest.raises(ValueError, match="first = -1 and count = 2 must not be negative"):
         spec.draw(-1, 2)
@@ -98,7 +98,7 @@ def test_a_scene_without_an_ensemble_has_none(tmp_path):
     assert ph.Scene.read(path).ensemble is None
 
 
-def test_check_tells_how_much_it_will_be(path):
+def test_check_reports_the_size_of_results(path):
     times = len(ph.Scene.read(path).times)
     done = polhode("check", path)
     assert done.returncode == 0
@@ -109,11 +109,11 @@ def test_check_tells_how_much_it_will_be(path):
     assert (finding["bodies"], finding["bytes"]) == (1000, size)
 
 
-def test_what_is_wrong_has_its_place(tmp_path):
+def test_errors_have_their_place(tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(SCENE + ENSEMBLE.replace("moments", "moment"))
     done = polhode("check", path)
     assert done.returncode == 3
     assert "unknown table `moment`, expected `moments`" in done.stderr
     # All at once: the laws are not there either.
-    assert "this has no `damping` in [torque]" in done.stderr
+    assert "which has no `damping` in [torque]" in done.stderr

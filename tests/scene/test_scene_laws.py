@@ -1,4 +1,4 @@
-"""Torques, forces and methods of scenes: the same as in Python, and told at their place when wrong."""
+"""Torques, forces and methods of scenes: equality with Python, reports and errors."""
 
 import json
 import pickle
@@ -55,7 +55,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("text", LAWS, ids=lambda text: text.split(" ")[0])
-def test_a_law_of_a_scene_is_that_of_python(text, tmp_path):
+def test_a_law_of_a_scene_equals_that_of_python(text, tmp_path):
     scene = read(tmp_path, with_tables(f"[torque]\n{text}"))
     assert scene.torque == LAWS[text]
     assert repr(scene.torque) == repr(LAWS[text])
@@ -65,7 +65,7 @@ def test_a_law_of_a_scene_is_that_of_python(text, tmp_path):
     np.testing.assert_array_equal(scene.run().rotor.components, again.rotor.components)
 
 
-def test_a_formula_has_what_is_defined(tmp_path):
+def test_a_formula_uses_definitions(tmp_path):
     define = '[define]\nk = "2 N m s"\nc = "e1 + 2 e3"\n"V(a)" = "k a"\n[body]'
     formula = "-V(Ω) - 2 N m c∧(~R e3 R)"
     text = with_tables(f'[torque]\ntorque_body = "{formula}"').replace("[body]", define)
@@ -104,13 +104,13 @@ def test_forces_move_the_body(tmp_path):
     assert "thrust([1.0, 0.0, 0.0], at=[0.0, 1.0, 0.0])" in polhode("run", tmp_path / "a.toml").stdout
 
 
-def test_the_method_is_the_tables(tmp_path):
+def test_the_method_is_read_from_its_table(tmp_path):
     scene = read(tmp_path, SCENE + '[method]\nname = "dop853"\nrtol = 1e-6\natol = 1e-5\n')
     assert (scene.method, scene.rtol, scene.atol) == ("dop853", 1e-6, 1e-5)
     assert scene.run().certificate.method == "dop853"
 
 
-# --- what is told
+# --- reports
 
 
 def test_a_controller_reports_its_distance(tmp_path):
@@ -163,11 +163,11 @@ def test_every_kind_has_a_page_a_document_and_figures(text, tmp_path):
     assert (tmp_path / f"out-{'polhode' if free else 'axis'}.png").exists()
 
 
-# --- what fails
+# --- errors
 
 
 @pytest.mark.parametrize("command", ["run", "check"])
-def test_a_mistake_in_a_formula_is_shown_at_its_place(command, tmp_path):
+def test_an_error_in_a_formula_is_shown_at_its_place(command, tmp_path):
     (tmp_path / "a.toml").write_text(with_tables('[torque]\ntorque_body = "-3 (Ω_B·b) ∧ e3"'))
     done = polhode(command, "a.toml", cwd=tmp_path)
     assert done.returncode == 3
@@ -187,7 +187,7 @@ DRIFTING = [
 
 
 @pytest.mark.parametrize(("name", "law"), DRIFTING)
-def test_a_drift_past_the_bound_is_4_under_any_law(name, law, tmp_path):
+def test_a_drift_past_the_bound_exits_with_4(name, law, tmp_path):
     scene = SCENE.replace("[1, 2, 3]", "[2, 2, 1]") if name.startswith("kov") else SCENE
     method = 'drift_bound = 1e-9\n[method]\nname = "rk4"\nstep = "0.1 s"\n'
     (tmp_path / "a.toml").write_text(with_tables(f"[torque]\n{law}", scene) + method)
@@ -201,7 +201,7 @@ def test_a_drift_past_the_bound_is_4_under_any_law(name, law, tmp_path):
 
 @pytest.mark.parametrize("drift", [1.0, np.nan])
 @pytest.mark.parametrize("name", QUANTITIES)
-def test_the_bound_is_for_every_quantity(name, drift, tmp_path):
+def test_the_bound_applies_to_every_quantity(name, drift, tmp_path):
     scene = read(tmp_path, SCENE)
     trajectory = scene.run()
     assert summary(scene, trajectory)["run"]["drift_within_bound"]
@@ -213,7 +213,7 @@ def test_the_bound_is_for_every_quantity(name, drift, tmp_path):
     assert "FAILED" in as_text(told)
 
 
-def test_a_method_that_does_not_fit_is_1(tmp_path):
+def test_a_method_that_does_not_fit_exits_with_1(tmp_path):
     (tmp_path / "a.toml").write_text(
         with_tables("[torque]\nquadratic_damping = 1") + 'method = "kahan_li8"\n'
     )
@@ -222,7 +222,7 @@ def test_a_method_that_does_not_fit_is_1(tmp_path):
     assert "kahan_li8 kicks at fixed attitude, but a torque depends on the rate of turning" in done.stderr
 
 
-def test_a_table_too_short_is_1_and_tells_when(tmp_path):
+def test_a_short_table_exits_with_1_and_its_times(tmp_path):
     (tmp_path / "a.toml").write_text(
         with_tables("[torque]\ntabulated = { times = [0, 0.5], torques = [[0, 0, 1], [0, 0, 1]] }")
     )

@@ -1,4 +1,4 @@
-"""From what people pass to arrays of components: bodies, rotors, angular velocities."""
+"""Conversion of bodies, rotors and angular velocities to arrays of components."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = Any
 
 
 class Start(NamedTuple):
-    """Bodies and their starts in principal axes, each of its own batch; the rotor of any norm."""
+    """Bodies and initial states in principal axes, each of its own batch; the rotor has any norm."""
 
     moments: Array
     rotor: Array
@@ -32,7 +32,7 @@ class Start(NamedTuple):
             ) from None
 
     def in_body_axes(self, rotor: Array, omega: Array) -> tuple[Array, Array]:
-        """Return states of principal axes in those of the body."""
+        """Return states in body axes from those in principal axes."""
         if self.frame is None:
             return rotor, omega
         r, w = split(rotor), split(omega)
@@ -41,7 +41,7 @@ class Start(NamedTuple):
 
 
 def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
-    """Return bodies and starts from what the functions of this package take."""
+    """Return bodies and initial states from the arguments of the functions of this package."""
     moments, frame = _body(inertia)
     r = _floats(rotor, 4, "the rotor")
     w = _floats(omega_body, 3, "the angular velocity")
@@ -56,7 +56,7 @@ def start(inertia: Any, rotor: Any, omega_body: Any) -> Start:
 
 
 def _body(inertia: Any) -> tuple[Array, Four | None]:
-    """Return principal moments, and the rotor to the body's axes from principal ones, None for 1."""
+    """Return principal moments and the rotor from principal to body axes, None for the identity."""
     if isinstance(inertia, Inertia):
         frame = tuple(inertia.principal_frame.components.tolist())
         moments = jnp.asarray(inertia.principal_moments)

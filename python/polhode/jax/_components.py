@@ -17,7 +17,7 @@ Array = Any
 Three = tuple[Array, Array, Array]
 Four = tuple[Array, Array, Array, Array]
 
-# cos √z and sin √z/√z in z up to (π/2)²: the first terms left out are below 1e-18.
+# cos √z and sin √z/√z in z up to (π/2)²: the first omitted terms are below 1e-18.
 _COS = [(-1) ** k / math.factorial(2 * k) for k in range(12)]
 _SINC = [(-1) ** k / math.factorial(2 * k + 1) for k in range(11)]
 # π in three parts, the first two of 33 bits, so that their products with small whole numbers are exact.
@@ -25,12 +25,12 @@ _PI = (3.1415926534682512, 1.2154201012607932e-10, 4.044532497591901e-21)
 
 
 def split(x: Array) -> tuple[Array, ...]:
-    """Return the components, which are in the last axis."""
+    """Return the components of the last axis."""
     return tuple(x[..., k] for k in range(x.shape[-1]))
 
 
 def joined(components: tuple[Array, ...]) -> Array:
-    """Lay components of a common batch along the last axis."""
+    """Stack broadcast components along the last axis."""
     return jnp.stack(jnp.broadcast_arrays(*components), axis=-1)
 
 
@@ -71,7 +71,7 @@ def cross(a: Three, b: Three) -> Three:
 
 
 def length(a: Three) -> Array:
-    """``|a|``; where it is 0 so is its derivative."""
+    """``|a|``; its derivative at 0 is 0."""
     square = dot(a, a)
     zero = square == 0
     return jnp.where(zero, 0.0, jnp.sqrt(jnp.where(zero, 1.0, square)))
@@ -118,7 +118,7 @@ def normalized(r: Four) -> Four:
 
 
 def renormalized(r: Four) -> Four:
-    """One Newton step towards norm 1: removes the rounding of many products."""
+    """Take one Newton step towards norm 1, which corrects the rounding of many products."""
     missing = -0.5 * ((r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]) - 1.0)
     return r[0] + r[0] * missing, r[1] + r[1] * missing, r[2] + r[2] * missing, r[3] + r[3] * missing
 

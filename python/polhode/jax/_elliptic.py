@@ -1,4 +1,4 @@
-"""Elliptic integrals over arrays, in as many steps as any argument needs: `crates/rigid/src/elliptic.rs`."""
+"""Elliptic integrals over arrays in fixed steps, as in `crates/rigid/src/numerics/elliptic.rs`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from polhode.jax._library import jnp, lax
 
 Array = Any
 
-# Means meet quadratically, from k' = 1e-16 in 9 steps; duplication brings arguments together by 4 in a step,
-# after some to bring them to one size.
+# Means converge quadratically, from k' = 1e-16 in 9 steps; duplication reduces differences by 4 in a step,
+# after some steps that bring the arguments to one size.
 _MEANS, _DUPLICATIONS = 12, 20
 
 

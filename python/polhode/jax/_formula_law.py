@@ -1,4 +1,4 @@
-"""Laws that are formulas: their compiled program, walked over arrays of JAX."""
+"""Torque laws that are formulas, evaluated over arrays of JAX."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _GIVEN = [
 
 @pytree
 class Formula(Law):
-    """A formula of the motion's names and its own values, pytrees of JAX."""
+    """A formula with the names of the motion and values of its own, pytrees of JAX."""
 
     values: dict[str, Any]
     frame: Four | None
@@ -57,7 +57,7 @@ class Formula(Law):
         return found if self.frame is None else turned(reverse(self.frame), found)
 
     def checked(self) -> Formula:
-        """Return it with values of the grades it needs; a `FormulaError` if it is no torque."""
+        """Return it with values of the required grades; raise a `FormulaError` if it is not a torque."""
         try:
             self._program()
         except FormulaError:
@@ -75,7 +75,7 @@ class Formula(Law):
         (sides, *others) = program.results
         if others or len(sides) > 1 or program.steps[sides[0]][3] != _BIVECTOR:
             span = program.steps[sides[0]][5]
-            raise FormulaError("a torque is a bivector, grade 2, such as `a∧b`", self.text, span)
+            raise FormulaError("a torque must be a bivector (grade 2), such as `a∧b`", self.text, span)
         return program
 
     def _names(self) -> list[str]:
@@ -83,7 +83,7 @@ class Formula(Law):
         return [names[place] for place, *_ in self._program().inputs]
 
     def _input(self, name: str, body: Gyrostat, phase: Phase) -> Any:
-        """What a name stands for at a point of the motion; of the inertia, its matrix (..., 9)."""
+        """Return the value of a name at a state; for the inertia its matrix (..., 9)."""
         if name in self.values:
             return self.values[name]
         if name == "t":
@@ -114,7 +114,7 @@ class Formula(Law):
 
 
 def value_of(value: Any, name: str) -> Multivector:
-    """Return a value for a formula over arrays of JAX: of a multivector, or of numbers."""
+    """Return a multivector over arrays of JAX for a formula, from a multivector or numbers."""
     if isinstance(value, LinearMap):
         raise TypeError(f"{name} is a linear map; formulas under JAX take multivectors, rotors and numbers")
     if isinstance(value, Multivector):
@@ -125,7 +125,7 @@ def value_of(value: Any, name: str) -> Multivector:
 def _narrowed(value: Multivector) -> Multivector:
     try:
         data = np.asarray(value._data)
-    except Exception:  # a traced array tells no values
+    except Exception:  # a traced array has no values
         return value
     if isinstance(value, Rotor):
         return value

@@ -62,11 +62,13 @@ def advance(
         When the bodies are there, in s; one for all of them.
     """
     if not isinstance(steps, int) or steps < 1:
-        raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
+        raise ValueError(f"steps is {steps!r}; it must be a positive integer")
     given, force = prepared(inertia, rotor, omega_body, torque, method)
     fits = not any(isinstance(law, Function | Table | Formula) for law in force.laws)
     if kernel and not fits:
-        raise ValueError("the kernel has no tables, formulas and functions for a torque; take simulate")
+        raise ValueError(
+            "the kernel does not support torques by tables, formulas and functions; use simulate"
+        )
     if kernel is None:
         kernel = fits and jax.default_backend() == "gpu"
     span = jnp.stack([jnp.asarray(t, given.rotor.dtype) for t in (start_time, time)])

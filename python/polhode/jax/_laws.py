@@ -1,8 +1,8 @@
-"""Torque laws as pytrees: their parameters are leaves, so that JAX differentiates by them and maps over them.
+"""Torque laws as pytrees, with their parameters as leaves for differentiation and mapping.
 
-What they compute is what `crates/rigid/src/torque.rs` does, in the same order. Each knows its torque at a
-point of the motion in principal axes, without the part ``−g I(Ω)`` and that of a wheel, which steps treat by
-themselves.
+They compute as `crates/rigid/src/laws/torque/mod.rs` does, in the same order: the torque in principal axes,
+without damping ``−g I(Ω)`` and the reaction of a wheel, which steps add. A law without a class here is
+computed by its formula in the registry of laws.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ T = TypeVar("T")
 
 
 def static(**options: Any) -> Any:
-    """Declare a field that is no parameter: JAX compiles for each of its values."""
+    """Declare a static field: JAX compiles for each of its values."""
     return field(metadata={"static": True}, **options)
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(static,))
 def pytree(cls: type[T]) -> type[T]:
-    """Make a frozen dataclass of the class, and a pytree, with the parameters for leaves."""
+    """Return the class as a frozen dataclass and a pytree, with its parameters as leaves."""
     frozen: Any = dataclass(frozen=True)(cls)
     names: dict[bool, list[str]] = {True: [], False: []}
     for one in fields(frozen):
@@ -51,15 +51,15 @@ def pytree(cls: type[T]) -> type[T]:
 
 
 class Law:
-    """A law; most depend on attitude and time at most, whatever the axes of the body."""
+    """A torque law; by default it depends on attitude and time alone."""
 
     @property
     def depends_on_rate(self) -> bool:
-        """Whether the torque changes with the rate of turning: no kick at fixed attitude solves it."""
+        """Whether the torque depends on the angular velocity: a kick at fixed attitude is not exact."""
         return False
 
     def in_axes(self, frame: Four) -> Law:
-        """Return the same law seen from body axes turned by a rotor: ``x' = ~F x F``."""
+        """Return the same law in body axes turned by a rotor: ``x' = ~F x F``."""
         return self
 
     def value(self, body: Gyrostat, phase: Phase) -> Three:
@@ -68,7 +68,7 @@ class Law:
 
 
 class DependsOnRate(Law):
-    """A law whose torque changes with the rate of turning."""
+    """A law whose torque depends on the angular velocity."""
 
     @property
     def depends_on_rate(self) -> bool:
@@ -77,7 +77,7 @@ class DependsOnRate(Law):
 
 
 def zero(phase: Phase) -> Three:
-    """Return no torque."""
+    """Return a zero torque."""
     none = jnp.zeros_like(phase.momentum[0])
     return none, none, none
 
@@ -158,7 +158,7 @@ class TorsionSpring(Law):
 
 @pytree
 class Control(Law):
-    """``−kp Θ − kd Ω``; factors along the body axes, to which `frame` leads from principal axes."""
+    """``−kp Θ − kd Ω``, with gains along the body axes; `frame` is the rotor from principal to body axes."""
 
     kp: Three
     kd: Three
@@ -182,7 +182,7 @@ class Control(Law):
 
 @pytree
 class Damping(Law):
-    """``−g I(Ω)``, which steps solve or add."""
+    """``−g I(Ω)``, which steps add."""
 
     g: Array
 
@@ -217,7 +217,7 @@ class QuadraticDamping(DependsOnRate):
 
 @pytree
 class Wheel(Law):
-    """A wheel, part of the body."""
+    """A wheel, a part of the body."""
 
     h: Three
 
@@ -246,12 +246,14 @@ class Function(DependsOnRate):
         f: Any = self.f if self.partial is None else self.partial
         torque = split(jnp.asarray(f(phase.time, joined(rotor), joined(omega))))
         if len(torque) != 3:
-            raise ValueError(f"a torque has 3 components in its last axis, the function gave {len(torque)}")
+            raise ValueError(
+                f"the function must return a torque of 3 components in its last axis, got {len(torque)}"
+            )
         return torque if self.frame is None else turned(reverse(self.frame), torque)
 
 
 def along(gains: Three, frame: Four | None, b: Three) -> Three:
-    """Multiply by factors along the body axes."""
+    """Multiply by gains along the body axes."""
     if frame is not None:
         b = turned(frame, b)
     b = b[0] * gains[0], b[1] * gains[1], b[2] * gains[2]
@@ -259,7 +261,7 @@ def along(gains: Three, frame: Four | None, b: Three) -> Three:
 
 
 def turn_from(rest: Four, rotor: Four) -> Three:
-    """``Θ`` with ``R = rest exp(−½Θ)``, the shorter way: ``|Θ| <= π``, and a derivative where it is 0."""
+    """``Θ`` with ``R = rest exp(−½Θ)`` and ``|Θ| <= π``, differentiable at 0."""
     s, x, y, z = compose(reverse(rest), rotor)
     sign = jnp.where(s < 0, -1.0, 1.0)
     s, x, y, z = s * sign, x * sign, y * sign, z * sign
@@ -269,7 +271,7 @@ def turn_from(rest: Four, rotor: Four) -> Three:
 
 @pytree
 class Torque:
-    """A sum of laws, made by the functions of `polhode.jax.torque`: a pytree of their parameters."""
+    """A sum of laws, returned by the functions of `polhode.jax.torque`: a pytree of their parameters."""
 
     laws: tuple[Any, ...]
 
@@ -281,7 +283,7 @@ class Torque:
 
     @property
     def depends_on_rate(self) -> bool:
-        """Whether a law does."""
+        """Whether a law depends on the angular velocity."""
         return any(law.depends_on_rate for law in self.laws)
 
     @property
@@ -295,16 +297,16 @@ class Torque:
         return any(isinstance(law, Heavy) for law in self.laws)
 
     def in_axes(self, frame: Four) -> Torque:
-        """Return the same laws seen from other body axes."""
+        """Return the same laws in other body axes."""
         return Torque(tuple(law.in_axes(frame) for law in self.laws))
 
     def wheel(self) -> Three | None:
-        """Return the momentum of all wheels together."""
+        """Return the total momentum of the wheels; None without one."""
         wheels = [law.h for law in self.laws if isinstance(law, Wheel)]
         return None if not wheels else tuple(sum(h) for h in zip(*wheels, strict=True))
 
     def damping(self) -> Array | None:
-        """Return the g of the part ``−g I(Ω)``; None without one."""
+        """Return the g of damping ``−g I(Ω)``; None without damping."""
         rates = [law.g for law in self.laws if isinstance(law, Damping)]
         return sum(rates[1:], rates[0]) if rates else None
 

@@ -1,4 +1,4 @@
-"""JAX itself, imported with this package: an optional library."""
+"""Import of JAX, an optional library."""
 
 from __future__ import annotations
 

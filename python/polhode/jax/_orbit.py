@@ -1,4 +1,4 @@
-"""The gradient of a planet's field on a Kepler orbit: `crates/rigid/src/torque/orbit.rs`."""
+"""Gravity gradient on a Kepler orbit, as in `crates/rigid/src/laws/torque/orbit.rs`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from polhode.jax._phase import Gyrostat, Phase
 
 Array = Any
 
-# 2π in two parts, the first of 33 bits: its product with so many turns is exact.
+# 2π in two parts, the first of 33 bits: its product with a number of turns is exact.
 _TWO_PI = (6.2831853069365025, 2.4308402025215864e-10)
 # (x − sin x)/x³ in x².
 _LESS_SINE = [(-1) ** k / math.factorial(2 * k + 3) for k in range(11)]

@@ -1,4 +1,4 @@
-"""What is known of a free motion at the start: `crates/rigid/src/free/orbit.rs`, over arrays of bodies."""
+"""Constants of free motions, as in `crates/rigid/src/exact/free/orbit.rs`, over arrays of bodies."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Encircled(NamedTuple):
 
 
 class Orbit(NamedTuple):
-    """Of motions that are not steady; see `orbit.rs` for the names."""
+    """Constants of motions that are not steady; see `orbit.rs` for the names."""
 
     order: Encircled
     s: Array
@@ -54,7 +54,7 @@ class Orbit(NamedTuple):
 
     @staticmethod
     def of(moments: Three, omega: Three) -> Orbit:
-        """From principal moments and angular velocities that are not steady."""
+        """Return those of principal moments and angular velocities that are not steady."""
         axes = Axes.of(moments)
         (small, b, large), (w_small, _, w_large) = axes.pick(moments), axes.pick(omega)
         d = large * (large - b) * (w_large * w_large) - small * (b - small) * (w_small * w_small)

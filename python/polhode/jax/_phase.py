@@ -1,4 +1,4 @@
-"""A body in its principal axes, and a point of its motion, in components."""
+"""Bodies in principal axes and states of their motion, in components."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ Array = Any
 
 
 class Phase(NamedTuple):
-    """A point of the motion in principal axes: R to space, momentum (a wheel's included), time in s."""
+    """A state in principal axes: rotor R to space, momentum with that of a wheel, time in s."""
 
     rotor: Four
     momentum: Three
     time: Array
 
     def vertical(self) -> Three:
-        """``γ = ~R e3 R``: what is vertical in space, seen from the body."""
+        """``γ = ~R e3 R``: the vertical in body axes."""
         s, x, y, z = self.rotor
         return 2.0 * (x * z + s * y), 2.0 * (y * z - s * x), s * s + z * z - (x * x + y * y)
 
 
 class Gyrostat(NamedTuple):
-    """Principal moments, and the momentum h of a wheel relative to the body; None without one."""
+    """Principal moments, and the momentum h of a wheel relative to the body (None without a wheel)."""
 
     moments: Three
     wheel: Three | None = None

@@ -31,7 +31,7 @@ class RungeKutta:
         self.body, self.torque = body, torque
 
     def start(self, rotor: Four, omega: Three, time: Array) -> Point:
-        """Return the point of the start."""
+        """Return the initial state."""
         return Point(rotor, omega, time)
 
     def omega(self, point: Point) -> Three:
@@ -39,10 +39,10 @@ class RungeKutta:
         return point.spin
 
     def fixed(self, start: Point) -> None:
-        """Nothing is known to be constant."""
+        """Return None: the method conserves nothing exactly."""
 
     def step(self, fixed: None, point: Point, h: Array) -> Point:
-        """One step of length h."""
+        """Take a step of length h."""
         t = point.time
         state = (*point.rotor, *point.spin)
         k1 = self._slope(state, t)

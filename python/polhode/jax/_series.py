@@ -1,4 +1,4 @@
-"""The theta series of a free motion, in q and in q': `crates/rigid/src/free/series.rs`, over arrays."""
+"""Theta series of free motions in q and in q', as in `crates/rigid/src/exact/free/series.rs`, over arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from polhode.jax._library import jnp
 Array = Any
 Waves = tuple[Four, Three, tuple[Array]]
 
-# The nome up to which the trigonometric series serve.
+# The largest nome for the trigonometric series.
 LARGEST_NOME = 0.2
 # Polynomials that all fulfil p_(n+1) = 2x p_n − p_(n−1), by that at −1 in powers of x: T, U, V and W.
 _T, _U, _V, _W = [0, 1], [0, 0], [1, 0], [-1, 0]
@@ -62,7 +62,7 @@ def circular(q: Array, rho: Array, s: Array, sin: Array, cos: Array) -> Waves:
         polynomial(5, squares, _T),
     )
     under = polynomial(5, lambda n: _sign(n) * squares(n), _T)
-    # What makes cn 0, sn K and dn 0 equal to 1.
+    # Factors for which cn 0, sn K and dn 0 are 1.
     units = tuple(horner(under, at) / horner(c, at) for c, at in zip(series, (1.0, -1.0, 1.0), strict=True))
     parts = tuple(u * horner(c, x) / horner(under, x) for u, c in zip(units, series, strict=True))
     return z, (cos * parts[0], sin * parts[1], parts[2]), (jnp.zeros_like(sin),)
@@ -124,7 +124,7 @@ def hyperbolic(border: Array, gamma: Array, s: Array, turns: Array, ahead: Array
 def _units(
     border: Array, nome: Array, cosine: Any, sine: Any, even: Any, under: Any, most: float
 ) -> tuple[Array, ...]:
-    """Return what makes cn 0 and dn 0 equal to 1, and sn so at X, where dn = k'."""
+    """Return the factors for which cn 0 and dn 0 are 1, and sn is 1 at X, where dn = k'."""
     at_0 = horner(under, 1.0)
     double = 2.0 * jnp.minimum(border, 0.5 * most)
     g, y = jnp.exp(-double), jnp.cosh(2.0 * double)

@@ -78,7 +78,7 @@ def simulate(
     """
     given, force = prepared(inertia, rotor, omega_body, torque, method)
     begin, both = ways(times, step, steps, force, start_time)
-    # A function may close over what is traced, which no cache of programs may hold.
+    # A function may close over tracers, which must not enter the compilation cache.
     run = (
         simulate_principal
         if any(isinstance(law, Function) and law.partial is None for law in force.laws)
@@ -93,7 +93,7 @@ def simulate(
 
 
 def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str) -> tuple[Start, Torque]:
-    """Return bodies, starts and torque in principal axes; an error if the method is none for the torque."""
+    """Return bodies, initial states and torque in principal axes; raise if the method does not fit."""
     if isinstance(inertia, Body) and isinstance(torque, native.Torque):
         bodies, torque = native.settled(bodies_of(inertia), torque)
         inertia = bodies[()]
@@ -107,19 +107,19 @@ def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str
 
 
 def _check_weights(body: Body, torque: Torque) -> None:
-    """Refuse weights that contradict the centre of mass, where they are not traced."""
+    """Raise for weights that do not point along the centre of mass, unless they are traced."""
     for law in torque.laws:
         if isinstance(law, Heavy) and not any(isinstance(x, jax.core.Tracer) for x in law.c):
             native.settled(bodies_of(body), native.heavy(np.stack(law.c, axis=-1)))
 
 
 def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
-    """Return what makes the steps, with the numbers of `table_of` the method."""
+    """Return the stepper with the coefficients of `table_of`."""
     return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
 
 
 def table_of(method: str) -> list[float]:
-    """Return the numbers of the stages of a method."""
+    """Return the coefficients of the stages of a method."""
     return [] if method == "rk4" else [x for stage in stages(method) for x in stage]
 
 
@@ -134,14 +134,14 @@ def simulate_principal(
     most: int,
     even: bool,
 ) -> tuple[Array, Array]:
-    """Return the states at the time of the start and at the targets, in principal axes."""
+    """Return the states at the start and at the targets, in principal axes."""
     dtype = given.rotor.dtype
     torque = jax.tree.map(lambda x: jnp.asarray(x, dtype), torque)
     table = jnp.array(table_of(method), dtype)
     moves = stepper(method, Gyrostat(split(given.moments), torque.wheel()), torque, table)
     point = moves.start(*_batched(given, torque, moves.body), jnp.asarray(begin, dtype))
     fixed = moves.fixed(point)
-    # What a step computes on its way is computed again for a gradient, rather than kept for all steps.
+    # Recompute the intermediate values of a step for gradients instead of storing them.
     step = jax.checkpoint(partial(moves.step, fixed), prevent_cse=False)
 
     def interval(point: Any, target: Any) -> Any:
@@ -150,7 +150,7 @@ def simulate_principal(
 
         def go(point: Any, i: Array) -> Any:
             after = jnp.where(i + 1 == count, to, begin + span * ((i + 1) / count).astype(dtype))
-            # The difference of the rounded times, so that the steps add up to the time.
+            # The difference of rounded times, so that the steps add up to the time.
             return step(point, after - point.time)._replace(time=after)
 
         def one(point: Any, i: Array) -> Any:
@@ -172,7 +172,7 @@ compiled = jax.jit(simulate_principal, static_argnames=("method", "most", "even"
 
 
 def _batched(given: Start, torque: Torque, body: Gyrostat) -> tuple[Four, Three]:
-    """Return rotor and angular velocity of the batch of the bodies and of the parameters of their torque."""
+    """Return rotor and angular velocity, broadcast to the batch of the bodies and of the torque."""
     rotor, omega = normalized(split(given.rotor)), split(given.omega)
 
     def first(rotor: Four, omega: Three) -> Three:
@@ -188,5 +188,5 @@ def _check(method: str, torque: Torque) -> None:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
     if method != "rk4" and torque.depends_on_rate:
         raise ValueError(
-            f"{method} kicks at fixed attitude, but a torque depends on the rate of turning; use rk4"
+            f"{method} kicks at fixed attitude, but a torque depends on the angular velocity; use rk4"
         )

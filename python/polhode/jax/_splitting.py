@@ -1,4 +1,4 @@
-"""Exact turns and kicks: `crates/rigid/src/splitting.rs`, which derives them, step for step.
+"""Exact turns and kicks, step for step as in `crates/rigid/src/methods/splitting`, which derives them.
 
 The turns are about the axes of the smallest and the largest moment. Which those are is known when the program
 runs, not when it is compiled, so the axes are renamed: with the smallest first and the largest last, and
@@ -32,7 +32,7 @@ from polhode.jax._phase import Gyrostat, Phase
 
 Array = Any
 
-# γ_1 … up to the middle one, as in crates/rigid/src/splitting/sequences.rs; the rest mirrors them.
+# γ_1 … up to the middle one, as in crates/rigid/src/methods/splitting/sequences.rs; the rest mirrors them.
 COMPOSITIONS = {
     "strang": [1.0],
     "yoshida4": [1.3512071919596576, -1.7024143839193153],
@@ -59,7 +59,7 @@ COMPOSITIONS = {
 
 
 def stages(name: str) -> list[tuple[float, float]]:
-    """Return kicks and drifts in turn; the first kick is the last too, two half kicks that meet are one."""
+    """Return alternating kicks and drifts; adjacent half kicks are merged, the first kick is the last too."""
     half = COMPOSITIONS[name]
     drifts = half + half[-2::-1]
     kicks = [0.5 * drifts[0]] + [0.5 * a + 0.5 * b for a, b in pairwise(drifts)]
@@ -76,7 +76,7 @@ class Axes(NamedTuple):
 
     @staticmethod
     def of(moments: Three) -> Axes:
-        """Of equal moments the first is the smaller one."""
+        """Order the axes by moments; of equal moments the first counts as smaller."""
         i, j, k = moments
         small1 = (i <= j) & (i <= k)
         small2 = ~small1 & (j <= k)
@@ -110,7 +110,7 @@ class Axes(NamedTuple):
 
 
 class Splitting:
-    """A body and its laws, none of which depends on the rate; stepped by one of `COMPOSITIONS`.
+    """A body and laws that do not depend on the angular velocity, stepped by one of `COMPOSITIONS`.
 
     `table` has the numbers of its `stages` once more, one after the other, as the program reads them: several
     stages are a loop, which compiles sooner than their steps side by side.
@@ -127,7 +127,7 @@ class Splitting:
         self.turning = None if body.wheel is None else body.omega((0.0, 0.0, 0.0))
 
     def start(self, rotor: Four, omega: Three, time: Array) -> Phase:
-        """Return the point of the start."""
+        """Return the initial state."""
         return Phase(rotor, self.body.momentum(omega), time)
 
     def omega(self, phase: Phase) -> Three:
@@ -135,11 +135,11 @@ class Splitting:
         return self.body.omega(phase.momentum)
 
     def fixed(self, start: Phase) -> Three | None:
-        """L in space, where the laws leave it constant."""
+        """Return L in space if the laws conserve it."""
         return turned(start.rotor, start.momentum) if self.torque.turns_nothing else None
 
     def step(self, fixed: Three | None, phase: Phase, h: Array) -> Phase:
-        """One step of length h; then the rounding is taken out of |R|, and of a constant L."""
+        """Take a step of length h, then correct the rounding of |R| and of a constant L."""
         start = phase.time
         if fixed is not None:
             phase = self._turn_about_momentum(phase, h)
@@ -204,7 +204,7 @@ def _turn_first(r: Four, m: Three, half: Array) -> tuple[Four, Three]:
     cos, sinc = cosine_and_sinc(half * half)
     sin = half * sinc
     s, x, y, z = r
-    # The turn is added to m: rounded cosines and sines would stretch it by the same at every step.
+    # Add the turn to m: rounded cosines and sines would scale it by the same factor in every step.
     versine, sine = 2.0 * sin * sin, 2.0 * sin * cos
     _, a, b = m
     return (
@@ -221,7 +221,7 @@ def _turn_last(r: Four, m: Three, half: Array) -> tuple[Four, Three]:
 
 
 def _restored(phase: Phase, fixed: Three) -> Phase:
-    """Take the rounding of one free step out of |m| and the direction of ``R m ~R``, to first order."""
+    """Correct |m| and the direction of ``R m ~R`` for the rounding of a free step, to first order."""
     size = dot(fixed, fixed)
     still = size == 0
     size = jnp.where(still, 1.0, size)

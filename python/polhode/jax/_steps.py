@@ -1,4 +1,4 @@
-"""Which steps lead to given times: equal ones between them, as `crates/rigid/src/walk.rs` takes them."""
+"""Equal steps between given times, as in `crates/rigid/src/run/sweep.rs`."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ def ways(
     if (step is None) == (steps is None):
         raise ValueError("give either step, the longest step in s, or steps, their number between two times")
     if steps is not None and (not isinstance(steps, int) or steps < 1):
-        raise ValueError(f"steps is {steps!r}; it must be a whole number, 1 at least")
+        raise ValueError(f"steps is {steps!r}; it must be a positive integer")
     tables = [law for law in torque.laws if isinstance(law, Table)]
     if isinstance(times, jax.core.Tracer) or isinstance(start, jax.core.Tracer):
         if steps is None:
-            raise ValueError("with traced times the number of steps is not known; give steps instead of step")
+            raise ValueError("with traced times the number of steps is unknown; give steps instead of step")
         when = jax.numpy.asarray(times)
         check_line(when.shape, times)
         counts = np.full(when.shape, steps)
@@ -63,7 +63,7 @@ def ways(
 
 
 def _way(begin: float, when: Any, breaks: Any, step: float | None, steps: int | None) -> Way:
-    """Stop wherever a law is not smooth."""
+    """Add the times at which a law is not smooth."""
     targets: list[float] = []
     places = []
     at = begin
@@ -99,7 +99,7 @@ def _check(when: Any, tables: list[Table], start: float) -> None:
         if first < law.times[0] - rounding or last > law.times[-1] + rounding:
             raise ValueError(
                 f"the table of torques spans {law.times[0]} s to {law.times[-1]} s, the motion {first} s to "
-                f"{last} s; give rows for all the time that is simulated"
+                f"{last} s; add rows for all times of the simulation"
             )
 
 

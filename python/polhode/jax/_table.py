@@ -1,4 +1,4 @@
-"""Torques given at times: `crates/rigid/src/torque/table.rs`."""
+"""Torques interpolated in a table of times, as in `crates/rigid/src/laws/torque/table.rs`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = Any
 
 @pytree
 class Table(Law):
-    """Rows of torques, and of the slopes of their spline; NaN outside the times."""
+    """Rows of torques and of the slopes of their spline; NaN outside the times."""
 
     torques: Array
     slopes: Array | None
@@ -39,7 +39,7 @@ class Table(Law):
     def _at(self, time: Array) -> Array:
         times = jnp.asarray(self.times, time.dtype)
         first, last = self.times[0], self.times[-1]
-        # A step that ends at the last time may come to it a rounding late.
+        # A step to the last time may end a rounding after it.
         rounding = 4.0 * jnp.finfo(time.dtype).eps * max(abs(first), abs(last))
         inside = (time >= first - rounding) & (time <= last + rounding)
         time = jnp.clip(time, first, last)
@@ -48,10 +48,10 @@ class Table(Law):
         x = ((time - times[i]) / h)[..., None]
         a, b = self.torques[i], self.torques[i + 1]
         steep = b - a
-        # From the nearer end, so that the rows are met exactly.
+        # From the nearer end, so that the rows are reproduced exactly.
         line = jnp.where(x < 0.5, a + steep * x, b - steep * (1.0 - x))
         if self.slopes is not None:
-            # Hermite's cubic is the line and what the slopes at both ends differ from its own.
+            # The cubic Hermite polynomial: the line, and the differences of both slopes from its own.
             h = h[..., None]
             p, q = self.slopes[i] * h - steep, self.slopes[i + 1] * h - steep
             line = line + (p * (1.0 - x) - q * x) * (x * (1.0 - x))

@@ -1,4 +1,4 @@
-"""The exact free flow in JAX alone: `crates/rigid/src/free.rs`, which derives it, in plain floating point.
+"""The exact free flow in JAX alone; `crates/rigid/src/exact/free/mod.rs` has the derivation.
 
 Both forms of the series are computed for each body, and the one that its nome asks for is taken.
 """
@@ -15,7 +15,7 @@ from polhode.jax._orbit_of_free import Orbit
 
 Array = Any
 
-# u over the turns, on the separatrix: so much is never reached.
+# u over the turns on the separatrix: an upper bound.
 _NEVER = 2.0**70
 
 
@@ -27,7 +27,7 @@ def flow(moments: Array, rotor: Array, omega: Array, time: Array) -> tuple[Array
     i, w = tuple(x / size for x in i), tuple(x / scale for x in w)
     tumbles = known & _tumbles(i, w)
     turn, spin = _steady(_without_slopes(w, i, jnp.where(tumbles, 1.0, jnp.nan)), time * scale)
-    # Elsewhere any motion that tumbles.
+    # Where it is steady, substitute any tumbling motion.
     some = [jnp.where(tumbles, x, k) for k, x in zip((1.0, 2.0, 3.0), i, strict=True)]
     rates = [jnp.where(tumbles, x, 1.0) for x in w]
     tumbled, spins = _tumbling(Orbit.of(tuple(some), tuple(rates)), time * scale)
@@ -66,7 +66,7 @@ def _steady(w: Any, time: Array) -> tuple[Four, Three]:
 
 @jax.custom_jvp
 def _without_slopes(w: Any, i: Any, factor: Array) -> Any:
-    """Return w, with slopes of NaN: a steady motion has neighbours that are not."""
+    """Return w with NaN derivatives: neighbours of a steady motion are not steady."""
     return w
 
 
@@ -84,7 +84,7 @@ def _sin_cos(turns: Array) -> tuple[Array, Array]:
 
 def _tumbling(orbit: Orbit, time: Array) -> tuple[Four, Three]:
     """``~W(0) W(t)`` and the angular velocity."""
-    # The start is one more time, the first.
+    # The start is the first of the times.
     z, functions = _states(orbit, jnp.concatenate([jnp.zeros_like(time[..., :1]), time], axis=-1))
     rotor = normalized(_in_axes(orbit, z))
     first, rotor = (tuple(x[..., part] for x in rotor) for part in (slice(1), slice(1, None)))
@@ -93,7 +93,7 @@ def _tumbling(orbit: Orbit, time: Array) -> tuple[Four, Three]:
 
 
 def _in_axes(orbit: Orbit, z: Four) -> Four:
-    """Of quaternion units, which are the negatives of the planes of (e1, e2, d)."""
+    """Compose quaternion units, the negatives of the planes of (e1, e2, d)."""
     planes = tuple(-sign * x for sign, x in zip(orbit.signs, z[1:], strict=True))
     return z[0], *orbit.order.restored(planes)
 

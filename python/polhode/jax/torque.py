@@ -1,4 +1,4 @@
-"""Torque laws for `polhode.jax.simulate`, by the names of `polhode.torque` and with the same meaning.
+"""Torque laws for `polhode.jax.simulate`, with the names and arguments of `polhode.torque`.
 
 Their arguments may be traced, and of any batch that goes with that of the bodies: ``jax.grad`` differentiates
 by them. A law of `polhode.torque` itself serves too where its parameters are just numbers.
@@ -95,16 +95,16 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
     `simulate` knows all times beforehand.
     """
     when, rows = as_floats(times, "times"), _array(torques)
-    # It says what is wrong with times, frame and kind.
+    # Raises for wrong times, frame and kind.
     native.tabulated(when, np.zeros((*rows.shape[:-1], 3)), frame, kind)
     slopes = spline_slopes(when, rows) if kind == "cubic" and when.size > 2 else None
     return Torque((Table(rows, slopes, tuple(when.tolist()), frame),))
 
 
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
-    """Return the torque that a formula gives, of the names that `polhode.torque.formula` explains.
+    """Return the torque of a formula, with the names of `polhode.torque.formula`.
 
-    The values are multivectors, rotors and numbers, which may hold traced arrays, but no linear maps.
+    The values are multivectors, rotors and numbers, of traced arrays too; linear maps are not supported.
     """
     if frame not in ("body", "space"):
         raise ValueError(f"frame is {frame!r}, expected 'body' or 'space'")
@@ -113,21 +113,21 @@ def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
 
 
 def function(f: Callable[[Any, Any, Any], Any]) -> Torque:
-    """Return the torque that a function in ``jax.numpy`` gives: ``f(t, rotor, omega_body)``.
+    """Return the torque of a function in ``jax.numpy``: ``f(t, rotor, omega_body)``.
 
     It is called with the time in s, the rotor's components (..., 4) from body axes to space and those of the
     angular velocity (..., 3) in body axes, and returns the torque (..., 3) in body axes. What it closes over
     may be traced.
     """
     if not callable(f):
-        raise TypeError(f"a function of t, rotor and omega_body is needed, got {type(f).__name__}")
+        raise TypeError(f"expected a function of t, rotor and omega_body, got {type(f).__name__}")
     if isinstance(f, jax.tree_util.Partial):
         return Torque((_laws.Function(partial=f, frame=None, f=None),))
     return Torque((_laws.Function(partial=None, frame=None, f=f),))
 
 
 def of(torque: Any) -> Torque:
-    """Return a torque for JAX from one, from None, from a law of `polhode.torque` or from a function."""
+    """Return a torque for JAX from a torque of this module or of `polhode.torque`, a function or None."""
     if torque is None:
         return Torque(())
     if isinstance(torque, Torque):

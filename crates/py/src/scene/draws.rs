@@ -9,7 +9,7 @@ use polhode_rigid::{body, scene};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-/// Draws the bodies of a scene.
+/// The bodies of the ensemble of a scene.
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Draws {
     scene: scene::Scene,
@@ -19,7 +19,7 @@ pub(crate) struct Draws {
 }
 
 impl Draws {
-    /// Of a scene that is built; none without an ensemble.
+    /// Of a scene with its body and laws; `None` without an ensemble.
     pub(crate) fn of(
         py: Python<'_>,
         scene: scene::Scene,
@@ -31,11 +31,10 @@ impl Draws {
     }
 }
 
-/// What differs: its name, how it is distributed, the widths, and their unit.
+/// A random parameter: its name, distribution, widths and their unit.
 type Varied = (String, &'static str, Vec<f64>, &'static str);
 
-/// Rotors (n, 4), angular velocities in the body (n, 3), places and velocities (n, 3) each, inertias (one or n) and
-/// laws.
+/// Rotors (n, 4), angular velocities in body axes (n, 3), positions and velocities (n, 3), inertias (one or n) and laws.
 type Bodies<'py> = (Array<'py>, Array<'py>, Array<'py>, Array<'py>, Vec<Inertia>, Vec<Bound<'py, PyAny>>);
 
 #[pymethods]
@@ -48,25 +47,26 @@ impl Draws {
         self.ensemble.seed
     }
 
-    /// When all of them start, in s.
+    /// The initial time in s.
     fn time(&self) -> f64 {
         self.scene.time
     }
 
     fn varied(&self) -> Vec<Varied> {
-        let told = |varied: scene::Varied| match varied.spread {
+        let row = |varied: scene::Varied| match varied.spread {
             None => (varied.name, "alike", Vec::new(), ""),
             Some(spread) => (varied.name, spread.form.name(), spread.widths.to_vec(), varied.unit),
         };
-        self.ensemble.varied().into_iter().map(told).collect()
+        self.ensemble.varied().into_iter().map(row).collect()
     }
 
-    /// So many bodies, one at least, from the first on.
+    /// At least one body, from index `first` on.
     fn draw<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bodies<'py>> {
         let number = self.ensemble.number;
         let end = first.checked_add(count).filter(|end| (first + 1..=number).contains(end));
         let Some(end) = end else {
-            return Err(bad(format!("there are {number} bodies, no {count} from number {first} on")));
+            let end = first.saturating_add(count);
+            return Err(bad(format!("range {first}..{end} is out of bounds for {number} bodies")));
         };
         let drawn = py.detach(|| self.ensemble.draw(&self.scene, (&self.body, &self.laws), first..end));
         let drawn = drawn.map_err(bad)?;
@@ -89,7 +89,7 @@ fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> 
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
     }
     let own: Vec<_> = torques.iter().filter_map(Torque::registered).collect();
-    let Some(&(entry, _)) = own.first() else { return Err(bad("a law without numbers varies")) };
+    let Some(&(entry, _)) = own.first() else { return Err(bad("a law without numbers cannot vary")) };
     let mut first = 0;
     let columns = entry.arguments.iter().map(|argument| {
         let size = argument.shape.size();

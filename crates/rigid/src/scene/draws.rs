@@ -1,7 +1,7 @@
-//! The bodies of an ensemble.
+//! Draws the bodies of an ensemble.
 //!
-//! Each is drawn by itself: its numbers follow from the seed and from its own number alone ([`crate::random`]), so
-//! that a run by blocks or by threads, a longer one, or one that varies one thing more, has the same bodies.
+//! The random numbers of a body depend on the seed and its index alone ([`crate::random`]): runs in blocks or threads,
+//! longer runs, and runs with one more varied parameter have the same bodies.
 
 use super::{Attitudes, Ensemble, Gravity, Law, Parameter, Scene, SpinFrame, Spread};
 use crate::body::Body;
@@ -13,14 +13,14 @@ use std::array::from_fn;
 use std::fmt;
 use std::ops::Range;
 
-/// Bodies, one per row. What all have in common has one row.
+/// Bodies, one per row. Properties shared by all have a single row.
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// The rotors that carry body axes to space axes.
     pub rotors: Vec<[f64; 4]>,
     /// The angular velocities in body axes, in rad/s.
     pub omegas: Vec<[f64; 3]>,
-    /// The places and the velocities of the centre of mass, or of the fixed point.
+    /// The positions and velocities of the centre of mass, or of the fixed point.
     pub centers: Vec<[f64; 6]>,
     /// The inertia maps, about the centre of mass or about the fixed point.
     pub inertias: Vec<Inertia>,
@@ -29,8 +29,8 @@ pub struct Drawn {
 }
 
 impl Ensemble {
-    /// Some of the bodies of a scene, from the body and the laws that [`Scene::build`] makes of it. An error only
-    /// where one leaves the range of floating point.
+    /// A range of the bodies of a scene, from the body and the laws of [`Scene::build`]. An error only for numbers beyond
+    /// the range of floats.
     pub fn draw(
         &self,
         scene: &Scene,
@@ -54,19 +54,19 @@ impl Ensemble {
     }
 }
 
-/// Some bodies of an ensemble.
+/// A range of the bodies of an ensemble.
 struct Draw<'e> {
     ensemble: &'e Ensemble,
     bodies: Range<usize>,
 }
 
 impl Draw<'_> {
-    /// The words of what has this name, for each of the bodies.
+    /// The random words of this name for each body.
     fn words(&self, name: &str) -> impl Iterator<Item = [u64; 8]> {
         Words::new(self.ensemble.seed, name, self.bodies.start as u64).take(self.bodies.len())
     }
 
-    /// What is drawn of the words of this name, for each of the bodies; the nominal one where nothing is.
+    /// A draw for each body from the random words of this name; without `draw` the nominal value.
     fn each<T: Clone>(&self, name: &str, nominal: T, draw: Option<impl Fn([u64; 8]) -> T>) -> Vec<T> {
         match draw {
             Some(draw) => self.words(name).map(draw).collect(),
@@ -74,13 +74,12 @@ impl Draw<'_> {
         }
     }
 
-    /// Vectors that spread about one.
+    /// Vectors distributed about one.
     fn spread(&self, name: &str, spread: Option<Spread>, Vector(vector): Vector) -> Vec<[f64; 3]> {
         self.each(name, vector, spread.map(|spread| move |words| spread.draw(vector, &words)))
     }
 
-    /// Four normal numbers point in every direction of their space alike, so their rotor turns to every attitude
-    /// alike.
+    /// The direction of four normal numbers is uniform on the 3-sphere, so that its rotor is a uniform attitude.
     fn rotors(&self, nominal: Rotor) -> Vec<Rotor> {
         let draw = |attitudes| {
             move |words: [u64; 8]| match attitudes {
@@ -93,7 +92,7 @@ impl Draw<'_> {
         self.each("attitude", nominal, self.ensemble.attitude.map(draw))
     }
 
-    /// In body axes, whatever the axes in which they are drawn.
+    /// Angular velocities in body axes, whatever the axes of the spin.
     fn omegas(&self, scene: &Scene, rotors: &[Rotor]) -> Vec<Bivector> {
         let size = scene.spin.norm();
         let direction = |words: [u64; 8]| unit(from_fn(|k| normal(words[k]))).map(|x| size * x);
@@ -110,9 +109,8 @@ impl Draw<'_> {
         spins.into_iter().zip(rotors).map(omega).collect()
     }
 
-    /// A body is possible if and only if none of the integrals `c_k = ∫ x_k² dm` along its principal axes is
-    /// negative, and its moments are `i_1 = c_2 + c_3` and alike. A factor on each c_k makes a possible body of a
-    /// possible one; factors on the moments would not.
+    /// Moments are physical if and only if no integral `c_k = ∫ x_k² dm` along the principal axes is negative; they are
+    /// `i_1 = c_2 + c_3` and cyclically. Factors on the c_k keep moments physical, factors on the moments would not.
     fn inertias(&self, body: &Body, held: bool) -> Result<Vec<Inertia>, DrawError> {
         let about_the_point = |inertia: Inertia| match held {
             true => Body { inertia, ..*body }.inertia_about(Vector::default()),
@@ -123,7 +121,7 @@ impl Draw<'_> {
         };
         let frame = body.inertia.principal_frame();
         let [a, b, c] = body.inertia.principal_moments();
-        // Of a flat body one is 0, or less by rounding.
+        // For a flat body one is 0, or negative by rounding.
         let integrals = [b + c - a, c + a - b, a + b - c].map(|twice| (0.5 * twice).max(0.0));
         let inertia = |words| {
             let [x, y, z] = spread.draw(integrals, &words);
@@ -134,7 +132,7 @@ impl Draw<'_> {
         words.map(|(row, words)| inertia(words).map_err(self.failed(row))).collect()
     }
 
-    /// The law of each body, or that of all.
+    /// The law of each body, or one law for all.
     fn law(&self, law: &Law, body: &Body, gravity: Option<Gravity>) -> Result<Vec<Torque>, DrawError> {
         let mut torques = vec![law.torque.clone()];
         for (parameter, spread) in self.ensemble.parameters.iter().filter(|(p, _)| p.law == law.name) {
@@ -146,7 +144,7 @@ impl Draw<'_> {
         Ok(torques)
     }
 
-    /// The laws of gravity whose acceleration spreads.
+    /// The laws of gravity with random accelerations.
     fn weights(&self, parameter: &Parameter, spread: Spread, body: &Body, gravity: Gravity) -> Vec<Torque> {
         let weight = |words| {
             let [acceleration, ..] = spread.draw([gravity.acceleration, 0.0, 0.0], &words);
@@ -155,7 +153,7 @@ impl Draw<'_> {
         self.words(&parameter.name()).map(weight).collect()
     }
 
-    /// Laws, of each body or of all, whose parameter spreads about its value.
+    /// Laws, one for all or one for each body, with a random parameter.
     fn varied(
         &self,
         parameter: &Parameter,
@@ -171,19 +169,19 @@ impl Draw<'_> {
         self.words(&parameter.name()).enumerate().map(draw).collect()
     }
 
-    /// Why there is no body in this row.
+    /// The error of the body in this row.
     fn failed<E: fmt::Display>(&self, row: usize) -> impl Fn(E) -> DrawError {
         let body = self.bodies.start + row;
         move |error| DrawError { body, message: error.to_string() }
     }
 }
 
-/// What is drawn is no body, or no law.
+/// A draw that is not a possible body or law.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DrawError {
-    /// Which, from 0.
+    /// The index of the body, from 0.
     pub body: usize,
-    /// Why.
+    /// The reason.
     pub message: String,
 }
 
@@ -195,7 +193,7 @@ impl fmt::Display for DrawError {
 
 impl std::error::Error for DrawError {}
 
-/// The direction of normal numbers, which are never 0 and never large.
+/// The direction of normal numbers, which are never all 0 and never large.
 fn unit<const N: usize>(numbers: [f64; N]) -> [f64; N] {
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
     numbers.map(|x| x / size)

@@ -1,4 +1,4 @@
-//! The table `[ensemble]`: how many bodies, and in what they differ.
+//! The table `[ensemble]`: the number of bodies and their random parameters.
 //!
 //! ```toml
 //! [ensemble]
@@ -22,42 +22,42 @@ use toml::de::DeValue;
 const MOST_BODIES: i128 = 100_000_000;
 const LARGEST_SEED: i128 = 1 << 53;
 
-/// Bodies that differ at random from the one that the scene describes.
+/// Bodies that differ at random from the body of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ensemble {
-    /// How many bodies.
+    /// The number of bodies.
     pub number: usize,
-    /// What the random numbers follow from.
+    /// The random seed.
     pub seed: u64,
-    /// How the attitude differs.
+    /// The distribution of attitudes.
     pub attitude: Option<Attitudes>,
-    /// Whether the direction of the spin is drawn, every one alike.
+    /// Whether the direction of the spin is uniform.
     pub directions: bool,
-    /// How the spin differs, in the axes in which it is given, after its direction is drawn.
+    /// The distribution of the spin in the axes of the scene, after its direction is drawn.
     pub spin: Option<Spread>,
-    /// How the integrals `∫ x_k² dm` along the principal axes through the centre of mass differ.
+    /// The distribution of the integrals `∫ x_k² dm` along the principal axes.
     pub moments: Option<Spread>,
-    /// How the place of the centre of mass differs.
+    /// The distribution of the position.
     pub position: Option<Spread>,
-    /// How its velocity differs.
+    /// The distribution of the velocity.
     pub velocity: Option<Spread>,
-    /// How parameters of laws differ.
+    /// The distributions of parameters of laws.
     pub parameters: Vec<(&'static Parameter, Spread)>,
 }
 
-/// What differs from body to body.
+/// A random parameter of an ensemble.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Varied {
     /// Its name in `[ensemble]`, dotted; `spin.direction` for directions.
     pub name: String,
-    /// How it spreads; none where all that it can be is alike.
+    /// Its distribution; `None` if it is uniform over all values.
     pub spread: Option<Spread>,
-    /// The unit of the widths, but for factors.
+    /// The unit of the widths, except for factors.
     pub unit: &'static str,
 }
 
 impl Ensemble {
-    /// All that differs.
+    /// All random parameters.
     pub fn varied(&self) -> Vec<Varied> {
         let turned = match self.attitude {
             Some(Attitudes::Turned(spread)) => Some(spread),
@@ -82,16 +82,16 @@ impl Ensemble {
     }
 }
 
-/// How attitudes differ.
+/// The distribution of attitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Attitudes {
-    /// Every attitude alike.
+    /// Uniform.
     Uniform,
-    /// Turned by a rotation vector, along the body axes, that spreads about 0.
+    /// Turned by a random rotation vector along the body axes.
     Turned(Spread),
 }
 
-/// What the rest of the scene says, as far as it could be read.
+/// The nominal values of the scene, as far as they could be read.
 pub struct Nominal<'s> {
     pub initial: Option<Initial>,
     pub gravity: Option<Option<Gravity>>,
@@ -99,8 +99,7 @@ pub struct Nominal<'s> {
 }
 
 impl Nominal<'_> {
-    /// The numbers of a parameter, and whether they are one: the scene has none, or has them but they could not be
-    /// read.
+    /// The numbers of a parameter and whether they are equal; `None` if they could not be read.
     fn numbers(&self, parameter: &Parameter) -> Result<Option<([f64; 3], bool)>, Absent> {
         if parameter.law == "gravity" {
             let Some(gravity) = self.gravity else { return Ok(None) };
@@ -153,7 +152,7 @@ pub fn read(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<Ens
     })
 }
 
-/// A whole number that is neither too small nor too large.
+/// An integer in a range.
 fn whole(reader: &mut Reader, value: &Value, least: i128, most: i128) -> Option<u64> {
     let number = reader.integer(value)?;
     match u64::try_from(number) {
@@ -180,7 +179,7 @@ fn attitude(reader: &mut Reader, value: &Value) -> Option<Attitudes> {
     Some(Attitudes::Turned(turned))
 }
 
-/// Whether the direction is drawn, and how the spin then spreads.
+/// Whether the direction is random, and the distribution of the spin.
 fn spin(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<(bool, Option<Spread>)> {
     let table = &spread::table(reader, value, "a table such as `{ relative = 0.01 }`")?;
     let fields = [&["direction"], &FORMS[..]].concat();
@@ -190,20 +189,20 @@ fn spin(reader: &mut Reader, value: &Value, nominal: &Nominal) -> Option<(bool, 
     let directions = direction?.is_some();
     let spin = nominal.initial.map(|initial| initial.spin);
     if directions && spin.is_some_and(|spin| spin.0 == [0.0; 3]) {
-        reader.report(value.span(), "a spin of 0 has no direction; give it one in [initial]");
+        reader.report(value.span(), "a spin of 0 has no direction; give a spin in [initial]");
     }
     let Some(form) = form else { return directions.then_some((true, None)) };
     let shape = Shape { quantity: Some(Quantity::AngularRate), size: 3, alike: false };
     let spread = spread::field(reader, table, form, shape)?;
     if let Some(spin) = spin {
-        // Where its direction is drawn, each component may be as large as the spin.
+        // With a random direction each component may be as large as the spin.
         let numbers = if directions { [spin.norm(); 3] } else { spin.0 };
         spread.check(reader, value.span(), &numbers, Limit::Finite);
     }
     Some((directions, Some(spread)))
 }
 
-/// Of the three integrals `∫ x_k² dm` each has a factor of its own.
+/// A factor for each of the integrals `∫ x_k² dm`.
 fn moments(reader: &mut Reader, value: &Value) -> Option<Spread> {
     let shape = Shape { quantity: None, size: 3, alike: false };
     let spread = spread::read(reader, value, &["relative"], shape)?;
@@ -263,7 +262,7 @@ fn fields(
         PARAMETERS.iter().filter(|parameter| parameter.law == law).collect();
     let names: Vec<&'static str> = parameters.iter().map(|parameter| parameter.field).collect();
     reader.only(table, &names);
-    // A rate and its period are one number of the law.
+    // A rate and its period are the same number of the law.
     let same = parameters.chunk_by(|a, b| a.at == b.at);
     for names in same {
         reader.at_most_one(table, &names.iter().map(|parameter| parameter.field).collect::<Vec<_>>());
@@ -272,7 +271,7 @@ fn fields(
     given.map(|(parameter, value)| spread_of(reader, table, value, parameter, nominal)).collect()
 }
 
-/// How one parameter spreads.
+/// The distribution of one parameter.
 fn spread_of(
     reader: &mut Reader,
     table: &Table,
@@ -283,7 +282,7 @@ fn spread_of(
     let Ok(known) = nominal.numbers(parameter) else {
         let name = if parameter.field.is_empty() { parameter.law } else { parameter.field };
         let message =
-            format!("what varies needs a value in the scene, and this has no {}", parameter.place());
+            format!("a random parameter needs a value in the scene, which has no {}", parameter.place());
         reader.report(table.name_span(name).unwrap_or(value.span()), message);
         return None;
     };

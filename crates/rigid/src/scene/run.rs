@@ -1,4 +1,4 @@
-//! The tables `[run]` and `[method]`: for how long, and how.
+//! The tables `[run]` and `[method]`: duration, output times and integrator.
 
 use super::reader::{Reader, Table, Value};
 use crate::methods::methods;
@@ -7,26 +7,26 @@ use toml::de::DeTable;
 
 const DEFAULT_SAMPLES: usize = 1001;
 const MOST_SAMPLES: usize = 10_000_000;
-/// How far a duration may be from a whole number of intervals, relatively: decimals are written rounded.
+/// Relative tolerance of a duration that must be a whole number of intervals, as decimals are rounded.
 const INTERVAL_TOLERANCE: f64 = 1e-9;
 
-/// How long to run and what to keep of it.
+/// The duration and the output times of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// In seconds.
     pub duration: f64,
-    /// How many states are kept, the first and the last included.
+    /// The number of output times, the first and the last included.
     pub samples: usize,
-    /// The second time in seconds, if the others follow in equal ratios.
+    /// The second time in seconds, if later times follow in geometric progression.
     pub first: Option<f64>,
-    /// How to integrate.
+    /// The integrator.
     pub choice: Choice,
-    /// The largest relative drift of a conserved quantity that counts as success.
+    /// The maximum relative drift of conserved quantities of a successful run.
     pub drift_bound: Option<f64>,
 }
 
 impl Run {
-    /// The times of the samples after the beginning, `i · duration / (samples − 1)`; or 0 and from the first on
+    /// The output times from the start, `i · duration / (samples − 1)`; or 0 and
     /// `first · (duration / first)^((i − 1) / (samples − 2))`.
     pub fn offsets(&self) -> Vec<f64> {
         let last = self.samples.saturating_sub(1).max(1);
@@ -41,20 +41,20 @@ impl Run {
     }
 }
 
-/// What a scene says of the method.
+/// The choice of an integrator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// The name of one of [`methods`], or `auto`, which leaves the choice to the program.
+    /// The name of one of [`methods`], or `auto`.
     pub method: String,
-    /// The integrator's step in seconds, if it is fixed.
+    /// A fixed step in seconds.
     pub step: Option<f64>,
-    /// The relative error that the integrator may make.
+    /// The relative tolerance.
     pub rtol: Option<f64>,
-    /// The absolute error that it may make, of rotors and of rates relative to the largest.
+    /// The absolute tolerance, of rotors and of rates relative to the largest.
     pub atol: Option<f64>,
-    /// The longest step in seconds.
+    /// The maximum step in seconds.
     pub max_step: Option<f64>,
-    /// How many steps a pass may take.
+    /// The maximum number of steps of a pass.
     pub max_steps: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ pub fn read(reader: &mut Reader, table: &Table, method: Option<&Table>) -> Optio
         None => Some(DEFAULT_SAMPLES),
     };
     let first = reader.optional(table, "first", |reader, value| first(reader, value, duration, samples));
-    // In equal intervals, or in equal ratios.
+    // Equal intervals, or a geometric progression.
     reader.at_most_one(table, &["interval", "first"]);
     let choice = choice(reader, table, method);
     let drift_bound = reader.optional(table, "drift_bound", |reader, value| {
@@ -89,7 +89,7 @@ pub fn read(reader: &mut Reader, table: &Table, method: Option<&Table>) -> Optio
     })
 }
 
-/// The fields of `[run]` and `[method]` that choose how to integrate; none in both.
+/// The fields that choose the integrator, of `[run]` or `[method]` but not both.
 fn choice(reader: &mut Reader, run: &Table, method: Option<&Table>) -> Option<Choice> {
     let none = DeTable::new();
     let own = Table { title: "[method]".into(), span: run.span.clone(), fields: &none };
@@ -156,7 +156,7 @@ fn samples(reader: &mut Reader, value: &Value) -> Option<usize> {
     }
 }
 
-/// The first time after 0 of those in equal ratios.
+/// The first time after 0 of a geometric progression.
 fn first(reader: &mut Reader, value: &Value, duration: Option<f64>, samples: Option<usize>) -> Option<f64> {
     let first = reader.positive(value, Quantity::Time)?;
     let (duration, samples) = (duration?, samples?);
@@ -167,7 +167,7 @@ fn first(reader: &mut Reader, value: &Value, duration: Option<f64>, samples: Opt
     if samples < 3 {
         reader.report(
             value.span(),
-            format!("takes 3 samples at least: 0, the first and the end; not {samples}"),
+            format!("needs at least 3 samples (0, the first time and the end), found {samples}"),
         );
         return None;
     }

@@ -1,4 +1,4 @@
-//! How numbers spread about those that a scene gives.
+//! Random distributions of numbers about their values in a scene.
 
 use super::reader::{Reader, Table, Value};
 use crate::laws::registry::Limit;
@@ -8,28 +8,28 @@ use std::array::from_fn;
 use std::ops::Range;
 use toml::de::DeValue;
 
-/// No factor spreads more than this: e¹⁰ is 22026.
+/// Maximum deviation of the logarithm of a factor: e¹⁰ is 22026.
 const WIDEST_FACTOR: f64 = 10.0;
 
-/// How three numbers, or one, spread about those of the scene.
+/// The distribution of one or three numbers about those of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// The distribution.
     pub form: Form,
-    /// Of each number: the standard deviation, or half the width.
+    /// The standard deviation or the half width of each number.
     pub widths: [f64; 3],
-    /// Whether one draw serves all numbers.
+    /// Whether one random number is shared by all numbers.
     pub alike: bool,
 }
 
 /// The distribution of a number x of width w.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// `x + w n`, n of mean 0 and standard deviation 1.
+    /// `x + w n`, n standard normal.
     Normal,
-    /// `x + w u`, all u between −1 and 1 alike.
+    /// `x + w u`, u uniform in [−1, 1].
     Uniform,
-    /// `x exp(w n)`: it keeps its sign.
+    /// `x exp(w n)`, n standard normal: x keeps its sign.
     Relative,
 }
 
@@ -56,7 +56,7 @@ impl Form {
 }
 
 impl Spread {
-    /// The numbers that these words draw.
+    /// The numbers drawn from random words.
     pub fn draw(&self, numbers: [f64; 3], words: &[u64; 8]) -> [f64; 3] {
         from_fn(|k| {
             let word = words[if self.alike { 0 } else { k }];
@@ -69,7 +69,7 @@ impl Spread {
         })
     }
 
-    /// The smallest and the largest that a number can become.
+    /// The smallest and the largest possible draw.
     fn reach(&self, number: f64, width: f64) -> [f64; 2] {
         match self.form {
             Form::Normal => [-1.0, 1.0].map(|side| number + side * LARGEST_NORMAL * width),
@@ -78,8 +78,8 @@ impl Spread {
         }
     }
 
-    /// Reports, at this place, what could be drawn and must not be. No draw is ever repeated or cut, so that the
-    /// distribution is the one that the file says.
+    /// Reports draws that the limit excludes. Draws are never repeated or clipped, so that the distribution is exactly the
+    /// one in the file.
     pub fn check(&self, reader: &mut Reader, span: Range<usize>, numbers: &[f64], limit: Limit) {
         if self.form == Form::Relative && numbers.iter().all(|x| *x == 0.0) {
             let message = "any multiple of 0 is 0; write `normal` or `uniform`";
@@ -96,18 +96,18 @@ impl Spread {
     }
 }
 
-/// What a width may be.
+/// The widths that a parameter has.
 #[derive(Clone, Copy)]
 pub struct Shape {
-    /// What it measures, but for a factor; none is a pure number.
+    /// What a width measures, except for a factor; `None` for a pure number.
     pub quantity: Option<Quantity>,
-    /// How many numbers spread.
+    /// The count of numbers.
     pub size: usize,
-    /// Whether a single width stands for a single draw, as that of a factor always does.
+    /// Whether a single width means one random number for all, as a factor always does.
     pub alike: bool,
 }
 
-/// The table of a spread.
+/// The table of a distribution.
 pub fn table<'t>(reader: &mut Reader, value: &'t Value<'t>, example: &str) -> Option<Table<'t>> {
     match value.get_ref() {
         DeValue::Table(fields) => Some(Table { title: "the table".into(), span: value.span(), fields }),
@@ -118,7 +118,7 @@ pub fn table<'t>(reader: &mut Reader, value: &'t Value<'t>, example: &str) -> Op
     }
 }
 
-/// The one spread of a table that has no other fields.
+/// The distribution in a table without other fields.
 pub fn read(reader: &mut Reader, value: &Value, forms: &[&'static str], shape: Shape) -> Option<Spread> {
     let example = format!("a table such as `{{ {} = … }}`", forms[forms.len() - 1]);
     let table = &table(reader, value, &example)?;
@@ -126,8 +126,8 @@ pub fn read(reader: &mut Reader, value: &Value, forms: &[&'static str], shape: S
     field(reader, table, form, shape)
 }
 
-/// The one of the forms that is there. None at all is reported, unless there is a field that may be a misspelt one,
-/// or another of those that the table may have.
+/// The form that is present. A missing form is reported for an empty table only: other fields are allowed, or reported
+/// as unknown.
 pub fn form(
     reader: &mut Reader,
     table: &Table,
@@ -138,7 +138,7 @@ pub fn form(
     if table.fields.is_empty() { reader.exactly_one(table, fields) } else { reader.at_most_one(table, forms) }
 }
 
-/// The spread in this field of a table.
+/// The distribution in this field of a table.
 pub fn field(reader: &mut Reader, table: &Table, form: &'static str, shape: Shape) -> Option<Spread> {
     let value = table.get(form)?;
     let form = Form::of(form);

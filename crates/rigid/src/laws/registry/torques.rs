@@ -105,7 +105,7 @@ pub static TORQUES: [Entry<Torque>; 14] = [
     Entry {
         name: "torsion_spring",
         label: "Torsion spring",
-        formula: "2 k log(~rest R)",
+        formula: "k ⟨log((~rest R)^2)⟩_2",
         arguments: &[argument("k", "stiffness", Quantity::TorsionalStiffness, Scalar), attitude("rest")],
         kernel: Kernel::Native {
             build: |x| Ok(Torque::TorsionSpring { stiffness: x[0], rest: rotor(&x[1..])? }),
@@ -126,7 +126,7 @@ pub static TORQUES: [Entry<Torque>; 14] = [
     Entry {
         name: "pd_control",
         label: "PD control",
-        formula: "kp(2 log(~target R)) - kd(Ω)",
+        formula: "kp(⟨log((~target R)^2)⟩_2) - kd(Ω)",
         arguments: &[
             argument("kp", "kp", Quantity::TorsionalStiffness, Factors).not_negative(),
             argument("kd", "kd", Quantity::RotaryDamping, Factors).not_negative(),

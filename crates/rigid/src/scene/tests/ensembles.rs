@@ -132,15 +132,15 @@ fn what_is_wrong_with_an_ensemble_has_its_place() {
         ("torque.dampin = { normal = 1 }", "12:8: unknown table `dampin`, expected `damping`"),
         (
             "torque.damping = { normal = 1 }",
-            "12:8: what varies needs a value in the scene, and this has no `damping` in [torque]",
+            "12:8: a random parameter needs a value in the scene, which has no `damping` in [torque]",
         ),
         (
             "gravity.acceleration = { normal = 1 }",
-            "12:9: what varies needs a value in the scene, and this has no [gravity]",
+            "12:9: a random parameter needs a value in the scene, which has no [gravity]",
         ),
         (
             "'torque.damping' = { normal = 1 }",
-            "12:1: in quotes this is a single name; write torque.damping without",
+            "12:1: quotes make this a single name; write torque.damping without quotes",
         ),
         ("torque.pd_control = { normal = 1 }", "12:23: unknown field `normal`, expected one of `kp`, `kd`"),
         ("torque.pd_control.kd = 1", "12:24: expected a table such as `{ relative = … }`, found an integer"),
@@ -198,7 +198,7 @@ fn numbers_and_seeds_have_bounds() {
     );
     // With no spin there is no direction, and nothing to multiply.
     let still = with("number = 3\nspin = { direction = 'uniform' }").replace("[0, 0, 1]", "[0, 0, 0]");
-    assert_eq!(errors(&still), ["9:8: a spin of 0 has no direction; give it one in [initial]"]);
+    assert_eq!(errors(&still), ["9:8: a spin of 0 has no direction; give a spin in [initial]"]);
 }
 
 #[test]

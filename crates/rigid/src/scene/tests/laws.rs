@@ -107,7 +107,7 @@ fn what_is_wrong_with_a_law_has_its_place() {
         ),
         (
             "gravity_gradient = { rate = 1, eccentricity = 1 }",
-            "6:47: must be at least 0 and below 1 for an orbit that returns, found 1",
+            "6:47: must be at least 0 and below 1, found 1",
         ),
         ("constant_body = 'e1'", "6:17: expected a bivector, found a part of grade 1"),
         ("magnetic = { dipole = [0, 0, 1] }", "6:12: missing field `field` in `magnetic`"),
@@ -152,7 +152,7 @@ fn what_is_wrong_with_a_law_has_its_place() {
 fn the_motion_keeps_its_names() {
     let text =
         format!("[define]\nR = 'e1e2'\n{}", LEAST.replace("[run]", "[torque]\ntorque_body = 'Ω'\n[run]"));
-    assert_eq!(errors(&text), ["8:16: `R` is given by the motion; call your value otherwise"]);
+    assert_eq!(errors(&text), ["8:16: `R` is given by the motion; rename your value"]);
 }
 
 #[test]

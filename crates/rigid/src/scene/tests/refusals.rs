@@ -154,7 +154,7 @@ fn an_attitude_of_zero_is_reported_at_its_value() {
     let message = "4:22: all components are zero, which is not a rotor; give the identity as 1, 0, 0, 0";
     assert_eq!(errors_with("spin", "attitude = { rotor = [0, 0, 0, 0] }\nspin"), [message]);
     let message =
-        "4:22: a bivector of size zero spans no plane, expected one such as `\"e1e2\"` or `[0, 0, 1]`";
+        "4:22: a zero bivector does not define a plane, expected one such as `\"e1e2\"` or `[0, 0, 1]`";
     assert_eq!(errors_with("spin", "attitude = { plane = [0, 0, 0], angle = 1 }\nspin"), [message]);
 }
 
@@ -266,7 +266,7 @@ fn formulas_are_wrong_at_a_place_of_the_file() {
 fn definitions_are_wrong_at_their_place() {
     let table = [
         ("a = 'b'\nb = 1", "2:6: `b` has no value; no names have values here"),
-        ("'a b' = 1", "2:1: what is defined is a name"),
+        ("'a b' = 1", "2:1: expected a name"),
         ("a1 = 1\na_1 = 2", "3:1: `a1` is defined twice"),
         ("'f(x)' = 1", "2:10: expected a string, found an integer"),
         ("'f(x)' = 'x + y'", "2:15: `y` has no value"),

@@ -42,11 +42,11 @@ def test_the_algebra_depends_on_nothing():
     assert "dependencies" not in crate
 
 
-# The folders of the package from the lowest up: each imports only those before it. The public modules of laws belong
-# to mechanics.
+# The folders of the package from the lowest up: each imports only those before it. The public modules of laws
+# belong to mechanics.
 FOLDERS = (
     *("_support", "_generic", "_algebra", "_formula", "_mechanics"),
-    *("jax", "_scene", "_report", "_figures", "_viewer", "_cli"),
+    *("jax", "_scene", "_report", "_viewer", "_figures", "_cli"),
 )
 
 

@@ -139,7 +139,7 @@ def test_surface_of_a_mesh_is_its_file(core, follow):
 def test_surface_of_known_moments_is_a_box(core):
     vertices, faces, found = surface(core, TUMBLING + RUN)
     assert len(vertices) == 8
-    # For a mass of 1 the sides squared are 6 (i2 + i3 - i1) and so forth; the plate is drawn 3% as thick as long.
+    # For a mass of 1 the sides squared are 6 (i2 + i3 - i1) and so on; the plate is 3% as thick as long.
     np.testing.assert_allclose(found["extents"], np.sqrt([24, 12, 24 * 0.03**2]), rtol=1e-12)
     assert sorted(set(found["tints"])) == [2, 3, 4]
     assert len(faces) == 12

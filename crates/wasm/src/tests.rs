@@ -148,3 +148,14 @@ fn the_bodies_of_an_ensemble_are_followed() {
     }
     assert!(opened(FREE).bodies(0.0, 5, &mut || true).unwrap_err().contains("one body"));
 }
+
+#[test]
+fn the_page_gets_the_registry_of_laws() {
+    let laws = crate::laws::laws().to_string();
+    let damping = r#"{"name":"damping","label":"Damping","formula":"-g I(Ω)","arguments":[{"name":"g","field":"","unit":"1/s","shape":"scalar","period":"","optional":false}]}"#;
+    assert!(laws.contains(damping), "{laws}");
+    assert!(
+        laws.contains(r#""name":"n","field":"rate","unit":"rad/s","shape":"scalar","period":"period""#),
+        "{laws}"
+    );
+}

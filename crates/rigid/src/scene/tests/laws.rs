@@ -126,7 +126,7 @@ fn what_is_wrong_with_a_law_has_its_place() {
         ),
         (
             "tabulated = { times = [1, 0], torques = [[0, 0, 1], [0, 0, 1]] }",
-            "6:13: times[1] = 0 does not lie after times[0] = 1; sort them",
+            "6:13: times[1] = 0 is not after times[0] = 1; sort the rows",
         ),
         // Inside a formula the place is that of the part.
         ("torque_body = '-k Ω'", "6:17: `k` has no value"),

@@ -106,7 +106,7 @@ fn times_are_in_equal_ratios_from_a_first_one_on() {
         assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-14);
     }
     for (more, expected) in [
-        ("samples = 2\nfirst = 0.25", "takes 3 samples at least"),
+        ("samples = 2\nfirst = 0.25", "needs at least 3 samples"),
         ("first = 1e9", "must be before the end of the run"),
         ("first = 0", "must be"),
         ("interval = 0.5\nfirst = 0.25", "conflicts with"),

@@ -238,7 +238,7 @@ def test_all_lines_are_evaluated_and_errors_have_places():
 
 MISTAKES = {
     "unknown name": ("a + q", "formula:1:5: error: `q` has no value; names with values: a, b\n"),
-    "a word": ("omega", "formula:1:1: error: `omega` has no value as one name; read as letters"),
+    "a word": ("omega", "formula:1:1: error: `omega` has no value as one name; read as adjacent letters"),
     "unbalanced bracket": ("(a + b", "formula:1:1: error: "),
     "bracket too many": ("a + b)", "formula:1:6: error: `)` closes no bracket"),
     "wrong grade": ("cross(a∧b, b)", "formula:1:7: error: "),
@@ -382,9 +382,9 @@ def test_any_terminal_encoding_gets_an_answer():
 
 
 def test_it_is_quick_to_start():
-    """It loads neither mechanics nor SciPy."""
+    """``eval`` imports neither mechanics nor SciPy."""
     code = (
-        "import sys; from polhode import _cli; _cli.main(['eval', 'e1']); "
+        "import sys; from polhode._cli.main import main; main(['eval', 'e1']); "
         "print([m for m in sys.modules if m.startswith(('scipy', 'polhode._mechanics.simulate', 'rich'))])"
     )
     done = processes.run([sys.executable, "-c", code], check=True)

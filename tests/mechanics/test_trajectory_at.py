@@ -1,5 +1,9 @@
 """`Trajectory.at` between the output times, against motions with outputs there."""
 
+import pickle
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -156,3 +160,11 @@ def test_what_a_law_raises_on_the_way_comes_out():
     armed.append(True)
     with pytest.raises(OwnError):
         motion.at(2.0)
+
+
+def test_an_unpickled_motion_has_its_methods_in_a_new_process():
+    motion = ph.simulate(BODY, START, [0.0, 1.0])
+    read = "import pickle, sys; motion = pickle.load(sys.stdin.buffer); print(motion.view, motion.save)"
+    run = [sys.executable, "-c", read]
+    said = subprocess.run(run, input=pickle.dumps(motion), capture_output=True, check=True).stdout
+    assert b"save" in said

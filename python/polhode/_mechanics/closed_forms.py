@@ -15,14 +15,14 @@ from polhode._mechanics.state import State
 from polhode._support.arrays import Array, as_float, as_floats
 
 if TYPE_CHECKING:
-    from polhode._viewer.widget import Viewer
+    from polhode import _outputs
 
 
 class _Solution(Protocol):
     def at(self, times: Array) -> tuple[Array, Array]: ...
 
 
-class _ClosedForm:
+class ClosedForm:
     """A solution, and what it was made of: inertia, rotor and angular velocity at time 0, torque."""
 
     _solution: _Solution
@@ -38,11 +38,8 @@ class _ClosedForm:
             time=times,
         )
 
-    def view(self, duration: float | None = None) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does, for so many s."""
-        from polhode._viewer.notebook import view
-
-        return view(self, duration=duration)
+    if TYPE_CHECKING:
+        view = _outputs.view_of
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), self._given
@@ -54,7 +51,7 @@ class _ClosedForm:
         return f"{type(self).__name__}({inertia!r}, rotor={rotor}, omega_body={omega_body}, {torque})"
 
 
-class LagrangeTop(_ClosedForm):
+class LagrangeTop(ClosedForm):
     """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
 
     The body is held at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
@@ -108,7 +105,7 @@ class LagrangeTop(_ClosedForm):
         return self._solution.describe()
 
 
-class DampedTop(_ClosedForm):
+class DampedTop(ClosedForm):
     """Any body with the torque ``N = −g L``, exact at any time.
 
     The free body at ``τ = (1 − e^(−gt))/g``, its angular velocity times ``e^(−gt)``; g in 1/s of either sign.
@@ -122,7 +119,7 @@ class DampedTop(_ClosedForm):
         self._given = inertia, start.rotor, start.omega_body, g
 
 
-class LarmorSphere(_ClosedForm):
+class LarmorSphere(ClosedForm):
     """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
 
     ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with

@@ -21,7 +21,7 @@ from polhode._support.arrays import Array, Shape, as_float, as_floats, frozen, h
 from polhode._support.memory import require
 
 if TYPE_CHECKING:
-    from polhode._viewer.widget import Viewer
+    from polhode import _outputs
 
 _STATE = 7 * 8  # bytes
 _DERIVATIVES = 2 * 64 * 8  # bytes, as they are found and as they are told
@@ -205,11 +205,8 @@ class FreeMotion:
             raise ValueError(f"periods is {length}; it must be positive and finite")
         return _bivectors(self._core.herpolhode(_count(n), length), (*self.shape, n))
 
-    def view(self, duration: float | None = None) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does for one body, for so many s."""
-        from polhode._viewer.notebook import view
-
-        return view(self, duration=duration)
+    if TYPE_CHECKING:
+        view = _outputs.view_of
 
     def derivatives(self, t: Any) -> FlowDerivatives:
         """Return how the state at time t changes with the start and the body, exact at any time.

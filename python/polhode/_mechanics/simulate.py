@@ -15,10 +15,10 @@ from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
+from polhode._mechanics.problem import Problem
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
-from polhode._scene.writer import Problem
 from polhode._support.arrays import as_count, as_float, as_floats, output_times
 from polhode.event import Event
 from polhode.force import Force

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,12 +18,9 @@ from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, frozen, hands_out_copies
 
 if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
-
+    from polhode import _outputs
+    from polhode._mechanics.problem import Problem
     from polhode._scene.scene import Scene
-    from polhode._scene.writer import Problem
-    from polhode._viewer.widget import Viewer
 
 
 @hands_out_copies("time", "energy")
@@ -249,115 +244,9 @@ class Trajectory:
         """What is pickled: all but the motion between the output times, and what was asked for."""
         return self.__dict__ | {"_motion": None, "_origin": None}
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return an `xarray.Dataset` with labelled dimensions, units and the conventions.
-
-        Of a batch the dimension `body` counts the bodies in C order; the attribute `batch_shape` tells the
-        shape.
-        """
-        from polhode._report.netcdf import to_xarray
-
-        return to_xarray(self)
-
-    @staticmethod
-    def read(path: str | os.PathLike[str]) -> Trajectory:
-        """Read the motion of one body from a netCDF file that `save` or ``polhode run -o`` wrote.
-
-        All numbers are those that were written, to the last bit; between its times it is no longer known. A
-        ValueError for the file of a batch, which xarray reads, and for one that is not ours; an OSError for
-        one that cannot be read.
-        """
-        from polhode._report.netcdf import read
-
-        return read(path)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a netCDF file, whole or not at all: an older file stays until the new one is complete.
-
-        Raises
-        ------
-        ValueError
-            If the suffix of the path is not ``.nc``.
-        """
-        from polhode._report.netcdf import netcdf
-        from polhode._support.files import form_of, write_atomically
-
-        form_of(path, "a motion")
-        write_atomically({Path(path): netcdf(self)})
-
-    def plot(self, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
-        """Return a matplotlib figure for paper, of one body.
-
-        Parameters
-        ----------
-        kind
-            ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
-            ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
-            what is conserved; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors.
-        view
-            Azimuth and elevation in degrees from which to look at what has depth; None for the usual ones.
-        time
-            Of the scene, in s; None for the last one.
-
-        Raises
-        ------
-        ValueError
-            For a batch, a kind that does not fit the motion, or too few output times.
-        """
-        self._require_one("plot")
-        from polhode._figures.registry import figure
-
-        return figure(self, kind, view, time)
-
-    def film(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        seconds: float = 12.0,
-        fps: float = 25.0,
-        size: tuple[int, int] | None = None,
-        view: Any = None,
-        progress: Callable[[float], object] | None = None,
-    ) -> None:
-        """Write a film of the scene of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
-
-        Parameters
-        ----------
-        seconds, fps
-            How long the film takes for the whole motion, and its pictures in a second.
-        size
-            Width and height in pixels; None for (1280, 720), of a GIF (640, 360).
-        view
-            As for `plot`.
-        progress
-            Called now and then with the fraction done.
-
-        Raises
-        ------
-        ValueError
-            For a batch, another name of file, too few output times, or a film of no pictures.
-        OSError
-            Without ffmpeg, or where the file cannot be written; an older file stays.
-
-        Warns
-        -----
-        UserWarning
-            If the body turns by more than a quarter turn from one picture to the next, so that it seems to
-            turn otherwise; with the speed up to which the film shows the motion as it is.
-        """
-        self._require_one("film")
-        from polhode._figures.film import write
-
-        write(self, Path(path), seconds, fps, size, view, progress)
-
-    def view(self) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does.
-
-        Of one body; a ValueError for a batch.
-        """
-        from polhode._viewer.notebook import view
-
-        return view(self)
+    if TYPE_CHECKING:
+        to_xarray, save, plot, film = _outputs.to_xarray, _outputs.save, _outputs.plot, _outputs.film
+        view, read = _outputs.view_of, staticmethod(_outputs.read)
 
     def __repr__(self) -> str:
         n = len(self.time)

@@ -2,9 +2,10 @@
 //! others.
 
 use super::Ensemble;
-use super::output::{Outputs, Own};
+use super::output::Outputs;
+use crate::run::output::Own;
 use crate::error::SimulateError;
-use crate::exact::closed_form::{ClosedForm, Fall};
+use crate::run::closed_form::{ClosedForm, Fall};
 use crate::laws::force::Force;
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::Method;

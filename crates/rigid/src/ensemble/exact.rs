@@ -1,7 +1,7 @@
 //! Free bodies, whose motion is known at all times.
 
 use super::crew::{Crew, Member, Told};
-use crate::exact::closed_form::{Since, check_kept};
+use crate::run::closed_form::{Since, check_kept};
 use crate::exact::free::FreeMotion;
 use crate::run::certificate::{Certificate, Watch, off_unit};
 use crate::state::checks::check_horizons_from;

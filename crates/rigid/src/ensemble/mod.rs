@@ -26,7 +26,6 @@ use crate::run::{NO_CLOSED_FORM, Options, Problem, Progress, check_start_time};
 use crate::state::center::Center;
 use crate::state::checks::check_moments;
 use crew::Crew;
-pub(crate) use output::Own;
 pub use output::{Outputs, Summary};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};

@@ -9,17 +9,10 @@ pub mod splitting;
 pub(crate) mod step_control;
 
 use crate::body::inertia::equal;
-use crate::error::SimulateError;
-use crate::exact::closed_form::ClosedForm;
-use crate::laws::force::Translation;
 use crate::laws::torque::{Dependence, Torque};
-use crate::state::carried::Carried;
 use crate::state::phase::{Gyrostat, Phase};
-use classical::Classical;
-use midpoint::Midpoint;
-use moser_veselov::MoserVeselov;
-use runge_kutta::{DOP853, RungeKutta, Tableau};
-use splitting::{COMPOSITIONS, RKN6, Sequence, Splitting};
+use runge_kutta::{DOP853, Tableau};
+use splitting::{COMPOSITIONS, RKN6, Sequence};
 
 /// How a motion is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,96 +153,6 @@ fn symmetric(body: &Gyrostat) -> bool {
 
 /// The typical relative rounding of one step: the increments are small, and their sum and the last turn are rounded.
 pub(crate) const ROUNDING_OF_RUNGE_KUTTA: f64 = 0.4 * f64::EPSILON;
-
-/// A method at work on a body and its laws.
-#[derive(Clone, Debug)]
-pub(crate) enum Engine {
-    Splitting(Splitting),
-    Classical(Classical),
-    RungeKutta(RungeKutta),
-    Midpoint(Midpoint),
-    MoserVeselov(MoserVeselov),
-    /// The closed form, looked at in steps.
-    ClosedForm(Box<ClosedForm>),
-}
-
-impl Engine {
-    /// An error if the method is not fit.
-    pub fn new(
-        method: Method,
-        body: Gyrostat,
-        torques: &[Torque],
-        translation: Option<Translation>,
-        start: &Phase,
-    ) -> Result<Engine, SimulateError> {
-        let moving = "leaves the centre of mass to its closed form, which these forces have not; use auto, dop853 or rk4";
-        let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta(_)))
-            .then_some(moving);
-        if let Some(reason) = method.unfit(&body, torques).or(moving) {
-            return Err(SimulateError::Unfit { method: method.name(), reason });
-        }
-        Ok(match method {
-            Method::Splitting(sequence) => {
-                Engine::Splitting(Splitting::new(body, torques.to_vec(), sequence, start))
-            }
-            Method::Classical => Engine::Classical(Classical::new(body, torques.to_vec(), translation)),
-            Method::RungeKutta(tableau) => {
-                Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation, tableau))
-            }
-            Method::Midpoint => Engine::Midpoint(Midpoint::new(body, torques.to_vec(), start)),
-            Method::MoserVeselov => Engine::MoserVeselov(MoserVeselov::new(body, torques.to_vec(), start)),
-        })
-    }
-
-    /// One step of length `h`, and an estimate of its error where the method has one, relative to the angular velocity
-    /// `fastest` in rad/s, else 0.
-    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
-        let mut to = *from;
-        match self {
-            Engine::Splitting(splitting) => splitting.carry(&mut to.phase, &mut to.lost, h)?,
-            Engine::Classical(classical) => to = classical.step(from, h)?,
-            Engine::RungeKutta(runge_kutta) => return runge_kutta.step(from, h, fastest),
-            Engine::ClosedForm(motion) => to = motion.at(from.phase.time + h),
-            Engine::Midpoint(midpoint) => midpoint.step(&mut to.phase, h)?,
-            Engine::MoserVeselov(moser_veselov) => moser_veselov.step(&mut to.phase, h)?,
-        }
-        Ok((to, 0.0))
-    }
-
-    /// The typical rounding of one step, relative to the size of the components.
-    ///
-    /// A turn changes two components of the momentum and all of the rotor, each by a few roundings of ε/√12 of its
-    /// binade; their signs are random, so that a composition of s stages of three turns rounds as a walk of 3 s steps of
-    /// 0.12 ε. The exact free motion of an asymmetric body is rounded by some ulps.
-    pub fn rounding(&self) -> f64 {
-        let turns = match self {
-            Engine::Splitting(splitting) => splitting.turns_per_step(),
-            Engine::RungeKutta(_) => return ROUNDING_OF_RUNGE_KUTTA,
-            Engine::Classical(_) => 4.0,
-            Engine::Midpoint(_) | Engine::MoserVeselov(_) => 3.0,
-            Engine::ClosedForm(_) => 0.0,
-        };
-        0.12 * f64::EPSILON * turns.sqrt()
-    }
-
-    /// Whether steps carry the momentum in space, and not in the body.
-    pub fn is_in_space(&self) -> bool {
-        matches!(self, Engine::RungeKutta(_))
-    }
-
-    /// Evaluations of the torque in a step.
-    pub fn evaluations(&self) -> u64 {
-        match self {
-            Engine::Splitting(splitting) => splitting.evaluations(),
-            Engine::Classical(_) => 4,
-            Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
-            Engine::ClosedForm(_) => 0,
-            // One in each iteration, of which there are about as many.
-            Engine::Midpoint(_) => 5,
-            Engine::MoserVeselov(_) => 2,
-        }
-    }
-}
 
 /// The rate of the fastest turn, in rad/s, a scale for steps: what the momentum and the energy allow, and the swing in
 /// the torque.

@@ -2,27 +2,31 @@
 //! what was conserved.
 
 pub mod certificate;
+pub(crate) mod closed_form;
+pub(crate) mod engine;
 pub(crate) mod limits;
 mod motion;
 pub(crate) mod noise;
 mod options;
+pub(crate) mod output;
 pub(crate) mod refine;
 pub(crate) mod stops;
 pub(crate) mod sweep;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use crate::exact::closed_form::{ClosedForm, Fall, check_kept};
+use closed_form::{ClosedForm, Fall, check_kept};
 use crate::laws::conserved::energy;
 use crate::laws::event::Event;
 use crate::laws::force::{Force, Translation};
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::step_control::Limit;
-use crate::methods::{Engine, Method, fastest_rate};
+use crate::methods::{Method, fastest_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons_from, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
+use engine::Engine;
 use certificate::{Certificate, Watch, off_unit};
 use limits::{Course, samples, span};
 use polhode_ga::{Bivector, Rotor, Vector};

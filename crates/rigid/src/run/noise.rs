@@ -9,7 +9,7 @@
 //! difference = s |Σ_k Φ(t, t_k) ξ_k|,      rounding error = ρ |Σ_k Φ(t, t_k) ξ'_k|,
 //! ```
 //!
-//! where ρ is the relative rounding of one step ([`crate::methods::Engine::rounding`]). The two sums are of one
+//! where ρ is the relative rounding of one step ([`super::engine::Engine::rounding`]). The two sums are of one
 //! distribution, so that `difference ρ/s` estimates the rounding error; over n' steps instead of n it is √(n'/n) times
 //! as large. A component that is zero stays zero, as in rounding: what is exact by symmetry is not called uncertain.
 

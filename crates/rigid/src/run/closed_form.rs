@@ -1,9 +1,9 @@
 //! Motions that are known at any time without steps.
 
-use super::damped::DampedTop;
-use super::free::FreeMotion;
-use super::lagrange::LagrangeTop;
-use super::larmor::LarmorSphere;
+use crate::exact::damped::DampedTop;
+use crate::exact::free::FreeMotion;
+use crate::exact::lagrange::LagrangeTop;
+use crate::exact::larmor::LarmorSphere;
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;

@@ -8,13 +8,13 @@ const TIMED: usize = 32;
 
 /// Equal steps from one time to another.
 #[derive(Clone, Copy)]
-pub(super) struct Stretch {
+pub(super) struct Segment {
     pub from: f64,
     pub to: f64,
     pub count: u64,
 }
 
-impl Stretch {
+impl Segment {
     /// Where a step begins, and the one before it ends. The differences of these rounded times are the steps, so that they
     /// add up to the time.
     #[inline(always)]
@@ -27,18 +27,18 @@ impl Stretch {
     }
 }
 
-/// Some of the steps of a stretch. Apart from what is done between them, so that the compiler has the registers for the
+/// Some of the steps of a segment. Apart from what is done between them, so that the compiler has the registers for the
 /// steps alone.
 pub(super) struct Advance<'a, M, const F: bool> {
     pub method: M,
-    pub stretch: Stretch,
+    pub segment: Segment,
     pub steps: &'a Range<u64>,
 }
 
 /// A method that goes from each of some times to the next.
 pub(super) trait Steps {
     /// `#[inline(always)]`.
-    fn walk(&mut self, times: &[f64]);
+    fn advance_over(&mut self, times: &[f64]);
 }
 
 impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
@@ -51,10 +51,10 @@ impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
             for first in self.steps.clone().step_by(TIMED) {
                 let mut times = [0.0; TIMED + 1];
                 for k in 0..=TIMED {
-                    times[k] = self.stretch.begin(first + k as u64);
+                    times[k] = self.segment.begin(first + k as u64);
                 }
                 let count = TIMED.min((self.steps.end - first) as usize);
-                self.method.walk(&times[..count + 1]);
+                self.method.advance_over(&times[..count + 1]);
             }
         }
     }

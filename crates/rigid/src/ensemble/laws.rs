@@ -3,7 +3,7 @@
 //! Laws of one kind whose parameters add up become one. What all bodies share at a time, as an orbit or a table, is
 //! evaluated once for all, and not again while the time stays.
 
-use crate::laws::forcing::{Exert, Place};
+use crate::laws::forcing::{Forcing, Place};
 use crate::laws::formula::{Formula, Formulas};
 use crate::laws::torque::lanes::{Three, gradient, quadratic, seen, turn_from};
 use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
@@ -15,9 +15,9 @@ use std::array;
 use std::sync::Arc;
 
 /// Free bodies without wheels.
-pub(super) struct Nothing;
+pub(super) struct NoForcing;
 
-impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
+impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     const ACTS: bool = false;
 
     #[inline(always)]
@@ -31,10 +31,10 @@ impl<const W: usize, const F: bool> Exert<W, F> for Nothing {
     }
 }
 
-/// Nothing but weights and damping, without wheels: what stays in registers.
+/// NoForcing but weights and damping, without wheels: what stays in registers.
 pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
 
-impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
@@ -50,13 +50,13 @@ impl<const W: usize, const F: bool> Exert<W, F> for Weight<W, F> {
     }
 }
 
-/// Nothing but the gradient along one orbit and damping, without wheels.
+/// NoForcing but the gradient along one orbit and damping, without wheels.
 pub(super) struct Gradient<const W: usize, const F: bool> {
     moments: Three<W, F>,
     orbits: Orbits<W>,
 }
 
-impl<const W: usize, const F: bool> Exert<W, F> for Gradient<W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     const ACTS: bool = true;
     const WHEELS: bool = false;
 
@@ -72,29 +72,29 @@ impl<const W: usize, const F: bool> Exert<W, F> for Gradient<W, F> {
 }
 
 /// What turns bodies side by side, by how much of it there is.
-pub(super) enum Acting<'t, const W: usize, const F: bool> {
-    Nothing,
+pub(super) enum LaneForcing<'t, const W: usize, const F: bool> {
+    NoForcing,
     Weight(Weight<W, F>),
     Gradient(Gradient<W, F>),
     Laws(Laws<'t, W, F>),
 }
 
-impl<'t, const W: usize, const F: bool> Acting<'t, W, F> {
+impl<'t, const W: usize, const F: bool> LaneForcing<'t, W, F> {
     /// Every body has laws of the same kinds in the same order.
-    pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> Acting<'t, W, F> {
+    pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> LaneForcing<'t, W, F> {
         if torques[0].is_empty() {
-            return Acting::Nothing;
+            return LaneForcing::NoForcing;
         }
         let mut laws = Laws::new(gyrostats, torques);
         let wheels = gyrostats.iter().any(|body| body.wheel != Bivector::default());
         match laws.laws.pop() {
-            Some(Law::Heavy(c)) if laws.laws.is_empty() && !wheels => Acting::Weight(Weight(c)),
+            Some(Law::Heavy(c)) if laws.laws.is_empty() && !wheels => LaneForcing::Weight(Weight(c)),
             Some(Law::GravityGradient(orbits)) if laws.laws.is_empty() && !wheels => {
-                Acting::Gradient(Gradient { moments: laws.moments, orbits })
+                LaneForcing::Gradient(Gradient { moments: laws.moments, orbits })
             }
             last => {
                 laws.laws.extend(last);
-                Acting::Laws(laws)
+                LaneForcing::Laws(laws)
             }
         }
     }
@@ -456,7 +456,7 @@ fn term<const K: usize, const W: usize, const F: bool>(
     fastest(Term::<K, W, F> { law, moments, wheel, at })
 }
 
-impl<const W: usize, const F: bool> Exert<W, F> for Laws<'_, W, F> {
+impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {

@@ -9,10 +9,10 @@
 mod adaptive;
 mod advance;
 mod body_run;
-mod crew;
 mod exact;
 mod fixed;
 mod laws;
+mod member;
 mod output;
 mod scheduler;
 mod steppers;
@@ -25,10 +25,10 @@ use crate::run::limits::span;
 use crate::run::{NO_CLOSED_FORM, Options, Problem, Progress, check_start_time};
 use crate::state::center::Center;
 use crate::state::checks::check_moments;
-use crew::Crew;
 pub use output::{Outputs, Summary};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
+use scheduler::Scheduler;
 
 /// One value for all bodies, or one for each.
 #[derive(Clone, Debug)]
@@ -127,7 +127,7 @@ impl Ensemble {
         let rows = [self.inertias.0.len(), self.masses.0.len()];
         let rows = rows.into_iter().chain(self.laws.iter().map(|law| law.0.len()));
         assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
-        Crew::new(self, times, options, outputs).work(threads, progress)
+        Scheduler::new(self, times, options, outputs).work(threads, progress)
     }
 
     /// What is wrong for all bodies alike.

@@ -1,7 +1,7 @@
 //! Where the points of the motions go.
 
 use super::Failure;
-use crate::run::output::Own;
+use crate::run::output::BodyOutput;
 
 /// Room for the points of all bodies at all times, body by body: rows of four rotor components, of three of the angular
 /// velocity in body axes, of three of the momentum in space, energies, and six of place and velocity, for which there
@@ -25,7 +25,7 @@ pub struct Outputs<'a> {
 pub struct Summary {
     /// For each body the name of its method.
     pub methods: Vec<&'static str>,
-    /// For each body the steps of all its passes, and the evaluations of its torque.
+    /// For each body the steps of all its sweeps, and the evaluations of its torque.
     pub steps: Vec<[u64; 2]>,
     /// For each body its longest step in s.
     pub longest: Vec<f64>,
@@ -44,11 +44,11 @@ pub struct Summary {
 
 impl<'a> Outputs<'a> {
     /// The room of each body, for so many times.
-    pub(crate) fn each(self, times: usize) -> impl Iterator<Item = Own<'a>> + Send {
+    pub(crate) fn each(self, times: usize) -> impl Iterator<Item = BodyOutput<'a>> + Send {
         let mut centers = self.centers.map(|centers| centers.map(|rows| rows.chunks_mut(3 * times)));
         let own = self.rotors.chunks_mut(4 * times).zip(self.omegas.chunks_mut(3 * times));
         let own = own.zip(self.momenta.chunks_mut(3 * times)).zip(self.energies.chunks_mut(times));
-        own.map(move |(((rotors, omegas), momenta), energies)| Own {
+        own.map(move |(((rotors, omegas), momenta), energies)| BodyOutput {
             rotors,
             omegas,
             momenta,

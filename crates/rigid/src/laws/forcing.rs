@@ -21,7 +21,7 @@ pub(crate) struct Place<const W: usize, const F: bool> {
 }
 
 /// What turns bodies side by side, and moves them.
-pub(crate) trait Exert<const W: usize, const F: bool> {
+pub(crate) trait Forcing<const W: usize, const F: bool> {
     /// Whether there are torques at all, a wheel or damping.
     const ACTS: bool;
 
@@ -69,7 +69,7 @@ impl<'a> Alone<'a> {
     }
 }
 
-impl Exert<1, false> for Alone<'_> {
+impl Forcing<1, false> for Alone<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {

@@ -2,7 +2,7 @@
 
 use crate::error::SimulateError;
 
-/// The steps of a pass after which its number of steps is foreseen: these, and every doubling.
+/// The steps of a sweep after which its number of steps is foreseen: these, and every doubling.
 const FIRST_FORECAST: u64 = 20_000;
 
 /// A forecast is believed where it exceeds the limit by this over the steps taken, and by a factor of 2: a body may slow
@@ -18,7 +18,7 @@ const MANY: f64 = 1e5;
 
 /// How long the next of the steps that keep to a tolerance is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stride {
+pub(crate) struct StepController {
     /// In s, if nothing is in its way.
     next: f64,
     /// That of the step under way, in s.
@@ -29,11 +29,11 @@ pub(crate) struct Stride {
     refused: bool,
 }
 
-impl Stride {
+impl StepController {
     /// With a guess of the first step and the longest allowed, in s.
-    pub fn new(first: f64, longest: f64) -> Stride {
+    pub fn new(first: f64, longest: f64) -> StepController {
         let first = first.min(longest);
-        Stride { next: first, cut: first, longest, refused: false }
+        StepController { next: first, cut: first, longest, refused: false }
     }
 
     /// Where a step ends on the way from one time to another.
@@ -69,7 +69,7 @@ impl Stride {
     }
 }
 
-/// How many steps a pass may take.
+/// How many steps a sweep may take.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limit {
     pub steps: f64,
@@ -78,7 +78,7 @@ pub(crate) struct Limit {
 }
 
 impl Limit {
-    /// An error where a pass has taken too many steps, or is foreseen to: after a step of length h that turned the body
+    /// An error where a sweep has taken too many steps, or is foreseen to: after a step of length h that turned the body
     /// by so much, at a fraction of the way.
     pub fn check(
         &self,

@@ -1,11 +1,11 @@
 //! Motions that are known at any time without steps.
 
+use crate::body::inertia::Inertia;
+use crate::error::SimulateError;
 use crate::exact::damped::DampedTop;
 use crate::exact::free::FreeMotion;
 use crate::exact::lagrange::LagrangeTop;
 use crate::exact::larmor::LarmorSphere;
-use crate::body::inertia::Inertia;
-use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
 use crate::methods::runge_kutta::{DOP853, RungeKutta};

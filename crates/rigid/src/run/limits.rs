@@ -9,7 +9,7 @@ use crate::state::phase::{Gyrostat, Phase};
 
 /// What bounds the steps of a run.
 #[derive(Clone, Debug)]
-pub(crate) struct Course {
+pub(crate) struct StepBounds {
     /// Times at which steps end, rising: there the laws are not smooth, or change fast.
     pub breaks: Vec<f64>,
     /// Whether no law changes so fast that sampling it found stops.
@@ -27,10 +27,10 @@ pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
     [times.first().map_or(start, |t| t.min(start)), times.last().map_or(start, |t| t.max(start))]
 }
 
-impl Default for Course {
-    fn default() -> Course {
+impl Default for StepBounds {
+    fn default() -> StepBounds {
         let limit = Limit { steps: MAX_STEPS, reports_stiffness: false };
-        Course { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0 }
+        StepBounds { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0 }
     }
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn samples(
     torques.iter().map(both).collect()
 }
 
-impl Course {
+impl StepBounds {
     /// For laws in principal axes, with their samples.
     pub fn new(
         torques: &[Torque],
@@ -63,7 +63,7 @@ impl Course {
         body: &Gyrostat,
         start: &Phase,
         options: &Options,
-    ) -> Course {
+    ) -> StepBounds {
         let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
         breaks.extend(&options.breaks);
         breaks.extend(samples.iter().flatten().flat_map(|sampled| &sampled.stops));
@@ -75,7 +75,7 @@ impl Course {
         };
         let torque: f64 = torques.iter().enumerate().map(size).sum();
         let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
-        Course {
+        StepBounds {
             breaks,
             is_smooth: samples.iter().flatten().all(|sampled| sampled.stops.is_empty()),
             longest: options.max_step.unwrap_or(f64::INFINITY),

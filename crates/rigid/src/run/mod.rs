@@ -15,7 +15,6 @@ pub(crate) mod sweep;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use closed_form::{ClosedForm, Fall, check_kept};
 use crate::laws::conserved::energy;
 use crate::laws::event::Event;
 use crate::laws::force::{Force, Translation};
@@ -26,14 +25,15 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons_from, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
-use engine::Engine;
 use certificate::{Certificate, Watch, off_unit};
-use limits::{Course, samples, span};
+use closed_form::{ClosedForm, Fall, check_kept};
+use engine::Engine;
+use limits::{StepBounds, samples, span};
 use polhode_ga::{Bivector, Rotor, Vector};
-use refine::{Aim, Convergence, Order, Scales};
-use stops::{aliasing, is_aliased};
+use refine::{Accuracy, Convergence, Scales, SweepPlan};
+use stops::{aliasing_warning, is_aliased};
 pub use sweep::Progress;
-use sweep::{Pace, Pass, Walker, is_finite};
+use sweep::{Integrator, StepRule, Sweep, is_finite};
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
@@ -137,20 +137,20 @@ impl Problem {
         self.check(times, &options)?;
         let start = self.start().phase;
         let samples = samples(&self.torques, &self.body, &start, times, &options)?;
-        let mut course = Course::new(&self.torques, &samples, &self.body, &start, &options);
-        course.limit.reports_stiffness &= self.translation.is_none();
-        let limit = course.limit;
-        match self.run(times, &options, course.clone(), progress) {
+        let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
+        bounds.limit.reports_stiffness &= self.translation.is_none();
+        let limit = bounds.limit;
+        match self.run(times, &options, bounds.clone(), progress) {
             Err(SimulateError::Stiff { steps }) => {
                 // Steps of the implicit rule are cheaper and need not be as short. Where it fails or takes as many, stiff
                 // steps have to do.
                 let implicit = Options { method: Some(Method::Midpoint), ..options.clone() };
-                course.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
-                match self.run(times, &implicit, course.clone(), progress) {
+                bounds.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
+                match self.run(times, &implicit, bounds.clone(), progress) {
                     Err(SimulateError::Interrupted) => Err(SimulateError::Interrupted),
                     Err(_) => {
-                        course.limit = Limit { reports_stiffness: false, ..limit };
-                        self.run(times, &options, course, progress)
+                        bounds.limit = Limit { reports_stiffness: false, ..limit };
+                        self.run(times, &options, bounds, progress)
                     }
                     found => found,
                 }
@@ -164,7 +164,7 @@ impl Problem {
         &self,
         times: &[f64],
         options: &Options,
-        course: Course,
+        bounds: StepBounds,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
@@ -190,25 +190,29 @@ impl Problem {
         let rate = self.rate();
         let longest = times.iter().fold(0.0, |m: f64, t| m.max((t - self.time).abs()));
         let long = |turn: f64| {
-            Pace::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(course.longest))
+            StepRule::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(bounds.longest))
         };
         let events: Vec<Event> =
             options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
-        let (pace, pass, error) = match (&engine, options.step) {
+        let (rule, sweep, error) = match (&engine, options.step) {
             (Engine::ClosedForm(closed), _) if events.is_empty() => {
                 (long(1.0), self.sampled(closed, times)?, neglected)
             }
             (Engine::ClosedForm(_), _) => {
-                let pace = long(1.0);
-                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, neglected)
+                let rule = long(1.0);
+                (
+                    rule,
+                    self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?,
+                    neglected,
+                )
             }
             (_, Some(step)) => {
-                let pace = Pace::equal(step.min(course.longest));
-                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, None)
+                let rule = StepRule::equal(step.min(bounds.longest));
+                (rule, self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?, None)
             }
             (_, None) => {
-                let aim = Aim::new(method.order(), options.rtol);
-                let first = if method.adapts() { aim.tolerance() } else { long(method.first_turn()) };
+                let accuracy = Accuracy::new(method.order(), options.rtol);
+                let first = if method.adapts() { accuracy.tolerance() } else { long(method.first_turn()) };
                 let follow = |from: &Carried, time: f64| {
                     let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
                     fall.iter().for_each(|fall| to.center = fall.at(time));
@@ -218,39 +222,39 @@ impl Problem {
                     body: self.body,
                     rounding: engine.rounding(),
                     in_space: engine.is_in_space(),
-                    is_smooth: course.is_smooth,
+                    is_smooth: bounds.is_smooth,
                 };
-                let mut passes = Convergence::new(first, aim, scales);
+                let mut sweeps = Convergence::new(first, accuracy, scales);
                 let found = loop {
-                    let pass = self.pass(&engine, times, (passes.next(), &course), &events, progress)?;
-                    if let Some(found) = passes.take(pass, &follow)? {
+                    let sweep = self.sweep(&engine, times, (sweeps.next(), &bounds), &events, progress)?;
+                    if let Some(found) = sweeps.take(sweep, &follow)? {
                         break found;
                     }
                 };
-                (found.pace, found.pass, Some(found.error))
+                (found.rule, found.sweep, Some(found.error))
             }
         };
-        if let Some(state) = pass.states.iter().find(|s| !is_finite(s)) {
+        if let Some(state) = sweep.states.iter().find(|s| !is_finite(s)) {
             return Err(SimulateError::Diverged { time: state.phase.time });
         }
         let exact = name == "exact";
         let certificate = Certificate {
             method: name,
-            step: if exact { 0.0 } else { pass.longest },
-            steps: if exact { 0 } else { pass.steps },
-            evaluations: pass.evaluations,
+            step: if exact { 0.0 } else { sweep.longest },
+            steps: if exact { 0 } else { sweep.steps },
+            evaluations: sweep.evaluations,
             error_estimate: error,
-            drifts: pass.drifts,
-            norm_drift: pass.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
+            drifts: sweep.drifts,
+            norm_drift: sweep.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
             warnings: options.step.map_or(Vec::new(), |step| self.aliased(times, step)),
         };
         Ok(Motion {
             problem: self.clone(),
             engine,
-            pace,
-            course,
-            states: pass.states,
-            events: pass.events,
+            rule,
+            bounds,
+            states: sweep.states,
+            events: sweep.events,
             certificate,
         })
     }
@@ -260,7 +264,7 @@ impl Problem {
         let start = self.start().phase;
         let span = span(times, start.time);
         let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, span, step);
-        self.torques.iter().filter(is_aliased).map(|law| aliasing(law, step)).collect()
+        self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step)).collect()
     }
 
     /// The best method of steps.
@@ -268,40 +272,40 @@ impl Problem {
         Method::best(&self.body, &self.torques, self.fall().is_none(), &self.start().phase)
     }
 
-    /// One pass over the times.
-    fn pass(
+    /// One sweep over the times.
+    fn sweep(
         &self,
         engine: &Engine,
         times: &[f64],
-        order: (Order, &Course),
+        order: (SweepPlan, &StepBounds),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Pass, SimulateError> {
-        self.pass_from(self.start(), engine, times, order, events, progress)
+    ) -> Result<Sweep, SimulateError> {
+        self.sweep_from(self.start(), engine, times, order, events, progress)
     }
 
-    fn pass_from(
+    fn sweep_from(
         &self,
         start: Carried,
         engine: &Engine,
         times: &[f64],
-        (Order { pace, number, known_rate, noise }, course): (Order, &Course),
+        (SweepPlan { rule, number, known_rate, noise }, bounds): (SweepPlan, &StepBounds),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Pass, SimulateError> {
+    ) -> Result<Sweep, SimulateError> {
         let watch = Watch::new(self.body, &self.torques, self.start().phase);
         let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
-        let walker = Walker {
+        let integrator = Integrator {
             body: self.body,
             engine,
             watch,
-            pace,
+            rule,
             first,
-            least_rate: course.least_rate.max(known_rate),
+            least_rate: bounds.least_rate.max(known_rate),
             noise,
-            longest: course.longest,
-            limit: course.limit,
-            breaks: &course.breaks,
+            longest: bounds.longest,
+            limit: bounds.limit,
+            breaks: &bounds.breaks,
             events,
             fall: self.fall(),
             origin: self.time,
@@ -309,17 +313,17 @@ impl Problem {
             number,
             progress,
         };
-        walker.pass(start, times)
+        integrator.sweep(start, times)
     }
 
-    /// The closed form at all times, as a pass without steps. An error if it does not keep what the motion conserves.
-    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Pass, SimulateError> {
+    /// The closed form at all times, as a sweep without steps. An error if it does not keep what the motion conserves.
+    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
         let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
         let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
         states.iter().for_each(|state| watch.look(&state.phase));
         let drifts = watch.finish();
         check_kept(&drifts)?;
-        Ok(Pass { states, drifts, ..Pass::default() })
+        Ok(Sweep { states, drifts, ..Sweep::default() })
     }
 
     fn closed_form(&self) -> Option<ClosedForm> {

@@ -1,15 +1,15 @@
 //! A motion that was solved: its states at and between its output times.
 
 use super::certificate::{Certificate, Watch};
-use super::limits::Course;
-use super::refine::Order;
-use super::sweep::Pace;
+use super::engine::Engine;
+use super::limits::StepBounds;
+use super::output::BodyOutput;
+use super::refine::SweepPlan;
+use super::sweep::StepRule;
 use super::{Problem, Progress};
-use super::output::Own;
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
 use crate::laws::event::Happened;
-use super::engine::Engine;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::check_horizons_from;
@@ -20,8 +20,8 @@ use polhode_ga::{Bivector, Rotor};
 pub struct Motion {
     pub(super) problem: Problem,
     pub(super) engine: Engine,
-    pub(super) pace: Pace,
-    pub(super) course: Course,
+    pub(super) rule: StepRule,
+    pub(super) bounds: StepBounds,
     /// In principal axes, at the output times, fewer if an event ended the motion.
     pub(super) states: Vec<Carried>,
     /// The events, in the order in which they were met.
@@ -49,7 +49,7 @@ pub struct States {
 
 impl Motion {
     /// Writes the points at the output times.
-    pub(crate) fn write(&self, own: &mut Own) {
+    pub(crate) fn write(&self, own: &mut BodyOutput) {
         let Problem { frame, body, torques, .. } = &self.problem;
         for (index, state) in self.states.iter().enumerate() {
             own.write(index, (*frame, body, torques), &state.phase, &state.center);
@@ -96,13 +96,13 @@ impl Motion {
         order.sort_by(|&i, &j| times[i].total_cmp(&times[j]));
         let rate = |state: &Carried| self.problem.body.omega(state.phase.momentum).norm();
         let known_rate = self.states.iter().map(rate).fold(0.0, f64::max);
-        let rules = (Order { known_rate, ..Order::only(self.pace) }, &self.course);
+        let rules = (SweepPlan { known_rate, ..SweepPlan::only(self.rule) }, &self.bounds);
         let mut found = vec![self.problem.start(); times.len()];
         for group in order.chunk_by(|&i, &j| self.nearest(times[i]) == self.nearest(times[j])) {
             let from = self.nearest(times[group[0]]).map_or(self.problem.start(), |k| self.states[k]);
             let wanted: Vec<f64> = group.iter().map(|&i| times[i]).collect();
-            let pass = self.problem.pass_from(from, &self.engine, &wanted, rules, &[], progress)?;
-            group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
+            let sweep = self.problem.sweep_from(from, &self.engine, &wanted, rules, &[], progress)?;
+            group.iter().zip(sweep.states).for_each(|(&i, state)| found[i] = state);
         }
         Ok(self.problem.states(&found))
     }

@@ -1,8 +1,8 @@
-//! Rounding along a motion, measured: a pass whose steps are shaken far above rounding.
+//! Rounding along a motion, measured: a sweep whose steps are shaken far above rounding.
 //!
 //! Every step rounds, and the motion magnifies what the steps before it rounded: by a little where it is regular,
 //! exponentially where it is chaotic. Passes with other steps do not reliably show by how much, for they round alike. So
-//! a pass is run once more with the same steps, each of which ends in a point whose components are multiplied by
+//! a sweep is run once more with the same steps, each of which ends in a point whose components are multiplied by
 //! `1 ± s`, signs at random. While the response is linear, with the tangent flow Φ and units ξ_k of random sign,
 //!
 //! ```text
@@ -18,14 +18,14 @@ use crate::state::center::Center;
 use crate::state::phase::Phase;
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// The size of the noise of the first shaken pass: far above rounding, and small enough for a linear response where
+/// The size of the noise of the first shaken sweep: far above rounding, and small enough for a linear response where
 /// the motion magnifies it less than 1e10 times.
 pub(crate) const FIRST_SIZE: f64 = 1e-12;
 
 /// A larger difference is not linear in the noise.
 pub(crate) const LINEAR: f64 = 0.03;
 
-/// How many times the estimate of one shaken pass is taken, for the sum of the rounding may be the larger one.
+/// How many times the estimate of one shaken sweep is taken, for the sum of the rounding may be the larger one.
 const SAFETY: f64 = 3.0;
 
 /// Random relative changes of size s of all components of a point.
@@ -76,7 +76,7 @@ impl Noise {
     }
 }
 
-/// What shaken passes have shown of a motion.
+/// What shaken sweeps have shown of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Magnification {
     /// How many times the difference of two points is the noise of one step, times √n of n steps.

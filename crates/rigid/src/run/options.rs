@@ -18,7 +18,7 @@ pub struct Options {
     pub exact: bool,
     /// The longest step in s.
     pub max_step: Option<f64>,
-    /// How many steps a pass may take; `None` is [`MAX_STEPS`], or a hundred times that where a step is given.
+    /// How many steps a sweep may take; `None` is [`MAX_STEPS`], or a hundred times that where a step is given.
     pub max_steps: Option<f64>,
     /// Times at which steps end, in any order: where the laws are not smooth, or push shortly.
     pub breaks: Vec<f64>,
@@ -26,11 +26,11 @@ pub struct Options {
     pub events: Vec<Event>,
 }
 
-/// The default limit of the steps in a pass: minutes of work.
+/// The default limit of the steps in a sweep: minutes of work.
 pub const MAX_STEPS: f64 = 1e8;
 
 impl Options {
-    /// How many steps a pass may take.
+    /// How many steps a sweep may take.
     pub(crate) fn most_steps(&self) -> f64 {
         self.max_steps.unwrap_or(if self.step.is_some() { 100.0 * MAX_STEPS } else { MAX_STEPS })
     }

@@ -8,7 +8,7 @@ use polhode_ga::Rotor;
 
 /// Room for the points of one body.
 #[derive(Debug)]
-pub(crate) struct Own<'a> {
+pub(crate) struct BodyOutput<'a> {
     pub rotors: &'a mut [f64],
     pub omegas: &'a mut [f64],
     pub momenta: &'a mut [f64],
@@ -16,7 +16,7 @@ pub(crate) struct Own<'a> {
     pub centers: Option<[&'a mut [f64]; 2]>,
 }
 
-impl Own<'_> {
+impl BodyOutput<'_> {
     /// Writes a point in principal axes, `frame` leading from them to the body's.
     pub fn write(
         &mut self,

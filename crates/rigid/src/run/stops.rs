@@ -2,7 +2,7 @@
 //!
 //! A step looks at a law a dozen times. A short push that falls between the looks of a long step would be stepped over,
 //! and the estimate of the error, which comes of the same looks, would not show it. So a law is sampled beforehand, and
-//! an interval in which coarse samples do not foretell the others is halved, and its parts again: around a push the
+//! an interval in which coarse samples do not predict the others is halved, and its parts again: around a push the
 //! steps are as short as the push, elsewhere they are free.
 
 use crate::error::SimulateError;
@@ -71,23 +71,23 @@ pub(crate) fn sampled(
         .enumerate()
         .fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
     let mut found = Vec::new();
-    halve(&values, 0..SAMPLES, DEVIATION * largest, &mut found);
+    bisect(&values, 0..SAMPLES, DEVIATION * largest, &mut found);
     Ok(Sampled { stops: found.into_iter().map(time).collect(), peak: Some(time(peak)) })
 }
 
-/// Halves an interval of samples where the coarse ones do not foretell the others: gives the ends of the halves.
-fn halve(values: &[Bivector], part: std::ops::Range<usize>, allowed: f64, found: &mut Vec<usize>) {
-    if part.len() <= FINEST || is_foretold(&values[part.start..=part.end], allowed) {
+/// Halves an interval of samples where the coarse ones do not predict the others: gives the ends of the halves.
+fn bisect(values: &[Bivector], part: std::ops::Range<usize>, allowed: f64, found: &mut Vec<usize>) {
+    if part.len() <= FINEST || is_predicted(&values[part.start..=part.end], allowed) {
         return;
     }
     let middle = (part.start + part.end) / 2;
-    halve(values, part.start..middle, allowed, found);
+    bisect(values, part.start..middle, allowed, found);
     found.push(middle);
-    halve(values, middle..part.end, allowed, found);
+    bisect(values, middle..part.end, allowed, found);
 }
 
 /// Whether cubics through coarse samples come near the others.
-fn is_foretold(values: &[Bivector], allowed: f64) -> bool {
+fn is_predicted(values: &[Bivector], allowed: f64) -> bool {
     let count = values.len() - 1;
     let stride = count / COARSE.min(count / 2);
     (0..count).all(|k| {
@@ -101,9 +101,9 @@ fn is_foretold(values: &[Bivector], allowed: f64) -> bool {
             -x * (x - 1.0) * (x - 3.0) / 2.0,
             x * (x - 1.0) * (x - 2.0) / 6.0,
         ];
-        let foretold =
+        let predicted =
             nodes.iter().zip(weights).fold(Bivector::default(), |sum, (&j, w)| sum + values[j] * w);
-        (foretold - values[k]).norm() <= allowed
+        (predicted - values[k]).norm() <= allowed
     })
 }
 
@@ -117,7 +117,7 @@ fn is_to_be_sampled(law: &Torque) -> bool {
 }
 
 /// The warning of a law that is aliased.
-pub(crate) fn aliasing(law: &Torque, step: f64) -> String {
+pub(crate) fn aliasing_warning(law: &Torque, step: f64) -> String {
     let what = match law {
         Torque::Formula(formula) => format!("the torque `{}`", formula.text()),
         Torque::Function(_) => "the torque of a function".to_owned(),
@@ -168,7 +168,7 @@ mod tests {
         let value = |k: usize| Bivector([0.0, 0.0, law(k as f64 / SAMPLES as f64)]);
         let values: Vec<Bivector> = (0..=SAMPLES).map(value).collect();
         let mut found = Vec::new();
-        halve(&values, 0..SAMPLES, DEVIATION, &mut found);
+        bisect(&values, 0..SAMPLES, DEVIATION, &mut found);
         found
     }
 

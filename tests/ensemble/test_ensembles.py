@@ -172,7 +172,7 @@ def test_what_cannot_be_told_is_refused():
     with pytest.raises(ValueError, match=r"shape \(3,\) do not broadcast with bodies .* \(2, 2\)"):
         motions.at_each([1.0, 2, 3])
     with pytest.raises(
-        ValueError, match=r"at index \(1, 0, 1\): time 1e\+15 s of body \(0, 1\) lies beyond 1.3e\+12"
+        ValueError, match=r"at index \(1, 0, 1\): time 1e\+15 s of body \(0, 1\) is beyond 1.3e\+12"
     ):
         motions.at_each(np.reshape([1e15, 0, 1e15, 1e15], (2, 1, 2)) * np.reshape([0, 1], (2, 1, 1)))
     # Bodies that turn more slowly are known for longer.

@@ -34,7 +34,7 @@ def top(rng):
 
 
 def wheel_in_a_field(rng):
-    """The motion magnifies rounding up to 1e10 times."""
+    """The motion amplifies rounding up to 1e10 times."""
     return {"wheel": drawn(rng, 2), "larmor": drawn(rng, 2)}, rng.uniform(5, 60)
 
 
@@ -153,7 +153,7 @@ def test_a_wholly_wrong_motion_is_refused():
 def test_chaos_is_refused_or_reported():
     """The default call returned an error of 3e-5 as 7e-11."""
     state, law = ph.State(ONE, [3, 2, -1]), ph.torque.heavy([-0.5, 2, 1.5])
-    with pytest.raises(ValueError, match=r"magnifies rounding"):
+    with pytest.raises(ValueError, match=r"amplifies rounding"):
         ph.simulate(ASYMMETRIC, state, [100.0], law)
     rotors, _ = final_states([Case((1, 2, 2.5), (3, 2, -1), heavy=(-0.5, 2, 1.5))], [100.0])
     found = ph.simulate(ASYMMETRIC, state, [100.0], law, rtol=1e-3)

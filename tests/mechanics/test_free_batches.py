@@ -147,7 +147,7 @@ def test_errors_tell_the_place():
     with pytest.raises(ValueError, match="do not broadcast"):
         ph.FreeMotion(BODIES, R0, np.ones((3, 3)))
     motions = ph.FreeMotion(ASYMMETRIC, R0, [[0, 0, 1], [0, 0, 1e6]])
-    with pytest.raises(ValueError, match=r"at index \(1,\): times\[2\] = 1e15 s lies beyond"):
+    with pytest.raises(ValueError, match=r"at index \(1,\): times\[2\] = 1e15 s is beyond"):
         motions.at([0.0, 1.0, 1e15])
     with pytest.raises(ValueError, match="time inf at index 1"):
         motions.at([0.0, np.inf])

@@ -303,5 +303,5 @@ def test_bad_input_is_refused():
     top = top_of(*KINDS["slow"])
     with pytest.raises(ValueError, match="time NaN at index 1"):
         top.at([0.0, np.nan])
-    with pytest.raises(ValueError, match=r"times\[0\] = .* lies beyond"):
+    with pytest.raises(ValueError, match=r"times\[0\] = .* is beyond"):
         top.at(1e30)

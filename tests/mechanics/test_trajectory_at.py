@@ -124,7 +124,7 @@ def test_it_reaches_the_event_that_ended_the_motion(torque):
 def test_without_outputs_the_start_is_known(torque):
     motion = ph.simulate(ASYMMETRIC, START, [], torque)
     assert motion.at(0.0).rotor.is_close(R0, rtol=8 * EPS)
-    with pytest.raises(ValueError, match=r"times\[0\] = 1 lies outside .* from 0 s to 0 s"):
+    with pytest.raises(ValueError, match=r"times\[0\] = 1 is outside .*, 0 s to 0 s"):
         motion.at(1.0)
 
 

@@ -317,7 +317,7 @@ def test_threads_and_blocks_leave_no_trace(how, monkeypatch):
 def test_blocks_are_checked_at_once():
     with pytest.raises(ValueError, match="simulate"):
         ph.simulate_blocks(ASYMMETRIC, START, T)
-    with pytest.raises(ValueError, match="block is 0"):
+    with pytest.raises(ValueError, match="block must be at least 1, got 0"):
         ph.simulate_blocks(BODIES, STATES, T, block=0)
     with pytest.raises(ValueError, match="method"):
         ph.simulate_blocks(BODIES, STATES, T, method="euler")

@@ -75,7 +75,7 @@ def test_infinite_values_are_told_without_warnings():
 
 def test_what_does_not_fit_is_refused():
     moments = ph.Moments()
-    assert repr(moments) == "Moments(of nothing)"
+    assert repr(moments) == "Moments(empty)"
     with pytest.raises(ValueError, match="add"):
         _ = moments.mean
     with pytest.raises(ValueError, match="axis 0"):

@@ -36,7 +36,7 @@ class Inertia(LinearMap):
 
     @staticmethod
     def from_principal_moments(i1: float, i2: float, i3: float) -> Inertia:
-        """Return the inertia with moments (kg m²) about e1, e2 and e3, i.e. in the planes e2e3, e3e1, e1e2."""
+        """Return the inertia with moments (kg m²) about e1, e2, e3, i.e. in the planes e2e3, e3e1, e1e2."""
         moments = as_components([i1, i2, i3], 3, "moments")
         return Inertia(_native.Inertia.from_principal_moments(moments))
 
@@ -50,12 +50,12 @@ class Inertia(LinearMap):
 
     @staticmethod
     def from_function(f: Callable[[Multivector], Multivector]) -> Inertia:  # type: ignore[override]
-        """Return the inertia of a function on bivectors: ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25)."""
+        """Return the inertia of a function, as ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25)."""
         return Inertia.from_matrix(LinearMap.from_function(f, grade=2).matrix)
 
     @staticmethod
     def from_points(masses: Any, positions: Any) -> Inertia:
-        """Return the inertia of point masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
+        """Return the inertia of masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
         return Inertia(_native.Inertia.from_points(*_points(masses, positions)))
 
     def __call__(self, B: Any) -> Multivector:
@@ -124,9 +124,9 @@ def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
 class Body:
     """A rigid body: mass (kg), centre of mass (m) and inertia about the centre of mass, in body axes.
 
-    ``a + b`` joins two bodies rigidly in the same body axes; place them with `moved` first. Solids are uniform
-    and centred on the origin, with their axis along e3 (a cone has its base in the plane e1e2); give `mass`
-    in kg or `density` in kg/m³.
+    ``a + b`` joins two bodies rigidly in the same body axes; place them with `moved` first. Solids are
+    uniform and centred on the origin, with their axis along e3 (a cone has its base in the plane e1e2); give
+    `mass` in kg or `density` in kg/m³.
     """
 
     __slots__ = ("_core",)

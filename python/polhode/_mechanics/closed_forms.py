@@ -23,7 +23,7 @@ class _Solution(Protocol):
 
 
 class ClosedForm:
-    """Base of the closed forms: the solution, and its inertia, rotor and angular velocity at time 0, and torque."""
+    """A solution with its inertia, rotor and angular velocity at time 0, and parameter of the torque."""
 
     _solution: _Solution
     _given: tuple[Inertia, Rotor, Multivector, Any]
@@ -55,13 +55,13 @@ class LagrangeTop(ClosedForm):
     """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
 
     The body is fixed at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
-    torque of `ph.torque.heavy`. Two principal moments are equal and ``c`` is along the axis of symmetry, which
-    may be any principal axis. Both Cayley–Klein parameters of the rotor are theta functions times uniform
-    phases, reduced in double-double arithmetic: the error stays at rounding level at any time up to t = 1e12,
-    also near the separatrix. The rotor is continuous in time on the double cover.
+    torque of `ph.torque.heavy`. Two principal moments are equal and ``c`` is along the axis of symmetry,
+    which may be any principal axis. Both Cayley–Klein parameters of the rotor are theta functions times
+    uniform phases, reduced in double-double arithmetic: the error stays at rounding level at any time up to t
+    = 1e12, also near the separatrix. The rotor is continuous in time on the double cover.
 
-    Any tilt from the vertical is resolved, down to the smallest float; near the unstable upright, a tilt θ and
-    its rate have a relative error of about ``ln(8/θ)`` roundings. Transverse moments with a relative
+    Any tilt from the vertical is resolved, down to the smallest float; near the unstable upright, a tilt θ
+    and its rate have a relative error of about ``ln(8/θ)`` roundings. Transverse moments with a relative
     difference d <= 1.8e-15 count as equal, and ``c`` may be off the axis by an angle d <= 1.4e-14. This
     neglects an angle of about ``d ω t``, ω the largest rate, which grows as an unstable top falls; `simulate`
     reports it as the error estimate.
@@ -99,8 +99,8 @@ class LagrangeTop(ClosedForm):
         ``tilt_max``, angles of the axis from up in rad; ``nutation_period`` in s; ``precession_rate`` and
         ``spin_rate``, the mean rates of φ about e3 and of ψ about the axis in rad/s, ``precession_period``;
         ``modulus`` of the elliptic functions; ``energy`` in J, ``axial_momentum`` L3 and
-        ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and ``sleeps``, whether
-        a top with this spin is stable upright. A period is None where the motion does not repeat.
+        ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and ``sleeps``,
+        whether a top with this spin is stable upright. A period is None where the motion does not repeat.
         """
         return self._solution.describe()
 
@@ -124,9 +124,9 @@ class LarmorSphere(ClosedForm):
     """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
 
     ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with
-    the angular velocity ω in space at time 0. Both phases are reduced in double-double
-    arithmetic, so the error does not grow with time. Moments with a relative difference d <= 1.8e-15 count
-    as equal; this neglects an angle of about ``d |ω| t``, which `simulate` reports as the error estimate. A ValueError if
+    the angular velocity ω in space at time 0. Both phases are reduced in double-double arithmetic, so the
+    error does not grow with time. Moments with a relative difference d <= 1.8e-15 count as equal; this
+    neglects an angle of about ``d |ω| t``, which `simulate` reports as the error estimate. A ValueError if
     the moments differ by more or a number is not finite.
     """
 

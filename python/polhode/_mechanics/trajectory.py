@@ -1,4 +1,4 @@
-"""What a simulation gives: states at and between its output times, its events and its certificate."""
+"""`Trajectory`: states at and between output times, events and certificate of a simulation."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A motion at n times, or those of a batch of bodies at the same times.
+    """The motion of a body at n times, or the motions of a batch of bodies at the same times.
 
-    Of a batch all values have the shape ``(*shape, n)``, and ``trajectory[i]`` is one motion, or fewer.
+    For a batch all values have the shape ``(*shape, n)``; ``trajectory[i]`` indexes the batch as in NumPy.
 
     Attributes
     ----------
@@ -43,19 +43,19 @@ class Trajectory:
     energy
         Kinetic energy of rotation plus the potential energy of the torques that have one, in J, (n,).
     position, velocity
-        Of the centre of mass (of the fixed point, where there is one), vectors in m and m/s, batch (n,).
+        Of the centre of mass, or of the fixed point if there is one, vectors in m and m/s, batch (n,).
     inertia
-        The inertia that ruled the motion; where bodies have their own an array of them, of the batch's shape.
+        The `Inertia` used; an array of the batch's shape if bodies have their own.
     certificate
-        How the run was made and what it conserved.
+        How the run was computed, and its drift in conserved quantities.
     events
-        For each event that was asked for, when and where it happened.
+        Occurrences of each event.
     failures
-        The bodies of a batch that could not be followed to the end. Their values are NaN from there on, with
-        equal steps side by side, and else all of them, for no pass was confirmed; but for `position` and
-        `velocity` without forces, which are known all the same.
+        The bodies of a batch that failed. With equal steps, their values are NaN from the failure on;
+        otherwise all are NaN, because no pass was confirmed. Without forces, `position` and `velocity` are
+        always given.
     attributes
-        Text and numbers to be written with the data: title, scene, version.
+        Text and numbers saved with the data: title, scene, version.
     """
 
     time: Array
@@ -71,9 +71,9 @@ class Trajectory:
     failures: tuple[Failure, ...] = ()
     attributes: dict[str, Any] = field(default_factory=dict)
     _motion: _native.Motion | None = field(default=None, repr=False)
-    # Of a batch that no force moves: places and velocities are found when they are asked for.
+    # Of a batch without forces: positions and velocities are computed on access.
     _drift: Drift | None = field(default=None, repr=False)
-    # Of one body: what was run, or asked for.
+    # Of one body: the scene or problem that was solved.
     _origin: Scene | Problem | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -126,7 +126,7 @@ class Trajectory:
 
     @property
     def ok(self) -> Any:
-        """Whether a body was followed to the end: a bool, or an array of the batch's shape."""
+        """Whether a body finished: a bool, or an array of the batch's shape."""
         ok = np.ones(self.shape, bool)
         for failure in self.failures:
             ok[failure.index] = False
@@ -134,9 +134,7 @@ class Trajectory:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError(
-                "the trajectory of one body has no length; its times are n = len(trajectory.time)"
-            )
+            raise TypeError("the trajectory of one body has no length; use len(trajectory.time)")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -152,7 +150,7 @@ class Trajectory:
             picked = np.broadcast_to(np.False_, self.shape)[parts].shape
         except IndexError as error:
             raise IndexError(f"{error} (batch shape {self.shape})") from None
-        # The index is to stay off the axis of time.
+        # Keep the index off the axis of time.
         rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
         drift = None if self._drift is None else self._drift[parts]
         center: list[Any] = [None, None] if drift else [self.position[rows], self.velocity[rows]]
@@ -172,7 +170,7 @@ class Trajectory:
         )
 
     def _failures_at(self, index: tuple[Any, ...], shape: Shape) -> tuple[Failure, ...]:
-        """Return the failures among picked bodies, by their places among them."""
+        """Return the failures among the picked bodies, with their new indices."""
         if not self.failures:
             return ()
         which = np.full(self.shape, -1)
@@ -183,26 +181,23 @@ class Trajectory:
         return tuple(replace(self.failures[k], index=tuple(place)) for place, k in places)
 
     def _require_one(self, what: str, *, alone: bool = False) -> None:
-        """Raise a ValueError for a batch; `alone` where one picked from a batch does not serve either."""
+        """Raise a ValueError for a batch; `alone` if a body picked from a batch is not enough either."""
         if self.shape:
             first = ", ".join("0" for _ in self.shape)
             remedy = "simulate that body alone" if alone else f"pick one of them, as in trajectory[{first}]"
-            raise ValueError(f"{what} is for one body, this is a batch of shape {self.shape}; {remedy}")
+            raise ValueError(f"{what} is for one body, got a batch of shape {self.shape}; {remedy}")
 
     def at(self, t: Any) -> State:
-        """Return the state at any time t in s between the first and the last; an array gives a batch.
+        """Return the state at a time t in s within the motion; an array of times gives a batch.
 
-        The first and the last are those of the output times, of the start and of the events. The time of the
-        state is t.
-
-        In closed form where the motion has one, else by the same method and the same steps from the nearest
-        output time before, so that it is as accurate as the states at the output times. A ValueError outside,
-        and for a batch of bodies.
+        The motion extends over the output times, the start and the events. The state is computed in closed
+        form if there is one, else by the same method and steps from the nearest output time before, so it is
+        as accurate as the states at the output times. A ValueError outside, and for a batch of bodies.
         """
         self._require_one("at", alone=True)
         if self._motion is None:
             raise ValueError(
-                "this trajectory was picked from a batch, read or unpickled: it has no states but its own; "
+                "a trajectory picked from a batch, read or unpickled has no states between its times; "
                 "simulate the body alone"
             )
         times = as_floats(t, "time")
@@ -218,12 +213,12 @@ class Trajectory:
 
     @property
     def final(self) -> State:
-        """The state at the last output time, from which `simulate` goes on; of a batch, those of all bodies.
+        """The state at the last output time, from which `simulate` can continue; for a batch, of all bodies.
 
-        A ValueError where there are no output times. An event that ended the motion lies after it.
+        A ValueError without output times. An event that ended the motion is later.
         """
         if not len(self.time):
-            raise ValueError("there is no last state: the motion has no output times")
+            raise ValueError("the motion has no output times, so it has no final state")
         return State(
             Rotor._from_rows(np.ascontiguousarray(self.rotor._data[..., -1, :])),
             bivector(self.omega_body._data[..., -1, :]),
@@ -233,15 +228,15 @@ class Trajectory:
         )
 
     def drifts(self) -> dict[str, Array]:
-        """Return each conserved quantity's change since the start, relative as in the certificate, (n,) each.
+        """Return the change of each conserved quantity since the start, (n,), relative as in the certificate.
 
-        Of one body; a ValueError for a batch.
+        A ValueError for a batch.
         """
         self._require_one("drifts", alone=True)
         return dict(self._motion.drifts()) if self._motion is not None else {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: all but the motion between the output times, and what was asked for."""
+        """Return what is pickled: all but the motion between the output times and its problem."""
         return self.__dict__ | {"_motion": None, "_origin": None}
 
     if TYPE_CHECKING:
@@ -260,27 +255,27 @@ class Trajectory:
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """The uniform motion of centres of mass from their starts: times (*shape), the others (*shape, 3)."""
+    """Uniform motion of centres of mass: start times (*shape), positions and velocities (*shape, 3)."""
 
     start_times: Array
-    places: Array
+    positions: Array
     velocities: Array
 
     def __getitem__(self, index: tuple[Any, ...]) -> Drift:
         rest: tuple[Any, ...] = (slice(None),) if any(part is Ellipsis for part in index) else ()
         return Drift(
             np.asarray(self.start_times[index]),
-            self.places[(*index, *rest)],
+            self.positions[(*index, *rest)],
             self.velocities[(*index, *rest)],
         )
 
     def position(self, times: Array) -> Multivector:
-        """Places at times (n,), vectors of batch (*shape, n)."""
+        """Return the positions at times (n,), vectors of batch (*shape, n)."""
         elapsed = (times - self.start_times[..., np.newaxis])[..., np.newaxis]
-        return vector(self.places[..., np.newaxis, :] + self._rates(times) * elapsed)
+        return vector(self.positions[..., np.newaxis, :] + self._rates(times) * elapsed)
 
     def velocity(self, times: Array) -> Multivector:
-        """The velocities, at each time the same."""
+        """Return the velocities, constant in time."""
         return vector(self._rates(times))
 
     def _rates(self, times: Array) -> Array:
@@ -290,7 +285,7 @@ class Drift:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """The arrays of the core, as values."""
+    """Arrays of the core as values."""
 
     time: Array
     rotor: Rotor

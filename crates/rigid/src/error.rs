@@ -268,10 +268,9 @@ impl fmt::Display for BodyError {
             BodyError::Length { name, value } => {
                 write!(f, "{name} must be positive and finite, got {value:?} m")
             }
-            BodyError::InnerRadius { inner, outer } => write!(
-                f,
-                "inner_radius must be between 0 and outer_radius = {outer:?} m, got {inner:?} m"
-            ),
+            BodyError::InnerRadius { inner, outer } => {
+                write!(f, "inner_radius must be between 0 and outer_radius = {outer:?} m, got {inner:?} m")
+            }
             BodyError::SpindleTorus { major, minor } => write!(
                 f,
                 "a torus with minor_radius = {minor:?} m and major_radius = {major:?} m intersects itself; the major radius must be at least the minor radius"

@@ -324,10 +324,7 @@ fn impossible_bodies_say_why() {
         points(&[1.0], &[origin, origin]),
         "1 masses for 2 positions; give one mass for every position"
     );
-    assert_eq!(
-        points(&[1.0, -2.0], &[origin, origin]),
-        "masses[1] must be finite and >= 0, got -2.0 kg"
-    );
+    assert_eq!(points(&[1.0, -2.0], &[origin, origin]), "masses[1] must be finite and >= 0, got -2.0 kg");
     assert_eq!(
         points(&[1.0, 2.0], &[origin, Vector([0.0, f64::NAN, 1.0])]),
         "positions[1] = (0.0, NaN, 1.0) is not finite; remove the point"

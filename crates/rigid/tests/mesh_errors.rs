@@ -53,8 +53,7 @@ fn files_that_cannot_be_read() {
     assert!(read("empty.ply").ends_with("empty.ply: the file is empty; export the mesh again"));
 
     assert!(
-        read("rock.gltf")
-            .ends_with("unknown extension 'gltf', expected stl, obj or ply; convert the mesh")
+        read("rock.gltf").ends_with("unknown extension 'gltf', expected stl, obj or ply; convert the mesh")
     );
     assert!(read("rock").contains("unknown extension '', expected stl, obj or ply"));
 }
@@ -94,9 +93,7 @@ fn corrupt_obj() {
     for corner in ["a", "1/b", "1/2/3/4", "1.5", "/1", "99999999999999999999"] {
         assert_eq!(
             face(&format!("f 1 2 {corner}")),
-            format!(
-                "rock: line 4: '{corner}' is not a corner of a face, such as 7, 7/1, 7//1 or 7/1/1{end}"
-            )
+            format!("rock: line 4: '{corner}' is not a corner of a face, such as 7, 7/1, 7//1 or 7/1/1{end}")
         );
     }
     // What is quoted is shortened, and need not be text.
@@ -195,7 +192,9 @@ fn corrupt_and_truncated_stl() {
     solid[80] = 2;
     assert_eq!(
         stl(&solid),
-        format!("rock: byte 80: wrong number of triangles: 2 triangles need 184 bytes, but there are 234{correct}")
+        format!(
+            "rock: byte 80: wrong number of triangles: 2 triangles need 184 bytes, but there are 234{correct}"
+        )
     );
     let stands = |line: usize, found: &str, wanted: &str| {
         format!("rock: line {line}: expected {wanted}, got '{found}'{correct}")

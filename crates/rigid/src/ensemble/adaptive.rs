@@ -1,8 +1,8 @@
-//! Bodies side by side, each by steps of its own that keep to its tolerance.
+//! Adaptive integration of bodies in SIMD lanes, each with its own steps.
 //!
-//! In every round each body attempts a step of its own length and takes it or not, by the rules of a single body: its
-//! sweeps, its stops at output times and where its laws are not smooth. A body that is done gives its lane to the next
-//! one, so that a hard one does not hold up the others. The last few go on in fewer lanes, to the same bits.
+//! In every round each body attempts a step of its own length and accepts or rejects it, by the rules for a single body:
+//! its sweeps, and stops at output times and where its laws are not smooth. A body that is done gives its lane to the
+//! next one, so that a slow one does not hold up the others. The last few continue in fewer lanes, with the same bits.
 
 use super::body_run::BodyRun;
 use super::laws::{Laws, NoForcing};
@@ -19,33 +19,33 @@ use crate::state::phase::Gyrostat;
 use polhode_ga::simd::lanes::{Lanes, Work};
 use std::{array, mem};
 
-/// So many lanes hold the last bodies: one register of the widest machines.
+/// Lanes for the last bodies: one register of the widest machines.
 const LAST: usize = 8;
 
-/// Rounds between looks at whether to go on.
+/// Rounds between calls of `progress`.
 const BETWEEN_LOOKS: u32 = 256;
 
-/// All bodies that no one has taken yet.
+/// Integration of all bodies not yet assigned to a thread.
 pub(super) struct AdaptedSteps<'a, 'b> {
     pub scheduler: &'b Scheduler<'a>,
     pub progress: &'b mut dyn FnMut(Progress) -> bool,
 }
 
-/// A body on its way that has no lane.
+/// A body without a lane, between two batches.
 struct WaitingRun<'a> {
     run: BodyRun<'a>,
     torques: Vec<Torque>,
     at: Carried,
-    /// The largest angular velocity on the way, rad/s.
+    /// The largest angular velocity so far, rad/s.
     fastest: f64,
 }
 
-/// Bodies in lanes and how far they are.
+/// Bodies in lanes, with their current points.
 struct LaneBatch<'a, const W: usize, const F: bool> {
     runs: [Option<BodyRun<'a>>; W],
     bodies: Bodies<W, F>,
     at: Points<W, F>,
-    /// The largest angular velocities on the way, and rates below which they do not count, in rad/s.
+    /// The largest angular velocities so far, and their lower bounds as scales, in rad/s.
     fastest: Lanes<W, F>,
     least: Lanes<W, F>,
 }
@@ -61,7 +61,7 @@ impl Work for AdaptedSteps<'_, '_> {
     }
 }
 
-/// Follows bodies, those that stand first, until no more than so many are left, which stand then.
+/// Integrates bodies, the waiting ones first, until at most `enough` are left, which are returned.
 #[inline(always)]
 fn follow<'a, const W: usize, const F: bool>(
     scheduler: &Scheduler<'a>,
@@ -96,7 +96,7 @@ fn follow<'a, const W: usize, const F: bool>(
         let go_on = if scheduler.ensemble.laws.is_empty() {
             batch.rounds(scheduler, &torques, &mut NoForcing, progress)
         } else {
-            // An empty lane has laws of the same kinds.
+            // An empty lane uses laws of the same kinds.
             let taken = batch.runs.iter().position(Option::is_some).unwrap_or(0);
             let of = |l: usize| if torques[l].is_empty() { taken } else { l };
             let laws = &mut Laws::new(gyrostats, array::from_fn(|l| &torques[of(l)][..]));
@@ -118,7 +118,7 @@ impl<'a> WaitingRun<'a> {
 }
 
 impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
-    /// Puts a body into an empty lane, unless it is done at once. Gives its laws.
+    /// Puts a body into an empty lane, unless it is done at once. Returns its laws.
     fn load(&mut self, l: usize, body: WaitingRun<'a>, scheduler: &Scheduler<'a>) -> Vec<Torque> {
         let WaitingRun { run, torques, at, fastest } = body;
         let gyrostat = run.member.gyrostat;
@@ -140,7 +140,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
         all
     }
 
-    /// Goes on with the body of a lane from where it stopped. Empties the lane where it is done.
+    /// Continues with the body of a lane at a stop. Empties the lane if the body is done.
     fn proceed(&mut self, l: usize, torques: &[Torque], scheduler: &Scheduler<'a>) {
         let Some(run) = &mut self.runs[l] else { return };
         let mut at = self.at.get(l);
@@ -155,7 +155,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
         }
     }
 
-    /// Rounds until a lane is empty that was not. Whether to go on.
+    /// Repeats rounds until another lane is empty. False if the run was stopped.
     #[inline(always)]
     fn rounds<E: Forcing<W, F>>(
         &mut self,
@@ -205,7 +205,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
         self.runs.iter().filter(|run| run.is_some()).count()
     }
 
-    /// The lengths of the next steps and where they end; empty lanes stay where they are.
+    /// The lengths of the next steps and the times at which they end; empty lanes do not move.
     fn plan(&mut self, scheduler: &Scheduler<'a>) -> (Lanes<W, F>, Lanes<W, F>) {
         let (mut h, mut ends) = (Lanes::ZERO, self.at.time);
         for l in 0..W {
@@ -219,7 +219,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
         (h, ends)
     }
 
-    /// Which steps may stand.
+    /// Which steps are accepted.
     fn judge(
         &mut self,
         scheduler: &Scheduler<'a>,

@@ -1,4 +1,4 @@
-//! A body on its way through its sweeps, by the rules of a single one.
+//! BodyRun: the sweeps of one body in a lane, by the rules for a single body.
 
 use super::member::{METHOD, Member, Outcome};
 use super::scheduler::Scheduler;
@@ -16,10 +16,10 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use std::mem;
 
-/// A body in a lane, on its way through its sweeps.
+/// A body in a lane, with the state of its sweeps.
 pub(super) struct BodyRun<'a> {
     pub member: Member<'a>,
-    /// Times at which steps end, rising: there its laws are not smooth, or change fast.
+    /// Ascending times at which steps end: its laws are not smooth there, or change fast.
     breaks: Vec<f64>,
     /// The longest step, in s.
     longest: f64,
@@ -27,22 +27,22 @@ pub(super) struct BodyRun<'a> {
     /// A guess of the first step of a sweep, in s.
     first: f64,
     sweeps: Convergence,
-    /// The one under way, with its points in the order of the walk.
+    /// The current sweep, with its points in the order of integration.
     pub sweep: Sweep,
-    /// What shakes its points.
+    /// Noise added to its points.
     pub noise: Option<Noise>,
-    /// Where all of them begin.
+    /// The start of all sweeps.
     begin: Carried,
-    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    /// Lower bound of the scale of angular velocities, in rad/s.
     least_rate: f64,
-    /// The largest one that the sweep before met.
+    /// The largest angular velocity in the previous sweep.
     known_rate: f64,
     pub controller: StepController,
-    /// The largest estimate of the error of a step that may stand.
+    /// The largest error estimate of an accepted step.
     pub tolerance: f64,
-    /// Where to stop next.
+    /// The next stop.
     pub stop: f64,
-    /// Parts of the way that were counted.
+    /// Parts of the run counted as done.
     so_far: u64,
 }
 
@@ -73,7 +73,7 @@ impl<'a> BodyRun<'a> {
         }
     }
 
-    /// Begins the next sweep: where it starts.
+    /// Begins the next sweep and returns its start.
     pub fn begin_sweep(&mut self) -> Carried {
         let SweepPlan { rule, known_rate, noise, .. } = self.sweeps.next();
         self.known_rate = known_rate;
@@ -84,13 +84,13 @@ impl<'a> BodyRun<'a> {
         self.begin
     }
 
-    /// The size of the angular velocity, and no less than what counts, in rad/s.
+    /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
     pub fn rate(&self, at: &Carried) -> f64 {
         self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate).max(self.known_rate)
     }
 
-    /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and
-    /// in the next sweep too. The last sweep, once it is good enough.
+    /// Records the points at output times and sets the next stop, also on the other side of the start and in the next
+    /// sweep. Returns the last sweep once it is accurate enough.
     pub fn proceed(
         &mut self,
         at: &mut Carried,
@@ -124,7 +124,7 @@ impl<'a> BodyRun<'a> {
         }
     }
 
-    /// Counts a step that may stand.
+    /// Counts an accepted step.
     pub fn arrive<const W: usize, const F: bool>(
         &mut self,
         h: f64,
@@ -142,21 +142,20 @@ impl<'a> BodyRun<'a> {
         self.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
     }
 
-    /// Why a step has no error: it is too long, or a law has no torque on the way, which the step of a single body
-    /// tells.
+    /// Why a step has no error estimate: it is too long, or a law cannot be evaluated, as a step of a single body shows.
     #[cold]
     pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
         let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
         alone.step(at, h, self.rate(at)).map(|_| ())
     }
 
-    /// Counts the way gone in a sweep.
+    /// Updates the progress.
     pub fn count(&mut self, time: f64, scheduler: &Scheduler<'a>) {
         let fraction = self.fraction(time, scheduler);
         scheduler.count(&mut self.so_far, fraction, 1);
     }
 
-    /// The fraction of a sweep that is done at a time.
+    /// The fraction of a sweep done at a time.
     fn fraction(&self, time: f64, scheduler: &Scheduler<'a>) -> f64 {
         let start = self.begin.phase.time;
         let [first, last] = span(scheduler.times, start);
@@ -164,7 +163,7 @@ impl<'a> BodyRun<'a> {
         (if self.stop < start { start - time } else { time - first }) / total
     }
 
-    /// Writes and tells what was found.
+    /// Writes the points and records the outcome.
     pub fn done(mut self, found: Converged, torques: &[Torque], scheduler: &Scheduler<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
         let mut watch = Watch::new(gyrostat, torques, start);
@@ -190,7 +189,7 @@ impl<'a> BodyRun<'a> {
 
     pub fn failed(mut self, error: SimulateError, scheduler: &Scheduler<'a>) {
         if let SimulateError::Stiff { .. } = error {
-            // As a single body it is followed by another method.
+            // A single body is integrated by another method then.
             return scheduler.run_single(self.member.body, self.member.own, &mut |_| true);
         }
         scheduler.count(&mut self.so_far, 1.0, 1);

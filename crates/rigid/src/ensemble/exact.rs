@@ -1,4 +1,4 @@
-//! Free bodies, whose motion is known at all times.
+//! Free bodies of an ensemble, in closed form.
 
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
@@ -12,7 +12,7 @@ use polhode_ga::{Bivector, Rotor};
 use std::borrow::Cow;
 
 impl<'a> Scheduler<'a> {
-    /// Writes the motion of a free body, the times side by side in lanes; its momentum and energy are those of the start.
+    /// Writes the motion of a free body, with the times in lanes; its momentum and energy are those of the start.
     pub fn free(&self, mut member: Member<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);

@@ -1,4 +1,4 @@
-//! Equal steps of bodies side by side.
+//! Fixed-step integration of bodies in SIMD lanes.
 
 use super::advance::Segment;
 use super::laws::{LaneForcing, Laws};
@@ -23,10 +23,10 @@ use crate::state::phase::Phase;
 use polhode_ga::simd::lanes::Work;
 use std::array;
 
-/// Steps between looks at whether all is finite, and whether to go on.
+/// Steps between checks for finite states and calls of `progress`.
 const BETWEEN_LOOKS: u64 = 1024;
 
-/// At most [`SIDE_BY_SIDE`] bodies to be stepped over all times.
+/// Integration of at most [`SIDE_BY_SIDE`] bodies over all times.
 pub(super) struct FixedSteps<'a, 'b> {
     pub scheduler: &'b Scheduler<'a>,
     pub plan: Plan,
@@ -76,7 +76,7 @@ impl FixedSteps<'_, '_> {
         let sides: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..early).rev(), &mut (early..times.len())];
         for (side, indices) in sides.into_iter().enumerate() {
             let mut state = stepper.start(&members);
-            // A body that failed on one side of the start is followed on the other.
+            // A body that failed on one side of the start is integrated on the other.
             let mut lost = [false; SIDE_BY_SIDE];
             let mut time = start;
             for index in indices {
@@ -98,8 +98,8 @@ impl FixedSteps<'_, '_> {
                             }
                         }
                         let gone = segment.begin(last);
-                        let walked = if side == 0 { start - gone } else { gone - begin };
-                        scheduler.count(&mut so_far, walked / total, members.len());
+                        let passed = if side == 0 { start - gone } else { gone - begin };
+                        scheduler.count(&mut so_far, passed / total, members.len());
                         if !scheduler.report(progress) {
                             return;
                         }
@@ -121,14 +121,14 @@ impl FixedSteps<'_, '_> {
             }
         }
         scheduler.count(&mut so_far, 1.0, members.len());
-        // Laws are of one kind for all bodies: the first ones show it.
+        // Laws are of the same kinds for all bodies: the first body stands for all.
         let first = &members[0];
         let is_aliased = |law: &&Torque| is_aliased(law, &first.gyrostat, &first.start, [begin, end], step);
         let aliased = torques[0].iter().filter(is_aliased);
         let mut warnings: Vec<String> = aliased.map(|law| aliasing_warning(law, step)).collect();
         let failures = failures.into_iter();
-        let told = members.iter().zip(watches).zip(failures).zip(norm_drifts);
-        scheduler.record(told.map(|(((member, watch), failure), norm_drift)| Outcome {
+        let outcomes = members.iter().zip(watches).zip(failures).zip(norm_drifts);
+        scheduler.record(outcomes.map(|(((member, watch), failure), norm_drift)| Outcome {
             body: member.body,
             certificate: Certificate {
                 method: method.name(),
@@ -145,15 +145,15 @@ impl FixedSteps<'_, '_> {
     }
 }
 
-/// Where the laws are not smooth, rising; all bodies share such laws.
-fn breaks(torques: &[Vec<Torque>], asked: &[f64]) -> Vec<f64> {
+/// Ascending times at which the laws are not smooth; all bodies share such laws.
+fn breaks(torques: &[Vec<Torque>], extra: &[f64]) -> Vec<f64> {
     let laws = torques[0].iter().flat_map(|law| law.breaks());
-    let mut breaks: Vec<f64> = laws.chain(asked).copied().collect();
+    let mut breaks: Vec<f64> = laws.chain(extra).copied().collect();
     breaks.sort_by(f64::total_cmp);
     breaks
 }
 
-/// The ways to a time, parted where a law is not smooth.
+/// The segments up to a time, split where a law is not smooth.
 fn segments(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Segment> {
     if from == to {
         return Vec::new();
@@ -175,7 +175,7 @@ fn segments(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Segment> {
     ends.into_iter().map(part).filter(|segment| segment.from != segment.to).collect()
 }
 
-/// When and why the steps from a point lead to nothing: steps them once more, alone.
+/// When and why steps from a point fail: repeats them for the body alone.
 #[cold]
 fn diagnose(
     method: Method,

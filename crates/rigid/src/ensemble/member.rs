@@ -11,13 +11,13 @@ use crate::run::output::BodyOutput;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
 
-/// Bodies side by side: two registers of the widest machines, so that each waits for the other's results.
+/// Bodies in lanes: two registers of the widest machines, to hide latency.
 pub(super) const SIDE_BY_SIDE: usize = 16;
 
-/// The method that the bodies are stepped by.
+/// The method of adaptive steps.
 pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
 
-/// A body that is stepped in lanes, in principal axes.
+/// A body integrated in lanes, in principal axes.
 #[derive(Debug)]
 pub(super) struct Member<'a> {
     pub body: usize,
@@ -28,29 +28,29 @@ pub(super) struct Member<'a> {
     /// At the start, rad/s.
     pub omega: Bivector,
     pub start: Phase,
-    /// What bounds its own steps.
+    /// Bounds of its steps.
     pub bounds: StepBounds,
     pub own: BodyOutput<'a>,
 }
 
-/// How a body is followed without a step.
+/// How a body is solved without a given step.
 pub(super) enum Strategy {
     /// In the lanes.
     Lanes,
-    /// It is free: known at all times.
+    /// In closed form, for a free body.
     Free,
-    /// As a single one.
+    /// As a single body.
     Alone,
 }
 
-/// What is told of a body.
+/// The outcome of a body.
 pub(super) struct Outcome {
     pub body: usize,
     pub certificate: Certificate,
     pub failure: Option<(f64, SimulateError)>,
 }
 
-/// How bodies are stepped side by side.
+/// How bodies are integrated in lanes by equal steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plan {
     /// In s.
@@ -58,7 +58,7 @@ pub(super) struct Plan {
     /// In s.
     pub step: f64,
     pub method: Method,
-    /// About which axes a splitting turns them.
+    /// The axes of rotation of a splitting.
     pub kind: Option<Kind>,
 }
 

@@ -1,11 +1,11 @@
-//! Where the points of the motions go.
+//! Output arrays and summary of an ensemble.
 
 use super::Failure;
 use crate::run::output::BodyOutput;
 
-/// Room for the points of all bodies at all times, body by body: rows of four rotor components, of three of the angular
-/// velocity in body axes, of three of the momentum in space, energies, and six of place and velocity, for which there
-/// may be none.
+/// Arrays for the points of all bodies at all times, body by body: rows of four rotor components, of three of the angular
+/// velocity in body axes, of three of the momentum in space, energies, and six of place and velocity, which are
+/// optional.
 #[derive(Debug)]
 pub struct Outputs<'a> {
     /// Body axes to space.
@@ -20,7 +20,7 @@ pub struct Outputs<'a> {
     pub centers: Option<[&'a mut [f64]; 2]>,
 }
 
-/// What is told of an ensemble besides its points.
+/// Results of an ensemble besides its points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// For each body the name of its method.
@@ -36,14 +36,14 @@ pub struct Summary {
     /// For each conserved quantity its name, and for each body its value at the start and its largest relative change;
     /// NaN for a body that does not conserve it.
     pub drifts: Vec<(&'static str, Vec<[f64; 2]>)>,
-    /// By rising numbers of bodies.
+    /// By ascending body number.
     pub failures: Vec<Failure>,
     /// Each once: see [`crate::run::certificate::Certificate::warnings`].
     pub warnings: Vec<String>,
 }
 
 impl<'a> Outputs<'a> {
-    /// The room of each body, for so many times.
+    /// The arrays of each body, for a number of times.
     pub(crate) fn each(self, times: usize) -> impl Iterator<Item = BodyOutput<'a>> + Send {
         let mut centers = self.centers.map(|centers| centers.map(|rows| rows.chunks_mut(3 * times)));
         let own = self.rotors.chunks_mut(4 * times).zip(self.omegas.chunks_mut(3 * times));

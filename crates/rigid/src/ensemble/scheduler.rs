@@ -29,18 +29,18 @@ use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Parts of a body's way, for the count of what is done.
+/// Parts into which the progress of a body is divided.
 const PARTS: f64 = 1024.0;
 
-/// How often a thread that has no more work tells how far the others are.
+/// Interval at which an idle thread reports the progress of the others.
 const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
 
-/// How many groups of bodies that are stepped alike wait for more at a time.
+/// Maximum number of incomplete groups of bodies with the same plan.
 const MOST_WAITING: usize = 64;
 
 type Queue<'a> = Enumerate<Box<dyn Iterator<Item = BodyOutput<'a>> + Send + 'a>>;
 
-/// All that threads share.
+/// State shared by the threads.
 pub(super) struct Scheduler<'a> {
     pub ensemble: &'a Ensemble,
     pub times: &'a [f64],
@@ -50,12 +50,12 @@ pub(super) struct Scheduler<'a> {
     pub(super) stopped: AtomicBool,
     /// In parts of bodies.
     done: AtomicU64,
-    /// How many threads are at work; told where one ends.
+    /// Number of running threads; `ended` is notified when one ends.
     pub(super) running: Mutex<usize>,
     pub(super) ended: Condvar,
-    /// The laws in principal axes, where all bodies share them and an inertia.
+    /// The laws in principal axes, if all bodies share them and an inertia.
     shared: Option<Vec<Torque>>,
-    /// Those along time, where all bodies start at one time too.
+    /// Their samples in time, if all bodies also start at one time.
     samples: Option<OnceLock<Samples>>,
 }
 
@@ -91,12 +91,12 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// A body that nobody has taken yet, with the room for its points.
+    /// The next unassigned body, with its output arrays.
     pub fn next_body(&self) -> Option<(usize, BodyOutput<'a>)> {
         if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() }
     }
 
-    /// The next body for steps of its own in the lanes. Those before it that are not for them are followed at once.
+    /// The next body for adaptive steps in lanes. Bodies before it that lanes do not support are solved at once.
     pub fn next_member(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
         let method = self.options.method.unwrap_or(METHOD);
         let adapts = method == METHOD && self.ensemble.in_lanes(false);
@@ -121,7 +121,7 @@ impl<'a> Scheduler<'a> {
         None
     }
 
-    /// How a body is stepped by equal steps in lanes, if it is.
+    /// The plan of a body for equal steps in lanes, if they are supported.
     pub fn plan(&self, body: usize, step: f64) -> Option<Plan> {
         if !self.ensemble.in_lanes(true) {
             return None;
@@ -145,12 +145,12 @@ impl<'a> Scheduler<'a> {
         Some(Plan { start: self.ensemble.starts[body].time, step, method, kind })
     }
 
-    /// How a body is followed without a step.
+    /// How a body is solved without a given step.
     fn strategy(&self, member: &Member) -> Strategy {
         let Member { gyrostat, torques, start, omega, .. } = member;
         let chosen = self.options.method.is_some() && !self.options.exact;
         if check_body(gyrostat, *omega, torques).is_err() {
-            // What is wrong is told as for a single body.
+            // The error is reported as for a single body.
             Strategy::Alone
         } else if chosen {
             Strategy::Lanes
@@ -200,7 +200,7 @@ impl<'a> Scheduler<'a> {
         StepBounds::new(torques, samples, gyrostat, start, self.options)
     }
 
-    /// Follows a body alone.
+    /// Solves a body alone.
     pub fn run_single(
         &self,
         body: usize,
@@ -224,7 +224,7 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// Tells that a body could not be followed by a method; nothing is known of it.
+    /// Records that a body failed with a method, and writes NaN as its points.
     pub fn fail(&self, body: usize, own: &mut BodyOutput<'a>, method: &'static str, error: SimulateError) {
         (0..self.times.len()).for_each(|index| own.unknown(index));
         let time = error.time().unwrap_or(self.ensemble.starts[body].time);
@@ -232,7 +232,7 @@ impl<'a> Scheduler<'a> {
         self.record([Outcome { body, certificate, failure: Some((time, error)) }]);
     }
 
-    /// Where the centre of mass of a body that only constant forces move is at a time.
+    /// The centre of mass at a time, under constant forces.
     pub fn center(&self, body: usize, time: f64) -> Center {
         let (start, mass) = (&self.ensemble.starts[body], *self.ensemble.masses.of(body));
         let force = self.ensemble.forces.iter().fold(Vector::default(), |sum, force| match force {
@@ -243,18 +243,18 @@ impl<'a> Scheduler<'a> {
         Fall { time: start.time, start: start.center, acceleration }.at(time)
     }
 
-    pub fn record(&self, told: impl IntoIterator<Item = Outcome>) {
-        lock(&self.outcomes).extend(told);
+    pub fn record(&self, outcomes: impl IntoIterator<Item = Outcome>) {
+        lock(&self.outcomes).extend(outcomes);
     }
 
-    /// Counts so many bodies as done to this fraction; `so_far` are the parts that were counted of each before.
+    /// Counts a number of bodies as done to this fraction; `so_far` holds the parts of each counted before.
     pub fn count(&self, so_far: &mut u64, fraction: f64, bodies: usize) {
         let parts = (fraction * PARTS) as u64;
         self.done.fetch_add(parts.saturating_sub(*so_far) * bodies as u64, Ordering::Relaxed);
         *so_far = parts.max(*so_far);
     }
 
-    /// Tells how much is done; whether to go on.
+    /// Calls `progress`. False if the run is to stop.
     pub fn report(&self, progress: &mut dyn FnMut(Progress) -> bool) -> bool {
         let whole = PARTS * self.ensemble.starts.len() as f64;
         let fraction = (self.done.load(Ordering::Relaxed) as f64 / whole).min(1.0);
@@ -266,7 +266,7 @@ impl<'a> Scheduler<'a> {
 }
 
 impl Scheduler<'_> {
-    /// Does all the work.
+    /// Solves all bodies.
     pub fn work(
         &self,
         threads: Threads,
@@ -276,7 +276,7 @@ impl Scheduler<'_> {
         thread::scope(|scope| {
             for _ in 1..count {
                 *lock(&self.running) += 1;
-                // Where no more threads are to be had, those that are there do all the work.
+                // If no more threads can be created, the existing ones do all the work.
                 if thread::Builder::new().spawn_scoped(scope, || self.work_loop(&mut |_| true)).is_err() {
                     *lock(&self.running) -= 1;
                 }
@@ -291,7 +291,7 @@ impl Scheduler<'_> {
         Ok(summary(std::mem::take(&mut *lock(&self.outcomes))))
     }
 
-    /// Takes bodies and follows them, until there are no more.
+    /// Solves bodies until none is left.
     fn work_loop(&self, progress: &mut dyn FnMut(Progress) -> bool) {
         match self.options.step {
             Some(step) => self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), progress),
@@ -301,7 +301,7 @@ impl Scheduler<'_> {
         self.ended.notify_all();
     }
 
-    /// Waits for the other threads, and tells how far they are.
+    /// Waits for the other threads and reports their progress.
     fn wait(&self, progress: &mut dyn FnMut(Progress) -> bool) {
         let mut running = lock(&self.running);
         while *running > 0 {
@@ -313,9 +313,9 @@ impl Scheduler<'_> {
         }
     }
 
-    /// Follows bodies by equal steps.
+    /// Integrates bodies by equal steps.
     fn equal_steps(&self, step: f64, progress: &mut dyn FnMut(Progress) -> bool) {
-        // Bodies wait for others that are stepped alike.
+        // Bodies wait for others with the same plan.
         let mut waiting: Vec<(Plan, Vec<Member>)> = Vec::new();
         while let Some((body, own)) = self.next_body() {
             let Some(plan) = self.plan(body, step) else {
@@ -342,12 +342,12 @@ impl Scheduler<'_> {
     }
 }
 
-/// What was told, by bodies.
-fn summary(mut told: Vec<Outcome>) -> Summary {
-    told.sort_by_key(|told| told.body);
-    let count = told.len();
+/// Collects the outcomes by body.
+fn summary(mut outcomes: Vec<Outcome>) -> Summary {
+    outcomes.sort_by_key(|outcome| outcome.body);
+    let count = outcomes.len();
     let mut all = Summary::default();
-    for (row, Outcome { body, certificate, failure }) in told.into_iter().enumerate() {
+    for (row, Outcome { body, certificate, failure }) in outcomes.into_iter().enumerate() {
         all.methods.push(certificate.method);
         all.steps.push([certificate.steps, certificate.evaluations]);
         all.longest.push(certificate.step);

@@ -1,4 +1,4 @@
-//! Methods of equal steps over bodies side by side.
+//! Fixed-step methods for bodies in SIMD lanes.
 
 use super::advance::{Advance, Segment, Steps};
 use super::laws::{LaneForcing, Laws, NoForcing};
@@ -12,18 +12,18 @@ use polhode_ga::{Bivector, Rotor};
 use std::array;
 use std::ops::Range;
 
-/// A method at work.
+/// A fixed-step method.
 pub(super) trait Stepper<const F: bool> {
-    /// What is carried from step to step.
+    /// The state between steps.
     type State: Copy;
 
-    /// The bodies at their starts; lanes without a body hold the first one's.
+    /// The states at the start; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
     /// Some of the steps of a segment.
     fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>);
 
-    /// Where the body of a lane is.
+    /// The point of the body of a lane.
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase;
 }
 

@@ -13,7 +13,7 @@ use crate::methods::{Method, ROUNDING_OF_RUNGE_KUTTA};
 use crate::state::carried::Carried;
 use crate::state::phase::{Gyrostat, Phase};
 
-/// A method at work on a body and its laws.
+/// A method with its body and laws, or a closed form.
 #[derive(Clone, Debug)]
 pub(crate) enum Engine {
     Splitting(Splitting),
@@ -21,12 +21,12 @@ pub(crate) enum Engine {
     RungeKutta(RungeKutta),
     Midpoint(Midpoint),
     MoserVeselov(MoserVeselov),
-    /// The closed form, looked at in steps.
+    /// The closed form, evaluated in steps.
     ClosedForm(Box<ClosedForm>),
 }
 
 impl Engine {
-    /// An error if the method is not fit.
+    /// An error if the method does not support the laws.
     pub fn new(
         method: Method,
         body: Gyrostat,
@@ -34,7 +34,7 @@ impl Engine {
         translation: Option<Translation>,
         start: &Phase,
     ) -> Result<Engine, SimulateError> {
-        let moving = "leaves the centre of mass to its closed form, which these forces have not; use auto, dop853 or rk4";
+        let moving = "supports constant forces only; use auto, dop853 or rk4";
         let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta(_)))
             .then_some(moving);
         if let Some(reason) = method.unfit(&body, torques).or(moving) {
@@ -96,7 +96,7 @@ impl Engine {
             Engine::Classical(_) => 4,
             Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
             Engine::ClosedForm(_) => 0,
-            // One in each iteration, of which there are about as many.
+            // About one per iteration.
             Engine::Midpoint(_) => 5,
             Engine::MoserVeselov(_) => 2,
         }

@@ -1,4 +1,4 @@
-//! What bounds the steps of a run: where they end, how long they are, how many there may be.
+//! StepBounds: where steps end, their largest length and number.
 
 use super::stops::{Sampled, sampled};
 use super::{MAX_STEPS, Options};
@@ -7,18 +7,18 @@ use crate::laws::torque::Torque;
 use crate::methods::step_control::Limit;
 use crate::state::phase::{Gyrostat, Phase};
 
-/// What bounds the steps of a run.
+/// Bounds of the steps of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct StepBounds {
-    /// Times at which steps end, rising: there the laws are not smooth, or change fast.
+    /// Ascending times at which steps end: the laws are not smooth there, or change fast.
     pub breaks: Vec<f64>,
-    /// Whether no law changes so fast that sampling it found stops.
+    /// Whether sampling the laws found no stops.
     pub is_smooth: bool,
     /// The longest step, in s.
     pub longest: f64,
     pub limit: Limit,
-    /// The rate in rad/s at which the torques make the largest moment swing: angular velocities count as no smaller, for
-    /// an error of the attitude makes one of the rate that is as large times this.
+    /// The rate in rad/s of the swing of the largest moment under the torques, a lower bound of the scale of angular
+    /// velocities: an error of the attitude causes an error of the rate that is larger by this factor.
     pub least_rate: f64,
 }
 
@@ -34,10 +34,10 @@ impl Default for StepBounds {
     }
 }
 
-/// Laws along time, on both sides of the start.
+/// Samples of laws in time, on both sides of the start.
 pub(crate) type Samples = Vec<[Sampled; 2]>;
 
-/// Laws along these output times, where a tolerance rules the steps; steps of one's own are left as they are.
+/// Samples the laws over the output times, if a tolerance determines the steps; given steps need no samples.
 pub(crate) fn samples(
     torques: &[Torque],
     body: &Gyrostat,

@@ -1,5 +1,4 @@
-//! Motion at given times: exact where there is a closed form, else by steps to a tolerance, with a certificate of
-//! what was conserved.
+//! Simulation of one body: in closed form if there is one, else by integration, with a certificate.
 
 pub mod certificate;
 pub(crate) mod closed_form;
@@ -38,7 +37,7 @@ use sweep::{Integrator, StepRule, Sweep, is_finite};
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
 
-/// What to solve: a body and its state at the start, time 0 unless another is given. Kept in principal axes.
+/// A body with its start, time 0 unless another is given, torques and forces. Stored in principal axes.
 #[derive(Clone, Debug)]
 pub struct Problem {
     frame: Rotor,
@@ -49,16 +48,15 @@ pub struct Problem {
     omega: Bivector,
     torques: Vec<Torque>,
     center: Center,
-    /// NaN where nobody said it.
+    /// NaN where unknown.
     mass: f64,
     translation: Option<Translation>,
 }
 
-pub(crate) const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
-                              their axis, damping alone, spheres under larmor, and constant forces; leave the method \
-                              out for others";
+pub(crate) const NO_CLOSED_FORM: &str = "needs a motion in closed form and no step: free bodies, symmetric ones under heavy along their \
+                              axis, damping alone, spheres under larmor, and constant forces; omit the method for others";
 
-/// The start must have a time.
+/// The start time must be finite.
 pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
     if value.is_finite() {
         Ok(())
@@ -67,7 +65,7 @@ pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
     }
 }
 
-/// A body, its angular velocity and what turns it must be usable.
+/// A body, its angular velocity and its torques must be valid.
 pub(crate) fn check_body(body: &Gyrostat, omega: Bivector, torques: &[Torque]) -> Result<(), SimulateError> {
     check_moments(body.moments)?;
     if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
@@ -106,15 +104,14 @@ impl Problem {
         }
     }
 
-    /// The same from another start time, in s. Laws that depend on time, output times and events count from time 0
-    /// all the same.
+    /// The same with another start time, in s. Laws that depend on time, output times and events still count from time 0.
     pub fn starting_at(mut self, time: f64) -> Problem {
         self.time = time;
         self
     }
 
-    /// The same with the centre of mass at a place in space, and forces, with body components in body axes, on a mass
-    /// in kg, which is NaN where nobody knows it.
+    /// The same with a centre of mass in space, and forces, with body components in body axes, on a mass in kg, NaN if
+    /// unknown.
     pub fn with_center(mut self, center: Center, mass: f64, forces: &[Force]) -> Problem {
         let forces: Vec<Force> = forces.iter().map(|f| f.clone().in_axes(self.frame)).collect();
         self.center = center;
@@ -125,9 +122,8 @@ impl Problem {
 
     /// The motion at `times` (s, not decreasing); those before the start are reached backwards.
     ///
-    /// Exact where there is a closed form, if nothing else is asked for. With no fixed step, runs with ever shorter steps
-    /// until two of them agree within the tolerance in the rotor (of size 1) and in the angular velocity relative to its
-    /// largest size.
+    /// In closed form by default if there is one. Without a fixed step, steps are refined until two sweeps agree within the
+    /// tolerance in the rotor (of norm 1) and in the angular velocity relative to its maximum.
     pub fn simulate(
         &self,
         times: &[f64],
@@ -142,8 +138,7 @@ impl Problem {
         let limit = bounds.limit;
         match self.run(times, &options, bounds.clone(), progress) {
             Err(SimulateError::Stiff { steps }) => {
-                // Steps of the implicit rule are cheaper and need not be as short. Where it fails or takes as many, stiff
-                // steps have to do.
+                // Implicit steps are cheaper and may be longer. If they fail or need as many steps, explicit steps are used.
                 let implicit = Options { method: Some(Method::Midpoint), ..options.clone() };
                 bounds.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
                 match self.run(times, &implicit, bounds.clone(), progress) {
@@ -259,7 +254,7 @@ impl Problem {
         })
     }
 
-    /// Which laws change too fast for fixed steps.
+    /// Warnings for laws that change too fast for fixed steps.
     fn aliased(&self, times: &[f64], step: f64) -> Vec<String> {
         let start = self.start().phase;
         let span = span(times, start.time);
@@ -267,7 +262,7 @@ impl Problem {
         self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step)).collect()
     }
 
-    /// The best method of steps.
+    /// The best stepping method.
     pub(crate) fn best(&self) -> Method {
         Method::best(&self.body, &self.torques, self.fall().is_none(), &self.start().phase)
     }
@@ -316,7 +311,7 @@ impl Problem {
         integrator.sweep(start, times)
     }
 
-    /// The closed form at all times, as a sweep without steps. An error if it does not keep what the motion conserves.
+    /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
     fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
         let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
         let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
@@ -330,7 +325,7 @@ impl Problem {
         ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.fall()?)
     }
 
-    /// The rate of the fastest turn and of the fastest change of way, in 1/s: a scale for steps.
+    /// The largest rate of rotation and of translation, in 1/s: a scale for steps.
     fn rate(&self) -> f64 {
         let translation = self.translation.as_ref().map_or(0.0, |t| t.rate(&self.center));
         fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)

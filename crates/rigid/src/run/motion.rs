@@ -1,4 +1,4 @@
-//! A motion that was solved: its states at and between its output times.
+//! Motion: the solution of a problem, at and between its output times.
 
 use super::certificate::{Certificate, Watch};
 use super::engine::Engine;
@@ -15,7 +15,7 @@ use crate::state::center::Center;
 use crate::state::checks::check_horizons_from;
 use polhode_ga::{Bivector, Rotor};
 
-/// A motion at its output times, which may be asked for any other between them.
+/// A solved motion, which can be evaluated at and between its output times.
 #[derive(Clone, Debug)]
 pub struct Motion {
     pub(super) problem: Problem,
@@ -24,9 +24,9 @@ pub struct Motion {
     pub(super) bounds: StepBounds,
     /// In principal axes, at the output times, fewer if an event ended the motion.
     pub(super) states: Vec<Carried>,
-    /// The events, in the order in which they were met.
+    /// The events, in the order of integration.
     pub events: Vec<Happened>,
-    /// What was conserved.
+    /// Drift of conserved quantities and other data of the run.
     pub certificate: Certificate,
 }
 
@@ -81,7 +81,7 @@ impl Motion {
         times: &[f64],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<States, SimulateError> {
-        // A motion that an event ends is known up to there.
+        // A motion ended by an event extends to the event.
         let known = self.states.iter().chain(self.events.iter().map(|happened| &happened.at));
         let (first, last) = known.fold((self.problem.time, self.problem.time), |(a, b): (f64, f64), s| {
             (a.min(s.phase.time), b.max(s.phase.time))
@@ -107,7 +107,7 @@ impl Motion {
         Ok(self.problem.states(&found))
     }
 
-    /// How far from the start, in s, an exact motion is known backwards and forwards; none for one that was stepped.
+    /// How far from the start, in s, a motion in closed form is known backwards and forwards; none for others.
     pub fn horizons(&self) -> Option<[f64; 2]> {
         match &self.engine {
             Engine::ClosedForm(closed) => Some(closed.horizons()),
@@ -115,7 +115,7 @@ impl Motion {
         }
     }
 
-    /// An exact motion at any times within its horizons; none for one that was stepped.
+    /// A motion in closed form at any times within its horizons; none for others.
     pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
         let Engine::ClosedForm(closed) = &self.engine else { return None };
         let known = check_horizons_from(self.problem.time, times, closed.horizons());

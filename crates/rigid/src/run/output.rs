@@ -6,7 +6,7 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Rotor;
 
-/// Room for the points of one body.
+/// Output arrays of one body.
 #[derive(Debug)]
 pub(crate) struct BodyOutput<'a> {
     pub rotors: &'a mut [f64],
@@ -34,7 +34,7 @@ impl BodyOutput<'_> {
         self.place(index, center);
     }
 
-    /// Writes where the centre of mass is.
+    /// Writes the centre of mass.
     pub fn place(&mut self, index: usize, center: &Center) {
         if let Some([places, velocities]) = &mut self.centers {
             places[3 * index..][..3].copy_from_slice(&center.position.0);
@@ -42,7 +42,7 @@ impl BodyOutput<'_> {
         }
     }
 
-    /// Writes that nothing is known.
+    /// Writes NaN.
     pub fn unknown(&mut self, index: usize) {
         self.rotors[4 * index..][..4].fill(f64::NAN);
         self.omegas[3 * index..][..3].fill(f64::NAN);

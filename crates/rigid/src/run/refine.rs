@@ -1,9 +1,9 @@
-//! Passes with ever shorter steps, until two of them agree.
+//! Convergence: sweeps with ever shorter steps until two of them agree.
 //!
 //! The error of a sweep has two parts, and both are measured. *Truncation* falls with the step: with steps h and h/s the
-//! sweeps differ by `e (s^q − 1)`, where `e` is the truncation of the second. *Rounding* does not; what the motion makes
-//! of it is found once by shaken sweeps ([`super::noise`]), as soon as two sweeps are near each other. A motion that
-//! magnifies rounding beyond what is asked is refused then, and not after sweeps that could not succeed.
+//! sweeps differ by `e (s^q − 1)`, where `e` is the truncation of the second. *Rounding* does not; its amplification by
+//! the motion is measured once by sweeps with noise ([`super::noise`]), as soon as two sweeps are close. A motion that
+//! amplifies rounding beyond the tolerance is rejected then, before further sweeps.
 
 use super::noise::{FIRST_SIZE, LINEAR, Magnification, Noise};
 use super::sweep::{StepRule, Sweep};
@@ -11,44 +11,44 @@ use crate::error::SimulateError;
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
 
-/// The relative error aimed at when no tolerance is asked for.
+/// The default relative tolerance.
 pub(crate) const DEFAULT_RTOL: f64 = 1e-10;
 
-/// The largest relative error that is returned when no tolerance is asked for and rounding allows no smaller one: a
-/// motion along a separatrix magnifies it a thousandfold and more. The certificate has the estimate.
-pub(crate) const WORST_UNASKED: f64 = 1e-6;
+/// The largest relative error accepted by default where rounding allows no less: a motion along a separatrix amplifies
+/// it a thousandfold and more. The certificate has the estimate.
+pub(crate) const WORST_BY_DEFAULT: f64 = 1e-6;
 
-/// How many times shorter the steps of the second sweep are.
+/// Refinement factor of the second sweep.
 const SECOND: f64 = 1.6;
 
-/// Passes whose numbers of steps differ by less show nothing of each other's truncation.
+/// Sweeps whose numbers of steps differ by less do not reveal the truncation.
 const COMPARABLE: f64 = 1.1;
 
-/// Two sweeps that differ by less follow the same motion.
+/// Two sweeps that differ by less resolve the same motion.
 const RESOLVED: f64 = 0.05;
 
-/// The part of the method's order by which truncation is taken to fall, until sweeps have shown how it falls; and the
-/// part of the order shown that is relied on.
+/// The fraction of the method's order assumed for truncation until it has been observed, and the fraction of the
+/// observed order that is relied on.
 const ASSUMED: f64 = 0.5;
 const TRUSTED: f64 = 0.75;
 
-/// How many times shorter the steps of the next sweep are at most.
+/// Maximum refinement factor of the next sweep.
 const LEAP: f64 = 6.0;
 
-/// A difference that falls faster than by this multiple of the order is small by chance.
+/// A difference that falls faster than this multiple of the order is small by chance.
 const FASTEST_FALL: f64 = 1.25;
 
-/// An estimate of the error of a step is rounding below this.
+/// Below this, the error estimate of a step is rounding.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
 
-/// Maximum number of sweeps of different steps.
+/// Maximum number of sweeps with different steps.
 const MOST_SWEEPS: u32 = 30;
 
-/// After so many sweeps that differ altogether, shaken sweeps show whether that is rounding.
+/// After this many sweeps without agreement, sweeps with noise show whether rounding is the cause.
 const FEW_SWEEPS: u32 = 5;
 
 impl StepRule {
-    /// Steps that are so many times shorter. A local error goes as the eighth power of the step.
+    /// Steps shorter by a factor. A local error scales as the eighth power of the step.
     fn refined(self, by: f64) -> StepRule {
         match self {
             StepRule::Step(steps) => StepRule::Step(steps.refined(by)),
@@ -59,34 +59,34 @@ impl StepRule {
     }
 }
 
-/// What is to be reached, and how.
+/// The accuracy to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accuracy {
     /// Of the method.
     pub order: i32,
     pub goal: f64,
-    /// The largest error that is returned, where rounding allows no smaller one.
+    /// The largest accepted error, where rounding allows no less.
     pub acceptable: f64,
 }
 
 impl Accuracy {
-    /// The relative error to be reached by a method of this order, where one is asked for.
+    /// The accuracy of a method of this order for a relative tolerance, or by default.
     pub fn new(order: i32, rtol: Option<f64>) -> Accuracy {
-        Accuracy { order, goal: rtol.unwrap_or(DEFAULT_RTOL), acceptable: rtol.unwrap_or(WORST_UNASKED) }
+        Accuracy { order, goal: rtol.unwrap_or(DEFAULT_RTOL), acceptable: rtol.unwrap_or(WORST_BY_DEFAULT) }
     }
 
-    /// The first rule of steps that keep to a tolerance: the errors of all of them add up.
+    /// The first tolerance of adaptive steps, whose errors add up.
     pub fn tolerance(&self) -> StepRule {
         StepRule::Tolerance((0.1 * self.goal).max(1e3 * LEAST_TOLERANCE))
     }
 
-    /// The error to reach where rounding leaves this much: where no tolerance is asked for, no less than twice that.
+    /// The error to reach given this rounding: by default, at least twice the rounding.
     fn reachable(&self, rounding: f64) -> f64 {
         self.goal.max(2.0 * rounding).min(self.acceptable)
     }
 }
 
-/// What of a problem the comparison of sweeps needs.
+/// Data of a problem for the comparison of sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scales {
     pub body: Gyrostat,
@@ -94,8 +94,8 @@ pub(crate) struct Scales {
     pub rounding: f64,
     /// Whether steps carry the momentum in space.
     pub in_space: bool,
-    /// Whether the laws change slowly at the scale of steps. Under others a difference need not fall as the order says,
-    /// and is the error itself.
+    /// Whether the laws change slowly at the scale of steps. Otherwise a difference need not scale with the order and is
+    /// taken as the error itself.
     pub is_smooth: bool,
 }
 
@@ -103,74 +103,73 @@ pub(crate) struct Scales {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweepPlan {
     pub rule: StepRule,
-    /// Passes count from 1.
+    /// Number of the sweep, from 1.
     pub number: u32,
-    /// The largest angular velocity that the sweep before met, in rad/s: errors are relative to it from the start on. A
-    /// body that rests until it is pushed would else have to keep to a tolerance relative to nearly nothing.
+    /// The largest angular velocity of the previous sweep, in rad/s: the scale of errors from the start on. Otherwise a
+    /// body at rest until it is pushed would need a tolerance relative to nearly zero.
     pub known_rate: f64,
     pub noise: Option<Noise>,
 }
 
 impl SweepPlan {
-    /// A run of one sweep.
+    /// The plan of a single sweep.
     pub fn only(rule: StepRule) -> SweepPlan {
         SweepPlan { rule, number: 1, known_rate: 0.0, noise: None }
     }
 }
 
-/// A sweep that is good enough.
+/// The final sweep.
 pub(crate) struct Converged {
     pub rule: StepRule,
     /// With the steps and evaluations of all sweeps.
     pub sweep: Sweep,
-    /// A cautious estimate of its error.
+    /// A conservative estimate of its error.
     pub error: f64,
 }
 
-/// Two sweeps that are compared once shaken sweeps have shown what rounding does.
+/// Two sweeps to be compared once sweeps with noise have measured the rounding.
 struct Pair {
     coarse: Sweep,
-    /// Of the coarse one.
+    /// Of the coarse sweep.
     rule: StepRule,
     known_rate: f64,
     fine: Sweep,
     difference: f64,
-    /// Of the noise under way, its number, and the largest difference that noise of this size made so far.
+    /// Size and number of the current noise, and the largest difference that noise of this size has caused.
     size: f64,
     shaken: u32,
     response: f64,
 }
 
-/// Passes until two agree: gives the rule of the next, and takes its result.
+/// Controls the sweeps until two agree: plans the next and takes its result.
 ///
-/// Of the order q half is taken for granted; once two differences have shown an order, three quarters of that. So is
-/// the next step foretold, and few sweeps are needed.
+/// Half of the order q is assumed at first; once two differences have shown an order, three quarters of it. This predicts
+/// the next step, so that few sweeps are needed.
 ///
-/// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
-/// ratio of their numbers; where that is nearly 1 the sweeps show nothing, and the sum of the estimates of all steps has
-/// to be small.
+/// Adaptive steps are also bounded by the output times, and may hardly change with the tolerance. For them s is the ratio
+/// of the numbers of steps; where it is nearly 1, the sum of the error estimates of all steps must be small instead.
 pub(crate) struct Convergence {
     accuracy: Accuracy,
     scales: Scales,
-    /// Of the next sweep that is not shaken, and its number among those.
+    /// Of the next sweep without noise, and its number among those.
     rule: StepRule,
     number: u32,
     known_rate: f64,
-    /// The sweep before, with its rule and the rate that was known to it.
+    /// The previous sweep, with its step rule and known rate.
     coarse: Option<(Sweep, StepRule, f64)>,
     pair: Option<Pair>,
     magnification: Option<Magnification>,
-    /// The number of the sweep from which on unresolved sweeps are shaken.
+    /// The number of the sweep from which unresolved sweeps are repeated with noise.
     look_at: u32,
     /// Of all sweeps.
     sweeps: u32,
     steps: u64,
     evaluations: u64,
-    /// How many times shorter the steps of the next sweep are.
+    /// Refinement factor of the next sweep.
     by: f64,
-    /// The last difference, and how many times shorter its steps were.
+    /// The last difference and its refinement factor.
     last: Option<(f64, f64)>,
-    /// The least error so far, and whether the sweep before lowered it.
+    /// The least error so far, and whether the previous sweep lowered it.
     previous: f64,
     before: bool,
     /// The error of the last sweep.
@@ -214,9 +213,9 @@ impl Convergence {
         }
     }
 
-    /// Takes the sweep that was run. Gives the last one, once it is good enough.
+    /// Takes the result of a sweep. Returns the final sweep once it is accurate enough.
     ///
-    /// At events, too, sweeps are compared at one time: `follow` leads a point a little way to another time.
+    /// Events of two sweeps are compared at one time: `follow` advances a point to a nearby time.
     pub fn take(&mut self, sweep: Sweep, follow: &dyn Fn(&Carried, f64) -> Carried) -> Taken {
         self.sweeps += 1;
         self.steps += sweep.steps;
@@ -239,7 +238,7 @@ impl Convergence {
         self.compare(difference, &coarse, sweep)
     }
 
-    /// Takes the response to the noise: less noise where it is not linear, a second shaken sweep where rounding matters.
+    /// Takes the response to noise: reduces the noise if it is not linear, repeats it if rounding matters.
     fn shaken(&mut self, mut pair: Pair) -> Taken {
         let Scales { rounding, .. } = self.scales;
         if pair.response > LINEAR && pair.size > rounding {
@@ -249,7 +248,7 @@ impl Convergence {
             return Ok(None);
         }
         let found = Magnification::new(pair.response, pair.size, pair.coarse.steps, rounding);
-        // The sum of one noise may be a hundred times smaller than that of another, but hardly more.
+        // The response to one noise may be a hundred times smaller than to another, but hardly more.
         let matters = 100.0 * found.rounding_error(pair.fine.steps) > self.accuracy.goal;
         if matters && pair.shaken.is_multiple_of(2) {
             pair.shaken += 1;
@@ -264,7 +263,7 @@ impl Convergence {
         self.compare(pair.difference, &pair.coarse, pair.fine)
     }
 
-    /// Compares two sweeps: the finer one, if it is good enough.
+    /// Compares two sweeps. Returns the finer one if it is accurate enough.
     fn compare(&mut self, difference: f64, coarse: &Sweep, fine: Sweep) -> Taken {
         let rounding = self.magnification.map_or(0.0, |known| known.rounding_error(fine.steps));
         let (truncation, shorter) = self.truncation(difference, coarse, &fine);
@@ -273,7 +272,7 @@ impl Convergence {
         if error <= goal && self.magnification.is_some() {
             return Ok(Some(self.converged(fine, error)));
         }
-        // One sweep may be lucky. Passes with long steps may gain nothing yet.
+        // One sweep may agree by chance. Sweeps with long steps may gain nothing yet.
         let gained = error <= 0.5 * self.previous || self.previous >= 1e-2;
         let stuck = !gained && !self.before || self.number > MOST_SWEEPS;
         if stuck || rounding > self.accuracy.acceptable {
@@ -302,14 +301,14 @@ impl Convergence {
         self.refine(fine)
     }
 
-    /// The truncation of the finer of two sweeps, and how many times shorter its steps are, if they are.
+    /// The truncation of the finer of two sweeps, and its refinement factor if its steps are shorter.
     fn truncation(&self, difference: f64, coarse: &Sweep, fine: &Sweep) -> (f64, Option<f64>) {
         let mut shorter = self.by;
         if let StepRule::Tolerance(tolerance) = self.rule {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
             if shorter < COMPARABLE {
                 let sum = fine.errors * self.magnification.map_or(1.0, |known| known.of_sums());
-                // Steps cannot keep to less; there the difference has to do.
+                // Steps cannot meet a smaller tolerance; the difference is used.
                 let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);
             }
@@ -332,7 +331,7 @@ impl Convergence {
         Converged { rule: self.rule, sweep: Sweep { steps, evaluations, ..sweep }, error }
     }
 
-    /// Goes on to shorter steps. Where there are none, the last sweep has to do.
+    /// Continues with shorter steps. If there are none, the last sweep is final.
     fn refine(&mut self, coarse: Sweep) -> Taken {
         let finer = self.rule.refined(self.by);
         if finer == self.rule {
@@ -342,7 +341,7 @@ impl Convergence {
             let (rtol, reached) = (self.accuracy.goal, self.previous);
             return Err(SimulateError::NotConverged { rtol, reached, step: coarse.longest });
         }
-        // Steps that keep to no tolerance may have met a wrong one.
+        // Fixed steps may have met a wrong rate.
         let adapts = matches!(self.rule, StepRule::Tolerance(_));
         let known_rate = if adapts { coarse.largest[0] } else { 0.0 };
         self.coarse = Some((coarse, self.rule, self.known_rate));
@@ -353,8 +352,8 @@ impl Convergence {
     }
 }
 
-/// Largest difference of two sweeps at the output times and at events: in the rotor, and in angular velocity, place and
-/// velocity relative to the largest on the way.
+/// Largest difference of two sweeps at the output times and events: in the rotor, and in angular velocity, position and
+/// velocity relative to their largest magnitudes.
 fn difference(
     scales: &Scales,
     coarse: &Sweep,
@@ -377,7 +376,7 @@ fn difference(
         turn.max(spin).max(place).max(velocity)
     };
     let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
-    // An event that is barely one may be none in the other.
+    // A grazing event may be missing in one of them.
     let same = coarse.events.len() == fine.events.len();
     let events = coarse.events.iter().zip(&fine.events).filter(|(a, b)| same && a.event == b.event);
     let events = events.map(|(a, b)| apart(&follow(&a.at, b.at.phase.time), &b.at));

@@ -1,4 +1,4 @@
-//! One sweep over the output times, by fixed steps or by steps that keep to a tolerance.
+//! Integrator: one sweep over the output times, by fixed or adaptive steps, with events.
 
 use super::certificate::Watch;
 use super::closed_form::Fall;
@@ -14,58 +14,58 @@ use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
 use crate::state::point::Point;
 
-/// The fraction of the work done at some time.
+/// The fraction of the work done at a time.
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 
-/// How far the body, or the way of its centre of mass, may turn in rad between looks for events.
+/// Largest turn of the body, or of the path of its centre of mass, between evaluations of events, in rad.
 const LOOK: f64 = 0.2;
 
-/// An event that comes sooner after the start, relative to the time to the next look, is one at the start.
+/// An event this close to the start, relative to the time to the next evaluation, is at the start.
 const ROUNDING_OF_START: f64 = 1e-12;
 
-/// How often, in steps, a run asks whether to go on.
+/// Steps between calls of `progress`.
 const STEPS_BETWEEN_CALLS: u64 = 256;
 
-/// Where a run stands: which sweep, and the fraction of it done.
+/// Progress of a run: the sweep, and the fraction of it done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Passes count from 1.
+    /// Number of the sweep, from 1.
     pub pass: u32,
     /// From 0 to 1.
     pub fraction: f64,
 }
 
-/// What rules the steps.
+/// How step sizes are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StepRule {
     /// Equal steps of at most this length in s between stops.
     Step(EqualSteps),
-    /// Steps whose estimated error is at most this.
+    /// Steps with an estimated error of at most this.
     Tolerance(f64),
 }
 
-/// Equal steps, and what they were in the first sweep.
+/// Equal steps, with those of the first sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EqualSteps {
     /// The longest, in s.
     pub step: f64,
     /// That of the first sweep.
     first: f64,
-    /// Into how many parts a step between close stops is divided since then.
+    /// Number of parts into which a step between close stops is divided since then.
     parts: f64,
 }
 
-/// A stretch of fewer steps than this in the first sweep is refined by whole parts of them: by fractions it might have as
-/// many steps as before, and sweeps that take the same steps show nothing.
+/// A segment of fewer steps than this in the first sweep is refined by whole divisors: with fractions it might keep its
+/// steps, and sweeps with the same steps do not reveal the error.
 const FEW: f64 = 4.0;
 
 impl EqualSteps {
-    /// Steps that are so many times shorter.
+    /// Steps shorter by a factor.
     pub fn refined(self, by: f64) -> EqualSteps {
         EqualSteps { step: self.step / by, parts: (self.parts * by).ceil(), ..self }
     }
 
-    /// How many steps there are between stops so far apart, in s.
+    /// Number of steps between stops a distance `span` apart, in s.
     fn count(&self, span: f64) -> f64 {
         let first = (span / self.first).ceil().max(1.0);
         if first < FEW { first * self.parts } else { (span / self.step).ceil() }
@@ -79,19 +79,19 @@ impl StepRule {
     }
 }
 
-/// What a sweep found.
+/// The result of one integration over all output times.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sweep {
     pub states: Vec<Carried>,
-    /// The events, in the order in which they were met.
+    /// The events, in the order of integration.
     pub events: Vec<Happened>,
-    /// On how many sides of the start an event ended the motion.
+    /// Number of sides of the start on which an event ended the motion.
     pub ends: u32,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
-    /// The largest angular velocity (rad/s), the least that counts included, distance (m) and velocity (m/s) on the way.
+    /// The largest angular velocity (rad/s), at least its scale, distance (m) and velocity (m/s).
     pub largest: [f64; 3],
-    /// The sum of the estimated errors of all steps, of methods that have estimates.
+    /// The sum of the error estimates of all steps, for methods with estimates.
     pub errors: f64,
     /// The longest step.
     pub longest: f64,
@@ -100,14 +100,14 @@ pub(crate) struct Sweep {
 }
 
 impl Sweep {
-    /// Takes note of the sizes at a point of the motion.
+    /// Updates the largest magnitudes with a point of the motion.
     pub fn meet(&mut self, omega: f64, center: &Center) {
         let sizes = [omega, center.position.norm(), center.velocity.norm()];
         self.largest = [0, 1, 2].map(|k| self.largest[k].max(sizes[k]));
     }
 }
 
-/// A sweep under way.
+/// Integrates one body over one sweep.
 pub(crate) struct Integrator<'a> {
     pub body: Gyrostat,
     pub engine: &'a Engine,
@@ -115,41 +115,41 @@ pub(crate) struct Integrator<'a> {
     pub rule: StepRule,
     /// A guess of the first step, in s.
     pub first: f64,
-    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    /// Lower bound of the scale of angular velocities, in rad/s.
     pub least_rate: f64,
-    /// What shakes the points after each step.
+    /// Noise added to the points after each step.
     pub noise: Option<Noise>,
     /// The longest step, in s.
     pub longest: f64,
     pub limit: Limit,
-    /// Times at which steps end, rising: there the laws are not smooth, or change fast.
+    /// Ascending times at which steps end: the laws are not smooth there, or change fast.
     pub breaks: &'a [f64],
     pub events: &'a [Event],
     /// The motion of the centre of mass, where its acceleration is constant.
     pub fall: Option<Fall>,
     /// The start of the motion, in s.
     pub origin: f64,
-    /// In kg; NaN where nobody said it.
+    /// In kg; NaN where unknown.
     pub mass: f64,
     pub number: u32,
     pub progress: &'a mut dyn FnMut(Progress) -> bool,
 }
 
-/// Where a cursor in one direction of time stands.
+/// The state of integration in one direction of time.
 struct Cursor {
     at: Carried,
     controller: StepController,
     /// The largest angular velocity so far, in rad/s.
     fastest: f64,
-    /// What sweeps zero at events, here.
+    /// The quantities of the events at this point.
     values: Vec<f64>,
     /// Whether an event has ended the motion.
     ended: bool,
 }
 
 impl Integrator<'_> {
-    /// The states at all times, which do not fall. Times on either side of the
-    /// start are walked to from there; those beyond an event that ends the motion are left out.
+    /// The states at all times, which must not decrease. Times on either side of the start are reached from there; those
+    /// beyond an event that ends the motion are left out.
     pub fn sweep(mut self, start: Carried, times: &[f64]) -> Result<Sweep, SimulateError> {
         let origin = start.phase.time;
         let begin = times.first().map_or(origin, |t| t.min(origin));
@@ -211,7 +211,7 @@ impl Integrator<'_> {
         Ok(states)
     }
 
-    /// Walks to a time, stopping wherever a law is not smooth.
+    /// Integrates to a time, with a stop wherever a law is not smooth.
     fn advance_to(
         &mut self,
         cursor: &mut Cursor,
@@ -248,7 +248,7 @@ impl Integrator<'_> {
         for i in 0..count as u64 {
             let last = i + 1 == count as u64;
             let to = if last { time } else { from + span * ((i + 1) as f64 / count) };
-            // The difference of the rounded times, so that the steps add up to the time.
+            // Differences of rounded times add up to the time.
             let (next, _) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
             self.arrive(cursor, next, sweep, done)?;
             if cursor.ended {
@@ -298,7 +298,7 @@ impl Integrator<'_> {
         Ok((next, error))
     }
 
-    /// Takes a step, up to an event that ends the motion.
+    /// Completes an accepted step, up to an event that ends the motion.
     fn arrive(
         &mut self,
         cursor: &mut Cursor,
@@ -330,10 +330,10 @@ impl Integrator<'_> {
         Ok(())
     }
 
-    /// The events between the point of the cursor and the next, and where it ends: there, or at an event.
+    /// Finds the events within a step. Returns its end, or the event that ends the motion.
     ///
-    /// A point within a step is a shorter step from its start. A step may be a good part of a turn long: it is looked at
-    /// in pairs of pieces of less than [`LOOK`] rad, and where three values in a row hint at a dip to zero, there too.
+    /// A point within a step is computed by a shorter step. A step may be a good part of a turn: events are evaluated at
+    /// pairs of pieces of less than [`LOOK`] rad, and at a minimum suggested by three values in a row.
     fn look_for_events(
         &self,
         cursor: &mut Cursor,
@@ -371,11 +371,11 @@ impl Integrator<'_> {
         Ok(next)
     }
 
-    /// How many pairs of pieces a step is looked at in.
+    /// Number of pairs of pieces into which a step is divided for events.
     fn pairs(&self, cursor: &Cursor, next: &Carried) -> u64 {
         let h = next.phase.time - cursor.at.phase.time;
         let turn = self.body.omega(next.phase.momentum).norm().max(cursor.fastest) * h.abs();
-        // By how much the velocity turns, and how far the way leaves the tangent. A parabola shows in three looks.
+        // How far the velocity turns, and the path leaves its tangent. Three values resolve a parabola.
         let (a, b) = (cursor.at.center, next.center);
         let speed = a.velocity.norm().max(b.velocity.norm());
         let bend = if self.fall.is_some() || speed == 0.0 {
@@ -387,7 +387,7 @@ impl Integrator<'_> {
         (turn.max(bend) / (2.0 * LOOK)).ceil().clamp(1.0, 1e4) as u64
     }
 
-    /// Where an event happens between three looks, its times with its values there.
+    /// Finds the zeros of an event between three evaluations, pairs of time and value.
     fn crossings(
         &self,
         event: usize,
@@ -412,7 +412,7 @@ impl Integrator<'_> {
             }
             let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
             let time = root((low, high), (at_low, at_high), least, &mut value)?;
-            // A zero at the start that rounding has moved off it.
+            // Skip a zero at the start that rounding has shifted.
             let since = (time - self.origin).abs();
             let rounding = ROUNDING_OF_START * (high - low).abs() + 4.0 * f64::EPSILON * self.origin.abs();
             if cursor.at.phase.time != self.origin || since > rounding {

@@ -192,10 +192,9 @@ impl fmt::Display for MeshProblem {
         match self {
             MeshProblem::Unreadable(reason) => write!(f, "cannot be read: {reason}; check the path"),
             MeshProblem::Empty => write!(f, "the file is empty; export the mesh again"),
-            MeshProblem::UnknownExtension(extension) => write!(
-                f,
-                "unknown extension '{extension}', expected stl, obj or ply; convert the mesh"
-            ),
+            MeshProblem::UnknownExtension(extension) => {
+                write!(f, "unknown extension '{extension}', expected stl, obj or ply; convert the mesh")
+            }
             MeshProblem::Corrupt { place, what } => {
                 write!(f, "{place}: {what}; correct it or export the mesh again")
             }
@@ -215,10 +214,9 @@ impl fmt::Display for MeshProblem {
                     "vertex {vertex} (counted from 0) at {position} is not finite; correct its coordinates"
                 )
             }
-            MeshProblem::TooMany { count } => write!(
-                f,
-                "{count} vertices or triangles exceed the limit of 4294967295; simplify the mesh"
-            ),
+            MeshProblem::TooMany { count } => {
+                write!(f, "{count} vertices or triangles exceed the limit of 4294967295; simplify the mesh")
+            }
             MeshProblem::NoSuchVertex { triangle, index, vertices } => write!(
                 f,
                 "triangle {triangle} (counted from 0) refers to vertex {index}, but there are {vertices} vertices, counted from 0; correct the index"

@@ -82,8 +82,7 @@ impl File {
         let vertex = parts.next().and_then(integer);
         let others = parts.clone().count() <= 2 && parts.all(|p| p.is_empty() || integer(p).is_some());
         let Some(vertex) = vertex.filter(|_| others) else {
-            let what =
-                format!("{} is not a corner of a face, such as 7, 7/1, 7//1 or 7/1/1", quoted(word));
+            let what = format!("{} is not a corner of a face, such as 7, 7/1, 7//1 or 7/1/1", quoted(word));
             return Err(corrupt(place, what));
         };
         let index = match vertex {

@@ -46,8 +46,7 @@ fn polygon(corners: &[f64], vertices: u64, place: Place) -> Result<Vec<u32>, Mes
         let i = x as u32;
         let exists = f64::from(i) == x && u64::from(i) < vertices;
         exists.then_some(i).ok_or_else(|| {
-            let what =
-                format!("vertex {x:?} does not exist: there are {vertices} vertices, numbered from 0");
+            let what = format!("vertex {x:?} does not exist: there are {vertices} vertices, numbered from 0");
             corrupt(place, what)
         })
     };

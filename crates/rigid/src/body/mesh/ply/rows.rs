@@ -64,10 +64,7 @@ impl<'a> Rows<'a> {
             row.ends.clear();
             let missing = || {
                 let name = String::from_utf8_lossy(&element.name);
-                format!(
-                    "row {index} (counted from 0) of {} of the element '{name}' is missing",
-                    element.rows
-                )
+                format!("row {index} (counted from 0) of {} of the element '{name}' is missing", element.rows)
             };
             let place = self.row(&element.properties, &mut row, missing)?;
             take(&row, place)?;

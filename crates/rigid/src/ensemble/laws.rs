@@ -100,7 +100,7 @@ impl<'t, const W: usize, const F: bool> LaneForcing<'t, W, F> {
     }
 }
 
-/// The laws of bodies side by side, in principal axes.
+/// The laws of bodies in lanes, in principal axes.
 pub(super) struct Laws<'t, const W: usize, const F: bool> {
     gyrostats: [Gyrostat; W],
     moments: Three<W, F>,

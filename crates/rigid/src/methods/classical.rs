@@ -7,7 +7,7 @@
 //! ```
 //!
 //! whose first makes |R| change by a power of the step in every step: it is taken out at the end of each. Nothing but |R|
-//! is conserved by construction. What it has is few operations, so that bodies side by side in lanes stay in registers:
+//! is conserved by construction. What it has is few operations, so that bodies in lanes stay in registers:
 //! a step of a free body is 146 products, sums and products with sums.
 
 use crate::error::SimulateError;
@@ -24,7 +24,7 @@ use std::array;
 /// Rotor and angular velocity in principal axes; with place and velocity of the centre of mass where they are stepped too.
 pub(crate) type State<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 
-/// Bodies side by side, in principal axes.
+/// Bodies in lanes, in principal axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bodies<const W: usize, const F: bool> {
     /// 1/i_k.

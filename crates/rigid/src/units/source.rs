@@ -1,4 +1,4 @@
-//! A formula whose quantities have become numbers in SI units, and where its pieces come from.
+//! Source: a formula with quantities replaced by SI numbers, and the map to its text.
 
 use super::{WithinError, quantities};
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! The turns and kicks of a splitting, over bodies side by side; a single body is lanes of one.
+//! Rotations and kicks of a splitting, for bodies in lanes; a single body is one lane.
 
 use crate::laws::forcing::{Forcing, Place};
 use crate::methods::classical::renormalize;
@@ -181,9 +181,9 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         for k in 0..3 {
             m[k] = m[k].times_plus(missing, m[k]);
         }
-        let wandered = mapped(&matrix(&spin.rotor), m);
+        let drifted = mapped(&matrix(&spin.rotor), m);
         // exp(−½ a∧b/|a||b|) turns the axial vector a into b; of so small a turn the first term is the whole.
-        let [x, y, z] = cross(&fixed.momentum, &wandered);
+        let [x, y, z] = cross(&fixed.momentum, &drifted);
         let turn = [Lanes::all(1.0), x * half, y * half, z * half];
         spin.rotor = composed(&turn, &spin.rotor);
     }

@@ -154,106 +154,42 @@ impl fmt::Display for SimulateError {
 
 impl std::error::Error for SimulateError {}
 
-/// Why a body is invalid.
+/// Why a body is invalid. Moments are numbered from 1, rows and columns too; points from 0.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
 pub enum BodyError {
     /// A mass that is zero, negative or not finite.
     Mass(f64),
     /// A density that is zero, negative or not finite.
     Density(f64),
     /// A length of a solid that is zero, negative or not finite.
-    Length {
-        /// Which length.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    Length { name: &'static str, value: f64 },
     /// A hollow sphere whose inner radius is negative or exceeds the outer.
-    InnerRadius {
-        /// The inner radius.
-        inner: f64,
-        /// The outer radius.
-        outer: f64,
-    },
+    InnerRadius { inner: f64, outer: f64 },
     /// A torus that intersects itself.
-    SpindleTorus {
-        /// Distance of the tube's centre from the axis.
-        major: f64,
-        /// Radius of the tube.
-        minor: f64,
-    },
+    SpindleTorus { major: f64, minor: f64 },
     /// A density for a solid without volume.
-    NoVolume {
-        /// Its name.
-        solid: &'static str,
-    },
+    NoVolume { solid: &'static str },
     /// A number that is NaN or infinite.
-    NotFinite {
-        /// Which number.
-        what: String,
-        /// Its value.
-        value: f64,
-    },
+    NotFinite { what: String, value: f64 },
     /// A principal moment below zero.
-    NegativeMoment {
-        /// Which, from 1.
-        number: usize,
-        /// All three.
-        moments: [f64; 3],
-    },
+    NegativeMoment { number: usize, moments: [f64; 3] },
     /// A principal moment larger than the sum of the other two.
-    ImpossibleMoments {
-        /// Which is too large, from 1.
-        number: usize,
-        /// All three.
-        moments: [f64; 3],
-    },
+    ImpossibleMoments { number: usize, moments: [f64; 3] },
     /// An inertia matrix whose halves differ by more than rounding.
-    NotSymmetric {
-        /// Row of the entry in the upper half, from 1.
-        row: usize,
-        /// Its column, from 1.
-        column: usize,
-        /// The entry.
-        entry: f64,
-        /// The entry that should be equal.
-        mirrored: f64,
-    },
+    NotSymmetric { row: usize, column: usize, entry: f64, mirrored: f64 },
     /// The inverse of an inertia map with a zero moment.
-    Singular {
-        /// Which moment, from 1.
-        number: usize,
-        /// The axis it belongs to.
-        axis: Vector,
-    },
+    Singular { number: usize, axis: Vector },
     /// An extended body whose moments vanish in floating point.
-    TooSmall {
-        /// The largest moment.
-        moment: f64,
-    },
+    TooSmall { moment: f64 },
     /// No points.
     NoPoints,
     /// Different numbers of masses and positions.
-    PointCount {
-        /// How many masses.
-        masses: usize,
-        /// How many positions.
-        positions: usize,
-    },
+    PointCount { masses: usize, positions: usize },
     /// A point mass that is negative or not finite.
-    PointMass {
-        /// Which, from 0.
-        index: usize,
-        /// Its value.
-        mass: f64,
-    },
+    PointMass { index: usize, mass: f64 },
     /// A position that is not finite.
-    PointPosition {
-        /// Which, from 0.
-        index: usize,
-        /// Its value.
-        position: Vector,
-    },
+    PointPosition { index: usize, position: Vector },
 }
 
 impl fmt::Display for BodyError {

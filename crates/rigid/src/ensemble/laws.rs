@@ -176,29 +176,24 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
     /// Combines the same law of each body into one in lanes; a controller is a spring and a damper. Damping and wheels
     /// are stored with the bodies.
     fn new(each: [&'t Torque; W], gyrostats: &[Gyrostat; W]) -> Vec<Law<'t, W, F>> {
-        let three = |of: fn(&Torque) -> Option<[f64; 3]>| rows(&each, of);
+        let axial = || {
+            rows(&each, |law| match law {
+                Torque::Heavy(v) | Torque::Larmor(v) => Some(v.0),
+                Torque::ConstantBody(n) | Torque::ConstantSpace(n) => Some(n.0),
+                _ => None,
+            })
+        };
         let spring = |of: fn(&Torque) -> Option<(Gains, Rotor)>| Law::Spring {
             stiffness: square(rows(&each, |law| Some(of(law)?.0.entries()))),
             rest: rows(&each, |law| Some(of(law)?.1.components())),
         };
         let law = match each[0] {
             Torque::Damping(_) | Torque::Wheel(_) => return Vec::new(),
-            Torque::Heavy(_) => {
-                Law::Heavy(three(|law| if let Torque::Heavy(c) = law { Some(c.0) } else { None }))
-            }
+            Torque::Heavy(_) => Law::Heavy(axial()),
             Torque::GravityGradient(_) => Orbits::new(each).map_or(Law::Other(each), Law::GravityGradient),
-            Torque::ConstantBody(_) => {
-                Law::ConstantBody(three(
-                    |law| if let Torque::ConstantBody(n) = law { Some(n.0) } else { None },
-                ))
-            }
-            Torque::ConstantSpace(_) => {
-                Law::ConstantSpace(three(
-                    |law| {
-                        if let Torque::ConstantSpace(n) = law { Some(n.0) } else { None }
-                    },
-                ))
-            }
+            Torque::ConstantBody(_) => Law::ConstantBody(axial()),
+            Torque::ConstantSpace(_) => Law::ConstantSpace(axial()),
+            Torque::Larmor(_) => Law::Larmor(axial()),
             Torque::QuadraticDamping(_) => Law::QuadraticDamping(
                 rows(&each, |law| if let Torque::QuadraticDamping(k) = law { Some([*k]) } else { None })[0],
             ),
@@ -206,12 +201,12 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                 if let Torque::ViscousDamping(d) = law { Some(d.entries()) } else { None }
             }))),
             Torque::Magnetic { .. } => Law::Magnetic {
-                dipole: three(
-                    |law| if let Torque::Magnetic { dipole, .. } = law { Some(dipole.0) } else { None },
-                ),
-                field: three(
-                    |law| if let Torque::Magnetic { field, .. } = law { Some(field.0) } else { None },
-                ),
+                dipole: rows(&each, |law| {
+                    if let Torque::Magnetic { dipole, .. } = law { Some(dipole.0) } else { None }
+                }),
+                field: rows(&each, |law| {
+                    if let Torque::Magnetic { field, .. } = law { Some(field.0) } else { None }
+                }),
             },
             Torque::TorsionSpring { .. } => spring(|law| match law {
                 Torque::TorsionSpring { stiffness, rest } => Some((Gains::new([*stiffness; 3]), *rest)),
@@ -227,9 +222,6 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                     _ => None,
                 });
                 return vec![pull, Law::ViscousDamping(square(damping))];
-            }
-            Torque::Larmor(_) => {
-                Law::Larmor(three(|law| if let Torque::Larmor(b) = law { Some(b.0) } else { None }))
             }
             Torque::Tabulated(table) => {
                 let same =

@@ -24,6 +24,7 @@ pub enum Place {
 
 /// Errors of a mesh or its file. Triangles and vertices are counted from 0.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
 pub enum MeshProblem {
     /// The file cannot be read, with the reason given by the system.
     Unreadable(String),
@@ -32,103 +33,35 @@ pub enum MeshProblem {
     /// The extension of an unsupported format.
     UnknownExtension(String),
     /// A violation of the format.
-    Corrupt {
-        /// Where.
-        place: Place,
-        /// What was found and what was expected.
-        what: String,
-    },
+    Corrupt { place: Place, what: String },
     /// The file ends too early.
-    Truncated {
-        /// The end.
-        place: Place,
-        /// What is missing.
-        what: String,
-    },
+    Truncated { place: Place, what: String },
     /// No triangles.
     NoTriangles,
     /// A coordinate that is NaN or infinite.
-    NotFinite {
-        /// Which vertex of the file, from 0.
-        vertex: usize,
-        /// Its coordinates.
-        position: Vector,
-        /// Where it is in the file, if it is from one.
-        place: Option<Place>,
-    },
+    NotFinite { vertex: usize, position: Vector, place: Option<Place> },
     /// More vertices or triangles than an index can count.
-    TooMany {
-        /// The larger of their numbers.
-        count: usize,
-    },
+    TooMany { count: usize },
     /// A triangle refers to a vertex that does not exist.
-    NoSuchVertex {
-        /// Which triangle, from 0.
-        triangle: usize,
-        /// The index it has.
-        index: u32,
-        /// How many vertices there are.
-        vertices: usize,
-    },
+    NoSuchVertex { triangle: usize, index: u32, vertices: usize },
     /// A scale factor that is zero, negative or not finite.
     Factor(f64),
     /// An extent for which the integrals exceed the range of floating point.
     Extent(f64),
     /// Triangles with coincident or collinear corners.
-    Degenerate {
-        /// How many.
-        count: usize,
-        /// The first of them.
-        triangle: usize,
-        /// Its corners.
-        corners: [Vector; 3],
-    },
+    Degenerate { count: usize, triangle: usize, corners: [Vector; 3] },
     /// Duplicate triangles, which the integrals would count twice.
-    Repeated {
-        /// How many.
-        count: usize,
-        /// The first of them.
-        triangle: usize,
-        /// The one that it repeats.
-        original: usize,
-    },
+    Repeated { count: usize, triangle: usize, original: usize },
     /// Edges of one triangle only.
-    Open {
-        /// How many.
-        count: usize,
-        /// The first in the order of the triangles.
-        edge: Edge,
-    },
+    Open { count: usize, edge: Edge },
     /// Edges that two triangles traverse in the same direction.
-    Winding {
-        /// How many.
-        count: usize,
-        /// The first in the order of the triangles.
-        edge: Edge,
-        /// The other triangle.
-        other: usize,
-    },
+    Winding { count: usize, edge: Edge, other: usize },
     /// Edges of three or more triangles, traversed unequally often in the two directions.
-    NonManifold {
-        /// How many.
-        count: usize,
-        /// The first in the order of the triangles.
-        edge: Edge,
-        /// Number of triangles that traverse it in its direction.
-        along: usize,
-        /// Number of triangles that traverse it in the opposite direction.
-        against: usize,
-    },
+    NonManifold { count: usize, edge: Edge, along: usize, against: usize },
     /// The enclosed volume is zero to rounding.
-    NoVolume {
-        /// The computed volume.
-        volume: f64,
-    },
+    NoVolume { volume: f64 },
     /// The faces are wound inwards.
-    InsideOut {
-        /// The negative volume.
-        volume: f64,
-    },
+    InsideOut { volume: f64 },
     /// The mass or the moments are invalid.
     Body(BodyError),
 }

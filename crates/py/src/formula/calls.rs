@@ -118,8 +118,9 @@ impl Argument {
             Operand::Number(_) => Ok(Some(Argument::Value(Type::SCALAR, None))),
             Operand::Other => {
                 static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-                let one = value.is_instance(CLASS.import(py, "polhode._algebra.linear_map", "LinearMap")?)?
-                    && value.getattr(intern!(py, "shape"))?.is_empty()?;
+                let one =
+                    value.is_instance(CLASS.import(py, "polhode._algebra.linear_map", "LinearMap")?)?
+                        && value.getattr(intern!(py, "shape"))?.is_empty()?;
                 let grade = || value.getattr(intern!(py, "grade"))?.extract();
                 Ok(if one { Some(Argument::Map(value.clone().unbind(), grade()?)) } else { None })
             }

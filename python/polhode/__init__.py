@@ -87,15 +87,12 @@ _LATER = {
         "_formula.errors": "FormulaError",
         "_formula.formula": "Formula evaluate formula",
         "_mechanics.bodies": "Body Inertia",
-        "_mechanics.closed_forms": "DampedTop LagrangeTop LarmorSphere",
-        "_mechanics.free_motion": "FlowDerivatives FreeMotion SymmetricTop describe_free",
+        "_mechanics.free_motion": "FlowDerivatives describe_free",
         "_mechanics.result": "Certificate Crossings Failure",
-        "_mechanics.simulate": "simulate simulate_blocks",
         "_mechanics.state": "State",
         "_mechanics.statistics": "Moments",
-        "_mechanics.trajectory": "Trajectory",
-        "_scene.scene": "Scene",
-        "_viewer.notebook": "view",
+        "_outputs": "DampedTop FreeMotion LagrangeTop LarmorSphere Scene SymmetricTop Trajectory"
+        " simulate simulate_blocks view",
     }.items()
     for name in names.split()
 }

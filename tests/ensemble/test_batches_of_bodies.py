@@ -1,4 +1,4 @@
-"""Many bodies at once: each as alone, one that fails told, blocks and threads without a trace in the bits."""
+"""Ensembles: bodies as alone, failures, and results independent of blocks and threads."""
 
 import pickle
 import re
@@ -48,7 +48,7 @@ def assert_same(a, b, atol=0.0):
     ],
     ids=lambda how: how.get("method", "auto"),
 )
-def test_each_moves_as_alone(how):
+def test_batch_members_equal_single_runs(how):
     motion = ph.simulate(BODIES, STATES, T, ph.torque.heavy(C), **how)
     assert motion.shape == motion.ok.shape == (N,)
     assert motion.rotor.shape == motion.energy.shape == (N, len(T))
@@ -71,7 +71,7 @@ def test_each_moves_as_alone(how):
 
 
 def largest(motion):
-    """The largest number in a motion, at least that of a rotor."""
+    """The largest magnitude in a motion, at least 1."""
     sizes = [np.abs(getattr(motion, part).components).max() for part in PARTS[1:]]
     return max(1.0, np.abs(motion.energy).max(), *sizes)
 
@@ -223,7 +223,7 @@ def test_the_centre_of_mass_moves():
 
 
 @pytest.mark.parametrize("how", [{"method": "rk4", "step": 1 / 32}, {"method": "dop853", "rtol": 1e-8}])
-def test_one_that_fails_does_not_stop_the_others(how):
+def test_a_failure_does_not_stop_the_others(how):
     t = np.linspace(0, 4, 9)
     pole = ph.scalar([1e3, 2.0, 1e4])
     law = ph.torque.formula("(e1∧e2)/(t - p)", p=pole)
@@ -261,7 +261,7 @@ def test_overflow_is_a_failure():
     assert every.certificate.method == "dop853"
 
 
-def test_what_a_function_raises_is_told():
+def test_exceptions_of_functions_propagate():
     def torque(t, rotor, omega):
         if omega.components[2] > 0.9:
             raise RuntimeError("too fast")
@@ -285,7 +285,7 @@ def test_what_a_function_raises_is_told():
 @pytest.mark.parametrize(
     "how", [{"method": "rk4", "step": 1 / 16}, {"method": "kahan_li8", "step": 0.25}, {}]
 )
-def test_threads_and_blocks_leave_no_trace(how, monkeypatch):
+def test_results_are_independent_of_threads_and_blocks(how, monkeypatch):
     n = 41
     rng = np.random.default_rng(2)
     states = ph.State(ph.Rotor.random((n, 1), rng=rng), rng.normal(size=(n, 2, 3)))
@@ -314,16 +314,16 @@ def test_threads_and_blocks_leave_no_trace(how, monkeypatch):
     assert_same(motion, whole)
 
 
-def test_blocks_are_checked_at_once():
+def test_simulate_blocks_validates_arguments_immediately():
     with pytest.raises(ValueError, match="simulate"):
         ph.simulate_blocks(ASYMMETRIC, START, T)
-    with pytest.raises(ValueError, match="block is 0"):
+    with pytest.raises(ValueError, match="block must be at least 1, got 0"):
         ph.simulate_blocks(BODIES, STATES, T, block=0)
     with pytest.raises(ValueError, match="method"):
         ph.simulate_blocks(BODIES, STATES, T, method="euler")
 
 
-def test_what_does_not_fit_into_memory_is_refused(monkeypatch):
+def test_results_that_exceed_memory_are_rejected(monkeypatch):
     monkeypatch.setattr("polhode._support.memory.available", lambda: 3_000_000_000)
     states = ph.State(R0, np.broadcast_to([0, 0, 1.0], (1_000_000, 3)))
     times = np.linspace(0, 1, 1000)
@@ -346,7 +346,7 @@ def test_what_does_not_fit_into_memory_is_refused(monkeypatch):
 # --- as a value
 
 
-def test_trajectories_are_picked_pickled_and_refuse():
+def test_trajectory_indexing_pickling_and_errors():
     motion = ph.simulate(np.array([BODIES[:2], BODIES[2:4]], dtype=object), START, T, ph.torque.heavy(C[0]))
     assert motion[0].shape == (2,)
     assert motion[..., 1].shape == (2,)
@@ -369,7 +369,7 @@ def test_trajectories_are_picked_pickled_and_refuse():
             call()
 
 
-def test_a_batch_becomes_labelled_data(tmp_path):
+def test_a_batch_to_xarray(tmp_path):
     xr = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")
     table = np.array([BODIES[:2], BODIES[2:4]], dtype=object)
@@ -391,7 +391,7 @@ def test_a_batch_becomes_labelled_data(tmp_path):
 # --- long runs
 
 
-def test_progress_rises_and_what_it_raises_comes_out():
+def test_progress_increases_and_its_exceptions_propagate():
     seen = []
     states = ph.State(R0, RNG.normal(size=(64, 3)))
     law = ph.torque.constant_body([0.1, 0, 0])
@@ -431,7 +431,7 @@ def test_control_c_stops_a_run(method):
 
 
 def test_a_table_may_start_at_the_start():
-    """And have knots at output times, which may come twice."""
+    """And have knots at output times, which may be repeated."""
     law = ph.torque.tabulated([-1, 0, 1, 3], np.ones((4, 3)))
     times = [-0.5, 0, 0, 1, 1, 2]
     for method in ("rk4", "kahan_li8"):
@@ -441,7 +441,7 @@ def test_a_table_may_start_at_the_start():
             assert_same(motion[k], alone, 64 * 4 * EPS * 10 * largest(alone))
 
 
-def test_what_is_wrong_for_all_is_told_at_once():
+def test_input_invalid_for_all_bodies_is_an_error():
     for wrong, match in (
         ({"method": "exact", "step": 0.1}, "exact"),
         ({"method": "rk4", "step": 1e-300}, "more than max_steps = 1e10"),
@@ -456,14 +456,14 @@ def test_what_is_wrong_for_all_is_told_at_once():
         ph.simulate(ASYMMETRIC, START, T, threads=0)
 
 
-def test_a_body_that_is_hopeless_does_not_hold_up_the_others():
+def test_a_body_that_cannot_converge_does_not_delay_the_others():
     rates = [[0.1, 0.2, 1.0], [1e100, 1e100, 1.0]]
     motion = ph.simulate(ASYMMETRIC, ph.State(R0, rates), [1.0], ph.torque.heavy([0.1, 0.2, 0.3]))
     assert motion.ok.tolist() == [True, False]
     assert "more than max_steps = 1e8" in motion.failures[0].message
 
 
-def test_a_failure_before_the_start_leaves_what_comes_after():
+def test_a_failure_before_the_start_keeps_later_times():
     law = ph.torque.tabulated([-1, 2.5], np.ones((2, 3)))
     motion = ph.simulate([ASYMMETRIC], START, [-2, -0.5, 0, 1], law, method="rk4", step=0.1)
     assert np.isnan(motion.energy[0]).tolist() == [True, False, False, False]

@@ -1,4 +1,4 @@
-"""Many free bodies side by side: every state has the bits of one body at one time, whatever is beside it."""
+"""Batches of free motions have the bits of single motions at single times."""
 
 import json
 import signal
@@ -56,7 +56,7 @@ def assert_same(state, other):
 
 
 @pytest.mark.parametrize("count", [1, 2, 15, 16, 17, 100, 1023, 1024, 1025, 2100])
-def test_regimes_side_by_side(count):
+def test_regimes_in_lanes(count):
     rng = np.random.default_rng(count)
     together, alone = mixed(count, rng)
     times = rng.uniform(-1e6, 1e6, count)
@@ -141,7 +141,7 @@ def test_threads_do_not_matter(monkeypatch, bodies, each):
         assert_same(one, three)
 
 
-def test_reference_motions_side_by_side():
+def test_reference_motions_in_a_batch():
     """Error 5e-15 as of each alone, all together and each at its own times."""
     cases = json.loads(REFERENCE.read_text())["free_top"]
 
@@ -167,12 +167,12 @@ def test_reference_motions_side_by_side():
         assert (wrong <= 5e-15 + slack).all(), case["name"]
 
 
-def test_what_cannot_be_told_is_refused():
+def test_times_beyond_the_horizon_are_rejected():
     motions = ph.FreeMotion(ASYMMETRIC, R0, [[[0, 0, 1], [0, 0, 1e6]], [[0, 0, 1], [0, 0, 1]]])
     with pytest.raises(ValueError, match=r"shape \(3,\) do not broadcast with bodies .* \(2, 2\)"):
         motions.at_each([1.0, 2, 3])
     with pytest.raises(
-        ValueError, match=r"at index \(1, 0, 1\): time 1e\+15 s of body \(0, 1\) lies beyond 1.3e\+12"
+        ValueError, match=r"at index \(1, 0, 1\): time 1e\+15 s of body \(0, 1\) is beyond 1.3e\+12"
     ):
         motions.at_each(np.reshape([1e15, 0, 1e15, 1e15], (2, 1, 2)) * np.reshape([0, 1], (2, 1, 1)))
     # Bodies that turn more slowly are known for longer.
@@ -220,8 +220,8 @@ def test_an_interrupt_stops_the_states(monkeypatch):
         signal.signal(signal.SIGALRM, before)
 
 
-def test_batches_are_told_by_their_motions():
-    """What is not a state is found of a motion made again."""
+def test_batch_methods_equal_those_of_single_motions():
+    """Other results equal those of a single motion."""
     together, alone = mixed(40, np.random.default_rng(7))
     told, curves, changes = together.describe(), together.polhode(5), together.derivatives(3.0)
     for k, (motion, same) in enumerate(zip(together, alone, strict=True)):

@@ -1,4 +1,4 @@
-"""What memory is left, by the machine and by the limits of groups; results that cannot be had are refused."""
+"""Available memory, by machine and cgroup limits; results that do not fit are rejected."""
 
 import re
 import sys
@@ -12,7 +12,7 @@ GB = 10**9
 
 @pytest.fixture
 def system(tmp_path, monkeypatch):
-    """Write files under /proc and /sys/fs/cgroup of a system of its own."""
+    """Write files of a fake /proc and /sys/fs/cgroup."""
     monkeypatch.setattr(_memory, "_PROC", tmp_path / "proc")
     monkeypatch.setattr(_memory, "_CGROUP", tmp_path / "cgroup")
 
@@ -26,7 +26,7 @@ def system(tmp_path, monkeypatch):
 
 
 def group(inside, limit, usage, cache=0):
-    """The files of a group of the second version."""
+    """The files of a cgroup, version 2."""
     return {
         f"{inside}__memory.max": f"{limit}\n",
         f"{inside}__memory.current": f"{usage}\n",
@@ -38,17 +38,17 @@ def machine(free):
     return {"proc__meminfo": f"MemTotal: {2 * free // 1024} kB\nMemAvailable:   {free // 1024} kB\n"}
 
 
-def test_nobody_tells(system):
+def test_unknown_memory(system):
     assert _memory.available() is None
     _memory.require(10**30, "states")
 
 
-def test_the_machine_tells(system):
+def test_memory_of_the_machine(system):
     system(**machine(1024 * GB))
     assert _memory.available() == 1024 * GB
 
 
-def test_a_group_has_less(system):
+def test_a_cgroup_limits_memory(system):
     system(
         **machine(1024 * GB),
         proc__self__cgroup="0::/\n",
@@ -57,7 +57,7 @@ def test_a_group_has_less(system):
     assert _memory.available() == 6 * GB
 
 
-def test_the_groups_around_it_count(system):
+def test_parent_cgroups_limit_memory(system):
     system(
         **machine(1024 * GB),
         proc__self__cgroup="0::/outer/inner\n",
@@ -67,12 +67,12 @@ def test_the_groups_around_it_count(system):
     assert _memory.available() == 5 * GB
 
 
-def test_the_path_of_the_host_is_out_of_sight(system):
+def test_cgroup_path_of_the_host(system):
     system(proc__self__cgroup="0::/kubepods/pod-12:34\n", **group("cgroup", 2 * GB, 3 * GB))
     assert _memory.available() == 0
 
 
-def test_groups_of_the_first_version(system):
+def test_cgroups_v1(system):
     system(
         **machine(1024 * GB),
         proc__self__cgroup="5:cpu,cpuacct:/\n4:memory:/job\n0::/\n",
@@ -88,7 +88,7 @@ def test_groups_of_the_first_version(system):
     assert _memory.available() == 6 * GB
 
 
-def test_the_refusal_tells_both_numbers(system):
+def test_the_error_gives_both_numbers(system):
     system(**machine(22 * 1000 * 1024 * 1024))
     message = "states of 10000000 bodies at 1000 times take 560 GB; 23.1 GB are free: ask for fewer"
     with pytest.raises(MemoryError, match=re.escape(message)):
@@ -99,10 +99,10 @@ def test_the_refusal_tells_both_numbers(system):
 @pytest.mark.parametrize(
     ("count", "text"), [(0, "0 bytes"), (999_499, "999 kB"), (999_500, "1 MB"), (5 * 10**24, "5e+06 EB")]
 )
-def test_sizes_are_said_in_three_digits(count, text):
+def test_sizes_have_three_digits(count, text):
     assert _memory.size(count) == text
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux tells")
-def test_this_machine_tells():
+def test_memory_of_this_machine():
     assert _memory.available() > 0

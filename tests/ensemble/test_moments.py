@@ -1,4 +1,4 @@
-"""Running moments: those of all numbers at once, whatever the blocks."""
+"""Running moments equal those of all numbers, whatever the blocks."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def moments_of(blocks, axis=0):
 
 
 @pytest.mark.parametrize("cuts", [[], [1], [1, 2, 3], [500], [0, 10, 10, 999]])
-def test_blocks_do_not_matter(cuts):
+def test_results_are_independent_of_blocks(cuts):
     moments = moments_of(np.split(VALUES, cuts))
     assert np.all(moments.count == 1000)
     assert not moments.missing.any()
@@ -67,15 +67,15 @@ def test_other_axes_and_multivectors():
     assert np.array_equal(ph.Moments().add(ph.vector(VALUES)).mean, ph.Moments().add(VALUES).mean)
 
 
-def test_infinite_values_are_told_without_warnings():
+def test_infinite_values_do_not_warn():
     moments = moments_of([[1.0, np.inf], [2.0]])
     assert moments.mean == np.inf
     assert np.isnan(moments.variance)
 
 
-def test_what_does_not_fit_is_refused():
+def test_incompatible_shapes_are_rejected():
     moments = ph.Moments()
-    assert repr(moments) == "Moments(of nothing)"
+    assert repr(moments) == "Moments(empty)"
     with pytest.raises(ValueError, match="add"):
         _ = moments.mean
     with pytest.raises(ValueError, match="axis 0"):

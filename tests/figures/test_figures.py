@@ -155,7 +155,7 @@ def test_batches_are_refused_and_their_bodies_are_drawn():
         np.linspace(0, 5, 50),
     )
     for kind in KINDS:
-        with pytest.raises(ValueError, match=r"plot is for one body, this is a batch of shape \(2,\)"):
+        with pytest.raises(ValueError, match=r"plot is for one body, got a batch of shape \(2,\)"):
             batch.plot(kind)
     for kind in ("polhode", "herpolhode", "phase", "scene"):
         drawn(batch[0].plot(kind))

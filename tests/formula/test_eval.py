@@ -287,7 +287,7 @@ WRONG_LETS = {
     ),
     "broken unit": (
         "x=5 m^12",
-        "--let:1:5: error: a power is a whole number from -9 to 9, not 0, after the unit `m`",
+        "--let:1:5: error: a power must be a whole number from -9 to 9 and not 0 after the unit `m`",
     ),
     "a divided unit": ("x=1/2 deg", "--let:1:5: error: `/` before a quantity has two readings; put brackets"),
     "beyond floats": ("x=1e+400 m", "--let:1:3: error: `1e+400 m` is beyond the range"),

@@ -1,4 +1,4 @@
-"""Bodies and their inertia: closed forms from textbooks, meshes that converge to them, sums over points."""
+"""Bodies and their inertia: textbook formulas, convergence of meshes, sums over points."""
 
 import pickle
 
@@ -178,7 +178,7 @@ def test_scale_turns_millimetres_into_metres(tmp_path):
 
 
 def radius_of_lump(u):
-    """Radius in unit directions (..., 3) of a lopsided body of two lobes with a neck, as of an asteroid."""
+    """Radius in unit directions (..., 3) of a body of two lobes with a neck, like an asteroid."""
     x, y, z = np.moveaxis(u, -1, 0)
     return 0.6 + 0.9 * z**2 + 0.3 * x * y + 0.2 * x * z**2 - 0.1 * y
 
@@ -311,7 +311,7 @@ def test_a_turned_body_has_a_turned_map():
 
 
 def test_principal_frame():
-    """Its axes are eigenvectors, right-handed, with rising moments, and it is a rotor near 1."""
+    """Its axes are eigenvectors, right-handed, with ascending moments, and it is a rotor near 1."""
     J = ph.Body.from_points(*points()).inertia
     F, moments = J.principal_frame, J.principal_moments
     assert np.all(np.diff(moments) > 0)
@@ -349,7 +349,7 @@ def test_inverse_of_the_map():
     ids=["cone", "points", "turned box"],
 )
 def test_bodies_survive_pickling(body):
-    """Everything that can be asked of the copy is what it was, the order of the principal axes too."""
+    """The copy has the same properties, including the order of the principal axes."""
     copy = pickle.loads(pickle.dumps(body))
     assert copy.mass == body.mass
     assert copy.center_of_mass == body.center_of_mass
@@ -368,7 +368,7 @@ def test_inertias_compare_and_hash_by_value():
     assert a != "a"
 
 
-def test_what_they_look_like():
+def test_repr():
     assert "1, 2, 3 kg m²" in repr(ph.Inertia.from_principal_moments(1, 2, 3))
     text = repr(ph.Body.sphere(1, mass=2))
     assert "2 kg" in text

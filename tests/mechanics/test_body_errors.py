@@ -1,4 +1,4 @@
-"""Bodies and meshes that are refused: the message has the value, and says what to do."""
+"""Invalid bodies and meshes: the message has the value and a remedy."""
 
 import struct
 
@@ -130,7 +130,7 @@ def test_a_missing_mesh_is_named_once(tmp_path):
 
 
 @pytest.mark.parametrize("scale", [0.0, -1.0, np.nan, np.inf])
-def test_a_scale_is_positive_and_finite(scale, tmp_path):
+def test_a_scale_must_be_positive_and_finite(scale, tmp_path):
     path = write_obj(tmp_path / "box.obj", cube())
     with pytest.raises(ValueError, match="scale"):
         ph.Body.from_mesh(path, density=1.0, scale=scale)

@@ -1,4 +1,4 @@
-"""What stays the same in long motions: norm, momentum, energy, and the integrals of solvable tops."""
+"""Conserved quantities of long motions: norm, momentum, energy, and integrals of solvable tops."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The damped body and the sphere in a field, through their Python faces."""
+"""`DampedTop` and `LarmorSphere`."""
 
 import json
 
@@ -40,11 +40,11 @@ def test_damping_agrees_with_steps(g):
     assert np.abs(exact.omega_body.components - steps.omega_body.components).max() <= 1e-9
 
 
-def test_what_dies_away_rests_for_ever():
+def test_a_damped_body_comes_to_rest():
     top = ph.DampedTop(moments(1, 2, 3), R0, [0.5, 1, 0.25], 0.125)
     free = ph.FreeMotion(moments(1, 2, 3), R0, [0.5, 1, 0.25])
     assert (top.at(1e300).rotor - free.at(8.0).rotor).norm() <= 8 * EPS
-    with pytest.raises(ValueError, match="lies beyond"):
+    with pytest.raises(ValueError, match="is beyond"):
         top.at(-1e6)
 
 

@@ -1,4 +1,4 @@
-"""What an error estimate is worth: random motions of every kind against references of extended precision."""
+"""Error estimates of random motions against references of extended precision."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def top(rng):
 
 
 def wheel_in_a_field(rng):
-    """The motion magnifies rounding up to 1e10 times."""
+    """The motion amplifies rounding up to 1e10 times."""
     return {"wheel": drawn(rng, 2), "larmor": drawn(rng, 2)}, rng.uniform(5, 60)
 
 
@@ -61,7 +61,7 @@ def at_rest(rng):
 
 
 def hanging(rng):
-    """Beside its stable equilibrium by less than rounding, or by a little more."""
+    """Close to its stable equilibrium, by less than rounding or slightly more."""
     omega = tuple(rng.choice([0, 1e-14, 1e-9]) * x for x in drawn(rng, 1))
     return {"heavy": (0, 0, -2), "omega": omega, "rotor": (1, 0, 0, 0)}, rng.uniform(5, 30)
 
@@ -75,7 +75,7 @@ def draw(kind, rng):
 
 
 def law_of(case):
-    """The same laws as Polhode's."""
+    """The torque laws of the reference."""
     torque = ph.torque
     makers = {
         "heavy": torque.heavy,
@@ -91,14 +91,14 @@ def law_of(case):
 
 
 def rate_scale(case, omega):
-    """The scale of errors of the angular velocity: the largest that is known, or the rate of swinging."""
+    """The scale of errors of the angular velocity: the largest known rate, or the swing rate."""
     torque = sum(np.linalg.norm(getattr(case, name)) for name in ("heavy", "constant_body", "constant_space"))
     wheel = 1e-4 * np.linalg.norm(case.wheel) / min(case.moments)
     return max(np.linalg.norm(omega), np.linalg.norm(case.omega), np.sqrt(torque / max(case.moments)), wheel)
 
 
 def answered(*problem, **how):
-    """The motion, or None where the tolerance is refused."""
+    """The motion, or None if the tolerance is not reached."""
     try:
         return ph.simulate(*problem, **how)
     except ValueError as refusal:
@@ -108,7 +108,7 @@ def answered(*problem, **how):
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
-def test_no_answer_is_worse_than_it_says(kind):
+def test_errors_stay_below_their_estimates(kind):
     rng = np.random.default_rng([KINDS.index(kind), 7])
     cases, durations = zip(*(draw(kind, rng) for _ in range(COUNT)), strict=True)
     rotors, omegas = final_states(cases, durations)
@@ -142,7 +142,7 @@ ONE = ph.Rotor.identity()
 ASYMMETRIC = moments(1, 2, 2.5)
 
 
-def test_a_wholly_wrong_motion_is_refused():
+def test_a_motion_dominated_by_rounding_is_rejected():
     law = ph.torque.gyrostat([4.5, 0, 2]) + ph.torque.larmor([3, -2, -2])
     with pytest.raises(ValueError, match=r"rtol = 1.0e-6 was not reached"):
         ph.simulate(ASYMMETRIC, ph.State(ONE, [1, -1, 5]), [50.0], law, rtol=1e-6)
@@ -150,10 +150,10 @@ def test_a_wholly_wrong_motion_is_refused():
     assert [failure.index for failure in many.failures] == [(0,)]
 
 
-def test_chaos_is_refused_or_reported():
+def test_chaotic_motion_is_rejected_or_reported():
     """The default call returned an error of 3e-5 as 7e-11."""
     state, law = ph.State(ONE, [3, 2, -1]), ph.torque.heavy([-0.5, 2, 1.5])
-    with pytest.raises(ValueError, match=r"magnifies rounding"):
+    with pytest.raises(ValueError, match=r"amplifies rounding"):
         ph.simulate(ASYMMETRIC, state, [100.0], law)
     rotors, _ = final_states([Case((1, 2, 2.5), (3, 2, -1), heavy=(-0.5, 2, 1.5))], [100.0])
     found = ph.simulate(ASYMMETRIC, state, [100.0], law, rtol=1e-3)
@@ -164,7 +164,7 @@ def test_chaos_is_refused_or_reported():
 
 @pytest.mark.parametrize("method", ["auto", "dop853"])
 def test_a_steady_torque_is_summed_without_drift(method):
-    """ω3 = ω0 + (N/i3) t, a quarter of a million radians: rounded alike in every step it was off by 9e-9."""
+    """ω3 = ω0 + (N/i3) t, over 250,000 rad: with equal rounding in every step the error was 9e-9."""
     N, duration = 0.7, 1000.0
     body = moments(1, 1, 1e-2)
     state = ph.State(ONE, [0, 0, 0.25])
@@ -206,8 +206,8 @@ def test_a_body_rests_in_its_equilibrium(name):
 BODY = moments(1, 1.5, 2)
 
 
-def test_a_body_that_hangs_askew_rests_to_rounding():
-    """Turned by a rotation that rounds, its torque is a rounding of that of gravity."""
+def test_a_tilted_hanging_body_rests_to_rounding():
+    """After a rounded rotation its torque is a rounding error of gravity's."""
     hanging = ph.Rotor.from_vectors(ph.vector([1, 2, -2]), -ph.e3)
     found = ph.simulate(BODY, ph.State(hanging, [0, 0, 0]), [10.0], ph.torque.heavy([1, 2, -2]))
     assert found.certificate.error_estimate < 1e-10
@@ -224,7 +224,7 @@ def push(law, how, duration=60.0):
 
 @pytest.mark.parametrize("how", [{}, {"rtol": 1e-6}, {"method": "kahan_li8"}], ids=str)
 @pytest.mark.parametrize(("at", "width"), [(37.3, 0.1), (11.123, 0.03), (50.7, 0.01)])
-def test_a_short_push_is_not_stepped_over(at, width, how):
+def test_a_short_pulse_is_resolved(at, width, how):
     """A Gaussian of the impulse 0.4 N m s, on a body at rest."""
     height = 0.4 / (width * np.sqrt(np.pi))
     # Errors are relative to the rate at which the largest torque makes the body swing.
@@ -239,8 +239,8 @@ def test_a_short_push_is_not_stepped_over(at, width, how):
 
 
 @pytest.mark.parametrize("how", [{"max_step": 2e-3}, {"breaks": [20.0, 20.002]}], ids=str)
-def test_a_shorter_push_needs_a_word(how):
-    """A thousandth of a second in a minute is beyond sampling."""
+def test_a_shorter_pulse_needs_max_step_or_breaks(how):
+    """A millisecond in a minute is too short for sampling."""
     width = 3e-4
     law = ph.torque.formula("A exp(-((t-T)/s)²) e1e2", A=0.4 / (width * np.sqrt(np.pi)), T=20.001, s=width)
     assert push(law, how) == pytest.approx(0.4, rel=1e-9)
@@ -260,13 +260,13 @@ def test_a_fixed_step_too_long_for_its_law_is_reported(many):
 # --- runs that would not end
 
 
-def test_a_hopeless_run_is_refused():
+def test_a_run_predicted_to_be_too_long_is_rejected():
     state, law = ph.State(ONE, [1e100, 2e100, 1]), ph.torque.larmor([1, 2, 3])
     with pytest.raises(ValueError, match=r"the run would take .* steps .* more than max_steps = 1e8"):
         ph.simulate(BODY, state, [10.0], law, method="dop853")
 
 
-def test_the_limit_of_steps_is_kept():
+def test_max_steps_is_enforced():
     state, law = ph.State(ONE, [1, 2, 3]), ph.torque.larmor([1, 2, 3])
     with pytest.raises(ValueError, match="max_steps = 1e3"):
         ph.simulate(BODY, state, [1000.0], law, max_steps=1000)
@@ -281,7 +281,7 @@ def test_the_limit_of_steps_is_kept():
 
 
 @pytest.mark.parametrize("many", [False, True])
-def test_stiff_damping_is_left_to_the_implicit_rule(many):
+def test_stiff_damping_uses_the_midpoint_rule(many):
     """With d/i ≫ 1/s the rate is that at which the torque of gravity and the damping balance: ω = N/d."""
     d = 1e5
     law = ph.torque.heavy([0, 1, 0]) + ph.torque.viscous_damping(d)

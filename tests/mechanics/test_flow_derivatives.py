@@ -1,4 +1,4 @@
-"""Derivatives of the free flow: against 30-digit differences, finite differences, and laws they must obey."""
+"""Derivatives of the free flow against 30-digit differences, finite differences, and identities."""
 
 import itertools
 import json
@@ -213,7 +213,7 @@ def test_derivatives_follow_one_another(i, w):
 
 
 def test_body_axes_need_not_be_principal():
-    """Turning the body axes turns rows and columns of the angular velocity, and nothing else."""
+    """Rotating the body axes rotates rows and columns of the angular velocity only."""
     turn, omega = ph.Rotor.random(rng=5), [0.25, -0.5, 1.0]
     matrix = turn.to_matrix() @ np.diag([1.0, 2.0, 3.0]) @ turn.to_matrix().T
     body = ph.Inertia.from_matrix(0.5 * (matrix + matrix.T))
@@ -232,7 +232,7 @@ def test_body_axes_need_not_be_principal():
         np.testing.assert_allclose(np.stack(back, axis=-1), expected, **close)
 
 
-def test_what_has_grown_beyond_floats_is_refused():
+def test_overflowing_derivatives_are_rejected():
     for i, w in (((1, 2, 3), (0, 1, 0)), ((1, 2, 2.25), (0.375, 0.5, 0.5))):
         motion = motion_of(i, w)
         assert np.isfinite(motion.derivatives(200.0).d_omega_d_omega).all()

@@ -326,5 +326,5 @@ def test_methods_that_do_not_support_forces_raise(method):
 def test_a_force_needs_a_mass_and_a_free_body():
     with pytest.raises(TypeError, match="Body"):
         ph.simulate(BODY.inertia, start(), [1.0], force=F.drag(1.0))
-    with pytest.raises(ValueError, match="at a fixed point: no force moves it"):
+    with pytest.raises(ValueError, match="fix a point of the body; leave force out"):
         ph.simulate(BODY, start(), [1.0], ph.torque.gravity(BODY, pivot=[0, 0, 1]), F.drag(1.0))

@@ -1,4 +1,4 @@
-"""Polhodes and herpolhodes as values: closed, on their quadrics, in the invariable plane."""
+"""Polhodes and herpolhodes: closed, on their quadrics, in the invariable plane."""
 
 import numpy as np
 import pytest

@@ -61,20 +61,20 @@ def test_a_wheel_leaves_a_body_at_rest(damping: float) -> None:
     np.testing.assert_allclose(found.omega_body.components, 0, atol=1e-12)
 
 
-def test_chaos_is_told() -> None:
+def test_chaos_is_reported() -> None:
     state = ph.State(ph.Rotor.identity(), ph.bivector([0.1, 0.2, 0.5]))
     with pytest.raises(ValueError, match=r"altogether different.*a shorter run"):
         ph.simulate(BODY, state, [500.0], ph.torque.heavy([1.0, 0.2, 0.3]))
 
 
-def test_without_a_tolerance_what_rounding_leaves_is_taken() -> None:
+def test_the_default_tolerance_allows_for_rounding() -> None:
     state = ph.State(ph.Rotor.identity(), ph.bivector([0.1, 0.2, 1.0]))
     found = ph.simulate(BODY, state, [1e4], ph.torque.gravity_gradient(0.1, 0.3))
     assert found.certificate.error_estimate is not None
     assert 1e-10 < found.certificate.error_estimate < 1e-6
 
 
-def test_output_times_may_be_as_close_as_numbers_are() -> None:
+def test_output_times_may_be_adjacent_floats() -> None:
     times = [1.0, np.nextafter(1.0, 2), 100.0, np.nextafter(100.0, 200), 101.0]
     found = ph.simulate(
         BODY, ph.State(ROTOR, ph.bivector([0.1, 0.2, 1.0])), times, ph.torque.viscous_damping(0.1)
@@ -92,7 +92,7 @@ def test_output_times_may_be_as_close_as_numbers_are() -> None:
         ph.LarmorSphere(ph.Inertia.from_principal_moments(1, 1, 1), ROTOR, [1, 2, 3], [0, 0, 1]),
     ],
 )
-def test_closed_forms_are_shown_and_pickled(solution: ph.DampedTop) -> None:
+def test_closed_forms_have_a_repr_and_can_be_pickled(solution: ph.DampedTop) -> None:
     same = pickle.loads(pickle.dumps(solution))
     assert repr(same) == repr(solution)
     assert "moments" in repr(solution)

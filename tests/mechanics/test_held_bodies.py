@@ -5,6 +5,7 @@ import pytest
 
 import polhode as ph
 from polhode import e1, e2, e3
+from polhode._scene.writer import scene_text
 
 G = 9.81
 # The gyroscope of the README; the pivot lies 0.2 N m of weight below its centre.
@@ -112,7 +113,7 @@ def test_a_scene_gives_the_same_motion(tmp_path):
     assert np.all(scene.run().rotor == motion.rotor)
     # The law of a page is written as the weight on the body about the pivot.
     again = tmp_path / "again.toml"
-    again.write_text(motion._origin.scene())
+    again.write_text(scene_text(motion._origin))
     assert np.all(ph.Scene.read(again).run().rotor == motion.rotor)
 
 

@@ -136,7 +136,7 @@ def test_rotor_is_continuous_and_its_rate_is_the_spin(kind):
     ((1, 0, 0, 0), (1, 0, 0), "pendulum, circulating"),
     ((0, 1, 0, 0), (2, 0, 0), "separatrix"),
 ])  # fmt: skip
-def test_regimes_are_named(r, w, regime):
+def test_regime_names(r, w, regime):
     assert top_of((1, 1, 0.5), (0, 0, 1), r, w).describe()["regime"] == regime
     assert top_of((1, 1, 0.5), (0, 0, 0), r, (0, 0, 0)).describe()["regime"] == "at rest"
 
@@ -229,7 +229,7 @@ def test_it_repeats_after_a_nutation():
 
 
 def test_axes_may_lie_anywhere():
-    """Turning the body axes turns the description and nothing else."""
+    """Rotating the body axes rotates the description only."""
     turn = ph.Rotor.random(rng=5)
     matrix = turn.to_matrix() @ np.diag([1.0, 1.0, 0.5]) @ turn.to_matrix().T
     r, w, c = rotor(2, 1, 0.5, 0), ph.bivector([0.25, -0.5, 6]), ph.vector([0, 0, 2])
@@ -303,5 +303,5 @@ def test_bad_input_is_refused():
     top = top_of(*KINDS["slow"])
     with pytest.raises(ValueError, match="time NaN at index 1"):
         top.at([0.0, np.nan])
-    with pytest.raises(ValueError, match=r"times\[0\] = .* lies beyond"):
+    with pytest.raises(ValueError, match=r"times\[0\] = .* is beyond"):
         top.at(1e30)

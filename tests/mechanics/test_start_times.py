@@ -213,7 +213,7 @@ def test_a_late_start_costs_no_digits(count):
 def test_times_beyond_the_horizon_count_from_the_start():
     state = ph.State(R0, [0.25, -0.5, 1.0], time=3e17)
     ph.simulate(ASYMMETRIC, state, [3.1e17])
-    with pytest.raises(ValueError, match=r"times\[0\] = 0e0 s lies beyond .* s from the start at 3\d* s"):
+    with pytest.raises(ValueError, match=r"times\[0\] = 0e0 s is beyond .* s from the start at 3\d* s"):
         ph.simulate(ASYMMETRIC, ph.State(R0, [25, -50, 100.0], time=3e17), [0.0])
 
 

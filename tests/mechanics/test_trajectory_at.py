@@ -1,5 +1,9 @@
 """`Trajectory.at` between the output times, against motions with outputs there."""
 
+import pickle
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -120,7 +124,7 @@ def test_it_reaches_the_event_that_ended_the_motion(torque):
 def test_without_outputs_the_start_is_known(torque):
     motion = ph.simulate(ASYMMETRIC, START, [], torque)
     assert motion.at(0.0).rotor.is_close(R0, rtol=8 * EPS)
-    with pytest.raises(ValueError, match=r"times\[0\] = 1 lies outside .* from 0 s to 0 s"):
+    with pytest.raises(ValueError, match=r"times\[0\] = 1 is outside .*, 0 s to 0 s"):
         motion.at(1.0)
 
 
@@ -156,3 +160,11 @@ def test_what_a_law_raises_on_the_way_comes_out():
     armed.append(True)
     with pytest.raises(OwnError):
         motion.at(2.0)
+
+
+def test_an_unpickled_motion_has_its_methods_in_a_new_process():
+    motion = ph.simulate(BODY, START, [0.0, 1.0])
+    read = "import pickle, sys; motion = pickle.load(sys.stdin.buffer); print(motion.view, motion.save)"
+    run = [sys.executable, "-c", read]
+    said = subprocess.run(run, input=pickle.dumps(motion), capture_output=True, check=True).stdout
+    assert b"save" in said

@@ -219,7 +219,7 @@ def test_a_method_that_does_not_fit_exits_with_1(tmp_path):
     )
     done = polhode("run", "a.toml", cwd=tmp_path)
     assert done.returncode == 1
-    assert "kahan_li8 kicks at fixed attitude, but a torque depends on the rate of turning" in done.stderr
+    assert "kahan_li8 does not support torques that depend on the angular velocity" in done.stderr
 
 
 def test_a_short_table_exits_with_1_and_its_times(tmp_path):

@@ -1,4 +1,4 @@
-"""Motions in extended precision, to judge results and their error estimates by: adaptive Taylor series.
+"""Reference motions in extended precision: adaptive Taylor series.
 
 NumPy's `longdouble` has 64 bits on x86, which makes rounding 2000 times smaller than that of a double.
 Nothing here is Polhode's own: the equations are those of the quaternion and of Euler, in components.

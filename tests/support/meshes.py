@@ -1,4 +1,4 @@
-"""Meshes of solids, made and written here."""
+"""Meshes of solids and writers of mesh files."""
 
 import struct
 

@@ -1,4 +1,4 @@
-"""Bodies and starts that the tests of motion share, and how far from each other two motions may be."""
+"""Bodies, starts and tolerances shared by tests of motions."""
 
 from pathlib import Path
 

@@ -9,7 +9,8 @@ import pytest
 
 import polhode as ph
 from command_line import EXAMPLES, ROOT, SCENE
-from polhode._scene.writer import Problem, UnwritableError
+from polhode._mechanics.problem import Problem
+from polhode._scene.writer import UnwritableError, scene_text
 from polhode._support.packing import packed, unpacked
 from polhode._viewer import document, recording
 from polhode.torque import Torque
@@ -25,7 +26,7 @@ def turned(body):
 
 def read_back(problem, tmp_path):
     path = tmp_path / "written.toml"
-    path.write_text(problem.scene(), encoding="utf-8")
+    path.write_text(scene_text(problem), encoding="utf-8")
     return ph.Scene.read(path)
 
 
@@ -126,7 +127,7 @@ def test_a_written_scene_is_the_same_motion(tmp_path):
     law = T.viscous_damping(0.1) + T.constant_body([0, 0, 1])
     trajectory = ph.simulate(MOMENTS, START, times, law, method="rk4", step=0.01)
     path = tmp_path / "a.toml"
-    path.write_text(trajectory._origin.scene())
+    path.write_text(scene_text(trajectory._origin))
     again = ph.Scene.read(path).run()
     assert again.certificate == trajectory.certificate
     assert (again.rotor == trajectory.rotor).all()
@@ -155,7 +156,7 @@ def test_the_method_is_written(tmp_path):
 def test_problems_that_no_scene_describes_are_refused(given, why):
     body = ph.Body.sphere(1, mass=1)
     with pytest.raises(UnwritableError, match=why):
-        problem(body, **given).scene()
+        scene_text(problem(body, **given))
 
 
 # --- documents

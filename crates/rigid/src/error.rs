@@ -1,52 +1,52 @@
-//! Why there is no body, no torque or no motion.
+//! Errors of bodies, torques and simulations.
 
 use polhode_ga::Vector;
 use std::fmt;
 
-/// Why a run failed.
+/// Why a simulation failed.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum SimulateError {
     /// Moments must be positive to turn momentum into rate.
     SingularInertia { moments: [f64; 3] },
-    /// All three moments differ, where two must be equal.
+    /// All three moments differ, but two must be equal.
     NotSymmetric { moments: [f64; 3] },
-    /// The moments differ, where all must be equal.
+    /// The moments differ, but all must be equal.
     NotSpherical { moments: [f64; 3] },
-    /// The centre of mass lies beside the axis of symmetry.
+    /// The centre of mass is off the axis of symmetry.
     OffAxis { c: Vector, axis: Vector },
-    /// The closed form misses its start or its integrals: the roots of its cubic are too close for their digits.
+    /// The closed form misses its start or its integrals: the roots of its cubic are too close to each other.
     Unresolved,
-    /// A closed form does not keep what the motion conserves, by so much of its size.
+    /// A closed form drifts in a conserved quantity, by this relative amount.
     Drifted { quantity: &'static str, drift: f64 },
-    /// Output times must be finite and must not fall.
+    /// Output times must be finite and must not decrease.
     BadTime { index: usize, time: f64 },
     /// A step, tolerance, angular velocity or torque that is not usable.
     BadValue { what: &'static str, value: f64 },
-    /// The phase of an exact motion is not known so far from its start.
+    /// The phase of an exact motion is not known this far from its start.
     BeyondHorizon { index: usize, time: f64, start: f64, horizon: f64 },
-    /// A motion is known between its first and last output times.
+    /// A time outside the computed motion.
     OutsideMotion { index: usize, time: f64, first: f64, last: f64 },
-    /// More steps than could be taken.
+    /// More steps than the limit allows.
     TooManySteps { steps: f64, step: f64, limit: f64 },
-    /// Steps are much shorter than the motion asks, and so many would be needed: a method for stiff laws is to take over.
+    /// Stability requires steps much shorter than the motion: a method for stiff laws is to take over.
     Stiff { steps: f64 },
-    /// Two runs with halved step still differ, and halving no longer helps.
+    /// Halving the step no longer reduces the difference of two runs.
     NotConverged { rtol: f64, reached: f64, step: f64 },
-    /// The method cannot serve these laws.
+    /// The method does not support these laws.
     Unfit { method: &'static str, reason: &'static str },
     /// No step is short enough.
     StepTooSmall { time: f64, step: f64 },
-    /// A law has no torque there.
+    /// A law cannot be evaluated at this time.
     Torque { time: f64, message: String },
     /// A component became NaN or infinite.
     Diverged { time: f64 },
-    /// The caller asked to stop.
+    /// The caller stopped the run.
     Interrupted,
 }
 
 impl SimulateError {
-    /// When in the motion it happened, in s, if it was on the way.
+    /// Time in the motion at which it failed, in s; none for errors found before.
     pub fn time(&self) -> Option<f64> {
         match self {
             SimulateError::StepTooSmall { time, .. }
@@ -62,8 +62,8 @@ impl fmt::Display for SimulateError {
         match self {
             SimulateError::SingularInertia { moments: [a, b, c] } => write!(
                 f,
-                "principal moments {a}, {b}, {c} kg m² include a zero: the body has no definite rate about that \
-                 axis; give it some thickness"
+                "principal moments {a}, {b}, {c} kg m² include a zero, so the rate about that axis is undefined; \
+                 give the body some thickness"
             ),
             SimulateError::NotSymmetric { moments: [a, b, c] } => write!(
                 f,
@@ -75,17 +75,17 @@ impl fmt::Display for SimulateError {
             ),
             SimulateError::OffAxis { c: Vector([x, y, z]), axis: Vector([p, q, r]) } => write!(
                 f,
-                "c = ({x}, {y}, {z}) N m does not point along the axis of symmetry ({p}, {q}, {r}); use simulate"
+                "c = ({x}, {y}, {z}) N m is not along the axis of symmetry ({p}, {q}, {r}); use simulate"
             ),
             SimulateError::Unresolved => write!(
                 f,
-                "floating point does not resolve the closed form of this top: its tilt turns at angles too close to each \
-                 other; use simulate, which takes steps where there is no closed form"
+                "the closed form of this top is not resolved in floating point: the turning points of its tilt are too \
+                 close to each other; use simulate, which integrates numerically"
             ),
             SimulateError::Drifted { quantity, drift } => write!(
                 f,
-                "the {} of the closed form changes by {drift:.1e} of its size, though the motion conserves it; \
-                 pass a method of steps, such as method=\"rkn6\"",
+                "the {} of the closed form drifts by {drift:.1e} (relative), but the motion conserves it; use a stepping \
+                 method, such as method=\"rkn6\"",
                 quantity.replace('_', " ")
             ),
             SimulateError::BadTime { index, time } => {
@@ -110,32 +110,31 @@ impl fmt::Display for SimulateError {
                 let near = if *start == 0.0 { "0" } else { "the start" };
                 write!(
                     f,
-                    "times[{index}] = {time:e} s lies beyond {horizon:.1e} s{from}, where the phase of this rotation is \
-                     no longer known to rounding; take times nearer to {near}"
+                    "times[{index}] = {time:e} s is beyond {horizon:.1e} s{from}, where the phase of the rotation is lost to \
+                     rounding; use times closer to {near}"
                 )
             }
             SimulateError::OutsideMotion { index, time, first, last } => write!(
                 f,
-                "times[{index}] = {time} lies outside the motion, which was computed from {first} s to {last} s; simulate it \
-                 up to there"
+                "times[{index}] = {time} is outside the computed motion, {first} s to {last} s; simulate up to this time"
             ),
             SimulateError::TooManySteps { steps, step, limit } => write!(
                 f,
                 "the run would take {steps:.1e} steps of {step:.3e} s, more than max_steps = {limit:.0e}; simulate a \
-                 shorter time, ask for a longer step or a larger rtol, or raise max_steps"
+                 shorter time, use a longer step or a larger rtol, or raise max_steps"
             ),
             SimulateError::Stiff { steps } => {
                 write!(f, "the laws are stiff: {steps:.1e} steps would be needed; use the method midpoint")
             }
             SimulateError::NotConverged { rtol, reached, step } if *reached > 0.1 => write!(
                 f,
-                "rtol = {rtol:.1e} was not reached: with steps of {step:.3e} s and shorter ones the motion still comes out \
-                 altogether different, for it magnifies rounding that much; ask for a shorter run, or give a step"
+                "rtol = {rtol:.1e} was not reached: results still differ completely at steps of {step:.3e} s, because the \
+                 motion amplifies rounding; simulate a shorter time, or give a step"
             ),
             SimulateError::NotConverged { rtol, reached, step } => write!(
                 f,
-                "rtol = {rtol:.1e} was not reached: halving the step to {step:.3e} s leaves {reached:.1e}; the motion \
-                 magnifies rounding that much, so ask for rtol >= {:.0e} or a shorter run",
+                "rtol = {rtol:.1e} was not reached: halving the step to {step:.3e} s leaves an error of {reached:.1e}, because \
+                 the motion amplifies rounding; use rtol >= {:.0e} or simulate a shorter time",
                 2.0 * reached
             ),
             SimulateError::Diverged { time } => {
@@ -145,7 +144,7 @@ impl fmt::Display for SimulateError {
             SimulateError::StepTooSmall { time, step } => write!(
                 f,
                 "at t = {time} s no step down to {step:.1e} s meets the tolerance: the motion or a torque is not smooth \
-                 or not finite there"
+                 or not finite there; check the laws at this time"
             ),
             SimulateError::Torque { time, message } => write!(f, "at t = {time} s: {message}"),
             SimulateError::Interrupted => write!(f, "interrupted"),
@@ -155,130 +154,65 @@ impl fmt::Display for SimulateError {
 
 impl std::error::Error for SimulateError {}
 
-/// Why there is no such body.
+/// Why a body is invalid. Moments are numbered from 1, rows and columns too; points from 0.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
 pub enum BodyError {
     /// A mass that is zero, negative or not finite.
     Mass(f64),
     /// A density that is zero, negative or not finite.
     Density(f64),
     /// A length of a solid that is zero, negative or not finite.
-    Length {
-        /// Which length.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    Length { name: &'static str, value: f64 },
     /// A hollow sphere whose inner radius is negative or exceeds the outer.
-    InnerRadius {
-        /// The inner radius.
-        inner: f64,
-        /// The outer radius.
-        outer: f64,
-    },
-    /// A torus that runs through itself.
-    SpindleTorus {
-        /// Distance of the tube's centre from the axis.
-        major: f64,
-        /// Radius of the tube.
-        minor: f64,
-    },
-    /// A density for something without volume.
-    NoVolume {
-        /// Its name.
-        solid: &'static str,
-    },
+    InnerRadius { inner: f64, outer: f64 },
+    /// A torus that intersects itself.
+    SpindleTorus { major: f64, minor: f64 },
+    /// A density for a solid without volume.
+    NoVolume { solid: &'static str },
     /// A number that is NaN or infinite.
-    NotFinite {
-        /// Which number.
-        what: String,
-        /// Its value.
-        value: f64,
-    },
+    NotFinite { what: String, value: f64 },
     /// A principal moment below zero.
-    NegativeMoment {
-        /// Which, from 1.
-        number: usize,
-        /// All three.
-        moments: [f64; 3],
-    },
+    NegativeMoment { number: usize, moments: [f64; 3] },
     /// A principal moment larger than the sum of the other two.
-    ImpossibleMoments {
-        /// Which is too large, from 1.
-        number: usize,
-        /// All three.
-        moments: [f64; 3],
-    },
+    ImpossibleMoments { number: usize, moments: [f64; 3] },
     /// An inertia matrix whose halves differ by more than rounding.
-    NotSymmetric {
-        /// Row of the entry in the upper half, from 1.
-        row: usize,
-        /// Its column, from 1.
-        column: usize,
-        /// The entry.
-        entry: f64,
-        /// The entry that should be equal.
-        mirrored: f64,
-    },
+    NotSymmetric { row: usize, column: usize, entry: f64, mirrored: f64 },
     /// The inverse of an inertia map with a zero moment.
-    Singular {
-        /// Which moment, from 1.
-        number: usize,
-        /// The axis it belongs to.
-        axis: Vector,
-    },
+    Singular { number: usize, axis: Vector },
     /// An extended body whose moments vanish in floating point.
-    TooSmall {
-        /// The largest moment.
-        moment: f64,
-    },
-    /// No point at all.
+    TooSmall { moment: f64 },
+    /// No points.
     NoPoints,
-    /// Not one mass for every position.
-    PointCount {
-        /// How many masses.
-        masses: usize,
-        /// How many positions.
-        positions: usize,
-    },
+    /// Different numbers of masses and positions.
+    PointCount { masses: usize, positions: usize },
     /// A point mass that is negative or not finite.
-    PointMass {
-        /// Which, from 0.
-        index: usize,
-        /// Its value.
-        mass: f64,
-    },
+    PointMass { index: usize, mass: f64 },
     /// A position that is not finite.
-    PointPosition {
-        /// Which, from 0.
-        index: usize,
-        /// Its value.
-        position: Vector,
-    },
+    PointPosition { index: usize, position: Vector },
 }
 
 impl fmt::Display for BodyError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             BodyError::Mass(m) => {
-                write!(f, "a mass of {m:?} kg is impossible; give a positive, finite mass")
+                write!(f, "mass must be positive and finite, got {m:?} kg")
             }
             BodyError::Density(d) => {
-                write!(f, "a density of {d:?} kg/m³ is impossible; give a positive, finite density")
+                write!(f, "density must be positive and finite, got {d:?} kg/m³")
             }
             BodyError::Length { name, value } => {
-                write!(f, "{name} = {value:?} m is impossible; give a positive, finite length")
+                write!(f, "{name} must be positive and finite, got {value:?} m")
             }
-            BodyError::InnerRadius { inner, outer } => write!(
-                f,
-                "inner_radius = {inner:?} m does not fit outer_radius = {outer:?} m; give one from 0 to the outer radius"
-            ),
+            BodyError::InnerRadius { inner, outer } => {
+                write!(f, "inner_radius must be between 0 and outer_radius = {outer:?} m, got {inner:?} m")
+            }
             BodyError::SpindleTorus { major, minor } => write!(
                 f,
-                "a torus with minor_radius = {minor:?} m and major_radius = {major:?} m runs through itself; the major radius must not be the smaller"
+                "a torus with minor_radius = {minor:?} m and major_radius = {major:?} m intersects itself; the major radius must be at least the minor radius"
             ),
             BodyError::NoVolume { solid } => {
-                write!(f, "a {solid} has no volume, so a density gives it no mass; give the mass")
+                write!(f, "a {solid} has no volume, so a density does not determine its mass; give the mass")
             }
             BodyError::NotFinite { what, value } => {
                 write!(f, "{what} is {value:?}; give a finite number")
@@ -310,14 +244,14 @@ impl fmt::Display for BodyError {
             ),
             BodyError::TooSmall { moment } => write!(
                 f,
-                "the largest moment of inertia comes out as {moment:?} kg m², below the range of floating point; check the units of mass and lengths"
+                "the largest moment of inertia, {moment:?} kg m², is below the range of floating point; check the units of mass and lengths"
             ),
-            BodyError::NoPoints => write!(f, "a body needs at least one point mass; none is given"),
+            BodyError::NoPoints => write!(f, "a body needs at least one point mass, got none"),
             BodyError::PointCount { masses, positions } => {
                 write!(f, "{masses} masses for {positions} positions; give one mass for every position")
             }
             BodyError::PointMass { index, mass } => {
-                write!(f, "masses[{index}] = {mass:?} kg is impossible; give finite masses >= 0")
+                write!(f, "masses[{index}] must be finite and >= 0, got {mass:?} kg")
             }
             BodyError::PointPosition { index, position: Vector([x, y, z]) } => {
                 write!(f, "positions[{index}] = ({x:?}, {y:?}, {z:?}) is not finite; remove the point")
@@ -328,7 +262,7 @@ impl fmt::Display for BodyError {
 
 impl std::error::Error for BodyError {}
 
-/// Why a law has no torque at some point of the motion, whose time the caller knows, or is no law.
+/// Why a law is invalid or cannot be evaluated at some point of the motion; the caller adds the time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TorqueError(pub String);
 

@@ -7,8 +7,8 @@
 //! Rooms: [`body`] (mass, centre of mass, the inertia map; solids, triangle meshes and their files), [`state`] (a point
 //! of a motion), [`laws`] (torques, forces, formulas, events, and what is conserved), [`exact`] (motions in closed form),
 //! [`methods`] (steps), [`run`] (one motion at given times, with a certificate of what was conserved), [`ensemble`] (many
-//! bodies at once), [`numerics`] (arithmetic of twice the precision, elliptic integrals), [`error`] (why there is no
-//! body, no torque or no motion); [`units`] and [`scene`] (what a person writes in a scene file).
+//! bodies at once), [`numerics`] (arithmetic of twice the precision, elliptic integrals), [`error`]; [`units`] and
+//! [`scene`] (scene files).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 

@@ -1,11 +1,9 @@
-//! Random numbers, each of which has its own place: what a body draws depends on the seed, on the name of what is
-//! drawn and on the number of the body, and on nothing else.
+//! Counter-based random numbers, which depend only on the seed, a name and the number of the body.
 //!
-//! ChaCha with eight rounds makes of a key and a counter 64 bytes that are as good as random. The key is the seed
-//! and the name, the counter is the body: body i owns the i-th block, eight words of 64 bits, whoever draws it, and
-//! in whichever order.
+//! ChaCha8 maps a key and a counter to 64 random bytes. The key is the seed and the name, the counter is the body: body i
+//! owns the i-th block of eight 64-bit words, in whatever order bodies are drawn.
 //!
-//! All arithmetic here is that of `+ − × ÷ √`, so that the numbers have the same bits on every machine.
+//! All arithmetic uses `+ − × ÷ √` only, so the numbers have the same bits on every machine.
 
 use crate::numerics::lanes::{exp_minus, horner};
 use chacha20::ChaCha8Rng;
@@ -14,11 +12,11 @@ use chacha20::rand_core::{Rng, SeedableRng};
 /// No number of [`normal`] is larger: that of the smallest probability, 2⁻⁵³, is 8.2095.
 pub(crate) const LARGEST_NORMAL: f64 = 8.21;
 
-/// The words of bodies, one after the other.
+/// The random words of successive bodies.
 pub(crate) struct Words(ChaCha8Rng);
 
 impl Words {
-    /// For what has this name, from this body on.
+    /// The words of a name, starting with body `first`.
     pub fn new(seed: u64, name: &str, first: u64) -> Words {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());

@@ -312,9 +312,9 @@ fn rounding_is_no_asymmetry() {
 fn impossible_bodies_say_why() {
     let inertia = Inertia::from_principal_moments([1.0; 3]).unwrap();
     let body = |mass, x| Body::new(mass, inertia, Vector([0.0, x, 0.0])).unwrap_err().to_string();
-    assert_eq!(body(0.0, 0.0), "a mass of 0.0 kg is impossible; give a positive, finite mass");
-    assert_eq!(body(-1.0, 0.0), "a mass of -1.0 kg is impossible; give a positive, finite mass");
-    assert_eq!(body(f64::NAN, 0.0), "a mass of NaN kg is impossible; give a positive, finite mass");
+    assert_eq!(body(0.0, 0.0), "mass must be positive and finite, got 0.0 kg");
+    assert_eq!(body(-1.0, 0.0), "mass must be positive and finite, got -1.0 kg");
+    assert_eq!(body(f64::NAN, 0.0), "mass must be positive and finite, got NaN kg");
     assert_eq!(body(1.0, f64::INFINITY), "the centre of mass's component e2 is inf; give a finite number");
 
     let points = |m: &[f64], x: &[Vector]| Body::from_points(m, x).unwrap_err().to_string();
@@ -324,13 +324,10 @@ fn impossible_bodies_say_why() {
         points(&[1.0], &[origin, origin]),
         "1 masses for 2 positions; give one mass for every position"
     );
-    assert_eq!(
-        points(&[1.0, -2.0], &[origin, origin]),
-        "masses[1] = -2.0 kg is impossible; give finite masses >= 0"
-    );
+    assert_eq!(points(&[1.0, -2.0], &[origin, origin]), "masses[1] must be finite and >= 0, got -2.0 kg");
     assert_eq!(
         points(&[1.0, 2.0], &[origin, Vector([0.0, f64::NAN, 1.0])]),
         "positions[1] = (0.0, NaN, 1.0) is not finite; remove the point"
     );
-    assert_eq!(points(&[0.0], &[origin]), "a mass of 0.0 kg is impossible; give a positive, finite mass");
+    assert_eq!(points(&[0.0], &[origin]), "mass must be positive and finite, got 0.0 kg");
 }

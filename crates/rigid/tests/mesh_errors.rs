@@ -53,15 +53,14 @@ fn files_that_cannot_be_read() {
     assert!(read("empty.ply").ends_with("empty.ply: the file is empty; export the mesh again"));
 
     assert!(
-        read("rock.gltf")
-            .ends_with("the extension 'gltf' is none of stl, obj, ply; convert the mesh to one of these")
+        read("rock.gltf").ends_with("unknown extension 'gltf', expected stl, obj or ply; convert the mesh")
     );
-    assert!(read("rock").contains("the extension '' is none of stl, obj, ply"));
+    assert!(read("rock").contains("unknown extension '', expected stl, obj or ply"));
 }
 
 #[test]
 fn empty_and_without_triangles() {
-    let none = "rock: there are no triangles; a body needs a closed surface of them";
+    let none = "rock: the mesh has no triangles; a body needs a closed surface";
     for format in [MeshFormat::Stl, MeshFormat::Obj, MeshFormat::Ply] {
         assert_eq!(parse("", format), "rock: the file is empty; export the mesh again");
     }
@@ -77,14 +76,14 @@ fn corrupt_obj() {
     let end = "; correct it or export the mesh again";
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let face = |f: &str| obj(&format!("{vertices}{f}\n"));
-    assert_eq!(obj("v 0 0 0\nv 1 zero 0\n"), format!("rock: line 2: 'zero' is no number{end}"));
-    assert_eq!(obj("v 0 0 0 red\n"), format!("rock: line 1: 'red' is no number{end}"));
+    assert_eq!(obj("v 0 0 0\nv 1 zero 0\n"), format!("rock: line 2: 'zero' is not a number{end}"));
+    assert_eq!(obj("v 0 0 0 red\n"), format!("rock: line 1: 'red' is not a number{end}"));
     // Lines may end in a carriage return alone.
-    assert_eq!(obj("v 0 0 0\rv 1 zero 0\r"), format!("rock: line 2: 'zero' is no number{end}"));
-    assert_eq!(obj("v 0 \\\n 0\n"), format!("rock: line 1: a vertex with 2 of 3 coordinates{end}"));
-    assert_eq!(face("f 1 2"), format!("rock: line 4: a face with 2 of at least 3 corners{end}"));
+    assert_eq!(obj("v 0 0 0\rv 1 zero 0\r"), format!("rock: line 2: 'zero' is not a number{end}"));
+    assert_eq!(obj("v 0 \\\n 0\n"), format!("rock: line 1: a vertex needs 3 coordinates, got 2{end}"));
+    assert_eq!(face("f 1 2"), format!("rock: line 4: a face needs at least 3 corners, got 2{end}"));
     let no = |i: i64| {
-        format!("rock: line 4: there is no vertex {i}: vertices are numbered from 1, and there are 3{end}")
+        format!("rock: line 4: vertex {i} does not exist: there are 3 vertices, numbered from 1{end}")
     };
     assert_eq!(face("f 1 2 4"), no(4));
     assert_eq!(face("f 1 0 2"), no(0));
@@ -94,15 +93,13 @@ fn corrupt_obj() {
     for corner in ["a", "1/b", "1/2/3/4", "1.5", "/1", "99999999999999999999"] {
         assert_eq!(
             face(&format!("f 1 2 {corner}")),
-            format!(
-                "rock: line 4: '{corner}' is no corner of a face, which is like 7, 7/1, 7//1 or 7/1/1{end}"
-            )
+            format!("rock: line 4: '{corner}' is not a corner of a face, such as 7, 7/1, 7//1 or 7/1/1{end}")
         );
     }
     // What is quoted is shortened, and need not be text.
     let long = obj(&format!("v 0 0 {}\n", "x".repeat(1000)));
-    assert_eq!(long, format!("rock: line 1: '{}…' is no number{end}", "x".repeat(40)));
-    assert!(parse(b"v 0 0 \xff\xfe\n", MeshFormat::Obj).contains("'\u{fffd}\u{fffd}' is no number"));
+    assert_eq!(long, format!("rock: line 1: '{}…' is not a number{end}", "x".repeat(40)));
+    assert!(parse(b"v 0 0 \xff\xfe\n", MeshFormat::Obj).contains("'\u{fffd}\u{fffd}' is not a number"));
 }
 
 #[test]
@@ -142,20 +139,20 @@ fn coordinates_that_are_not_finite() {
 fn indices_and_factors_of_meshes_in_memory() {
     assert_eq!(
         TriangleMesh::new(octahedron(), vec![[0, 1, 2], [0, 6, 1]]).unwrap_err().to_string(),
-        "mesh: triangle 1 (counted from 0) has the vertex 6, but there are only 6, counted from 0; correct the index"
+        "mesh: triangle 1 (counted from 0) refers to vertex 6, but there are 6 vertices, counted from 0; correct the index"
     );
     let mesh = TriangleMesh::new(octahedron(), OCTAHEDRON.to_vec()).unwrap();
     for factor in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(
             mesh.scaled(factor).unwrap_err().to_string(),
-            format!("mesh: a scale factor of {factor:?} is impossible; give a positive, finite one")
+            format!("mesh: scale must be positive and finite, got {factor:?}")
         );
     }
     for factor in [1e-60, 1e60] {
         let message = mesh.scaled(factor).unwrap().body(Amount::Mass(1.0)).unwrap_err().to_string();
         assert!(message.starts_with("mesh: the mesh is 3.46410161513775"), "{message}");
         assert!(
-            message.ends_with(" m across, beyond the range of the integrals (1e-50 to 1e50); check the unit"),
+            message.ends_with(" m, outside the supported range of 1e-50 to 1e50 m; check the unit"),
             "{message}"
         );
     }
@@ -173,7 +170,7 @@ fn corrupt_and_truncated_stl() {
     assert_eq!(
         stl("not an STL"),
         format!(
-            "rock: byte 10: the file ends early, neither a text STL nor long enough for the 84-byte header of a binary one{copy}"
+            "rock: byte 10: the file is truncated, neither a text STL nor long enough for the 84-byte header of a binary one{copy}"
         )
     );
     // Four billion triangles are claimed, none is there: nothing is allocated for them.
@@ -182,7 +179,7 @@ fn corrupt_and_truncated_stl() {
     assert_eq!(
         stl(&claimed),
         format!(
-            "rock: byte 84: the file ends early, 4294967295 triangles need 214748364834 bytes, but there are 84{copy}"
+            "rock: byte 84: the file is truncated, 4294967295 triangles need 214748364834 bytes, but there are 84{copy}"
         )
     );
     let mut solid = b"solid rock".to_vec();
@@ -190,24 +187,26 @@ fn corrupt_and_truncated_stl() {
     solid[80] = 4;
     assert_eq!(
         stl(&solid),
-        format!("rock: byte 234: the file ends early, 4 triangles need 284 bytes, but there are 234{copy}")
+        format!("rock: byte 234: the file is truncated, 4 triangles need 284 bytes, but there are 234{copy}")
     );
     solid[80] = 2;
     assert_eq!(
         stl(&solid),
-        format!("rock: byte 80: the count is wrong: 2 triangles need 184 bytes, but there are 234{correct}")
+        format!(
+            "rock: byte 80: wrong number of triangles: 2 triangles need 184 bytes, but there are 234{correct}"
+        )
     );
     let stands = |line: usize, found: &str, wanted: &str| {
-        format!("rock: line {line}: '{found}' stands where {wanted} should{correct}")
+        format!("rock: line {line}: expected {wanted}, got '{found}'{correct}")
     };
     assert_eq!(stl("solid a\nfacets\n"), stands(2, "facets", "'facet' or 'endsolid'"));
     assert_eq!(stl("solid a\nendsolid a\nfacet\n"), stands(3, "facet", "'solid'"));
     assert_eq!(stl("solid a\nfacet\nvertex"), stands(3, "vertex", "'normal'"));
     let facet = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
     assert_eq!(stl(format!("{facet}vertex 1 1 0\n")), stands(7, "vertex", "'endloop'"));
-    assert_eq!(stl(facet.replace("1 0 0", "1 O 0")), format!("rock: line 5: 'O' is no number{correct}"));
+    assert_eq!(stl(facet.replace("1 0 0", "1 O 0")), format!("rock: line 5: 'O' is not a number{correct}"));
     let ends = |line: usize, wanted: &str| {
-        format!("rock: line {line}: the file ends early, {wanted} should follow{copy}")
+        format!("rock: line {line}: the file is truncated, expected {wanted}{copy}")
     };
     assert_eq!(stl("solid a\nfacet normal 0 0"), ends(2, "a normal"));
     assert_eq!(stl("solid a\nfacet normal 0 0 1 outer loop vertex 1 2"), ends(2, "a coordinate"));
@@ -221,62 +220,62 @@ fn corrupt_and_truncated_ply() {
     let copy = "; copy or export it again";
     let at = |line: usize, what: &str| format!("rock: line {line}: {what}{correct}");
     let ascii = "ply\nformat ascii 1.0\n";
-    assert_eq!(ply("plyx\n"), at(1, "'plyx' stands where 'ply' should"));
+    assert_eq!(ply("plyx\n"), at(1, "expected 'ply', got 'plyx'"));
     assert_eq!(
         ply("ply\nformat ascii 1.0\n"),
-        format!("rock: byte 21: the file ends early, the header's 'end_header' is missing{copy}")
+        format!("rock: byte 21: the file is truncated, the header's 'end_header' is missing{copy}")
     );
     assert_eq!(
         ply("ply\nformat binary 1.0\n"),
-        at(2, "the format 'binary' is none of ascii, binary_little_endian, binary_big_endian")
+        at(2, "unknown format 'binary', expected one of ascii, binary_little_endian, binary_big_endian")
     );
     assert_eq!(ply("ply\nend_header\n"), at(2, "the header has no line 'format'"));
     assert_eq!(
         ply(format!("{ascii}element vertex many\n")),
-        at(3, "'many' is no number of rows (0 to 4294967295)")
+        at(3, "'many' is not a number of rows (0 to 4294967295)")
     );
     assert_eq!(ply(format!("{ascii}property float x\n")), at(3, "a property before the first element"));
     assert_eq!(
         ply(format!("{ascii}element vertex 1\nproperty real x\n")),
-        at(4, "'real' is no type of number")
+        at(4, "'real' is not a number type")
     );
     assert_eq!(
         ply(format!("{ascii}element face 1\nproperty list float int vertex_indices\n")),
-        at(4, "'float' cannot count a list")
+        at(4, "a list cannot be counted by 'float'")
     );
     assert_eq!(
         ply(format!("{ascii}element face 1\nproperty int\n")),
         at(4, "a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'")
     );
-    assert_eq!(ply(format!("{ascii}colour red\n")), at(3, "'colour red' is no header line"));
+    assert_eq!(ply(format!("{ascii}colour red\n")), at(3, "'colour red' is not a header line"));
     assert_eq!(
         ply(format!("{ascii}element vertex 1\nproperty float x\nproperty float z\nend_header\n")),
-        at(6, "the vertices have no number 'y'")
+        at(6, "the vertices have no property 'y'")
     );
     assert_eq!(
         ply(format!("{ascii}element face 1\nproperty int vertex_indices\nend_header\n")),
-        at(5, "the faces have no list 'vertex_indices'")
+        at(5, "the faces have no list property 'vertex_indices'")
     );
 
     let declared = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                     element face 1\nproperty list char int vertex_indices\nend_header\n";
     let text = |rows: &str| ply(format!("{ascii}{declared}{rows}"));
     let vertices = "0 0 0\n1 0 0\n0 1 0\n";
-    assert_eq!(text("0 0 0\n1 0\n"), at(11, "the row has fewer numbers than its element's properties"));
-    assert_eq!(text("0 0 0\n1 0 0 0\n"), at(11, "the row has more numbers than its element's properties"));
-    assert_eq!(text("0 0 0\n1 0 x\n"), at(11, "'x' is no number"));
-    assert_eq!(text(&format!("{vertices}-3 0 1 2\n")), at(13, "a list of -3.0 numbers"));
-    assert_eq!(text(&format!("{vertices}2 0 1\n")), at(13, "a face with 2 of at least 3 corners"));
+    assert_eq!(text("0 0 0\n1 0\n"), at(11, "the row has fewer numbers than the element has properties"));
+    assert_eq!(text("0 0 0\n1 0 0 0\n"), at(11, "the row has more numbers than the element has properties"));
+    assert_eq!(text("0 0 0\n1 0 x\n"), at(11, "'x' is not a number"));
+    assert_eq!(text(&format!("{vertices}-3 0 1 2\n")), at(13, "invalid list length -3.0"));
+    assert_eq!(text(&format!("{vertices}2 0 1\n")), at(13, "a face needs at least 3 corners, got 2"));
     for index in ["3.0", "-1.0", "0.5", "NaN", "4294967296.0"] {
         assert_eq!(
             text(&format!("{vertices}3 0 1 {index}\n")),
-            at(13, &format!("there is no vertex {index}: they are numbered from 0, and there are 3"))
+            at(13, &format!("vertex {index} does not exist: there are 3 vertices, numbered from 0"))
         );
     }
     assert_eq!(
         text("0 0 0\n\n"),
         format!(
-            "rock: line 10: the file ends early, row 1 (counted from 0) of 3 of the element 'vertex' should follow{copy}"
+            "rock: line 10: the file is truncated, row 1 (counted from 0) of 3 of the element 'vertex' is missing{copy}"
         )
     );
 
@@ -287,7 +286,7 @@ fn corrupt_and_truncated_ply() {
     assert_eq!(
         ply(claimed),
         format!(
-            "rock: byte {length}: the file ends early, row 0 (counted from 0) of 4294967295 of the element 'vertex' should follow{copy}"
+            "rock: byte {length}: the file is truncated, row 0 (counted from 0) of 4294967295 of the element 'vertex' is missing{copy}"
         )
     );
 }
@@ -331,7 +330,7 @@ fn byte_order_marks_and_other_texts() {
     assert!(error.starts_with("rock: line 2: 'zero'"), "{error}");
     let page = "<!DOCTYPE html>\n".repeat(20);
     let error = TriangleMesh::parse(page.as_bytes(), MeshFormat::Stl, "rock").unwrap_err().to_string();
-    assert!(error.contains("this text is no STL"), "{error}");
+    assert!(error.contains("not an STL file"), "{error}");
 }
 
 #[test]
@@ -340,7 +339,7 @@ fn open_meshes() {
     faces.remove(5);
     assert_eq!(
         body(octahedron(), faces),
-        "mesh: the mesh is open: 3 edges with a triangle on one side only, \
+        "mesh: the mesh is open: 3 edges of one triangle only, \
          the first from (0.0, 1.0, 0.0) to (-1.0, 0.0, 0.0) of triangle 1 (counted from 0); close the holes"
     );
     let flat = body(octahedron(), vec![[0, 2, 4]]);
@@ -367,7 +366,7 @@ fn unbalanced_edges() {
     assert_eq!(
         body(octahedron(), faces),
         "mesh: the mesh is not a closed surface: 4 edges of three or more triangles traversed unequally often in the two directions, \
-         the first from (1.0, 0.0, 0.0) to (0.0, 1.0, 0.0) of triangle 0 (counted from 0), 2 times this way and 1 times back; \
+         the first from (1.0, 0.0, 0.0) to (0.0, 1.0, 0.0) of triangle 0 (counted from 0), 2 times in this direction and 1 times in the other; \
          remove the extra faces or reorient them"
     );
 }
@@ -377,7 +376,7 @@ fn nothing_inside() {
     // A triangle and its back.
     let message = body(octahedron(), vec![[0, 2, 4], [0, 4, 2]]);
     assert!(message.starts_with("mesh: the enclosed volume is zero to rounding ("), "{message}");
-    assert!(message.ends_with(" m³); give the surface an inside"), "{message}");
+    assert!(message.ends_with(" m³); the mesh must enclose a volume"), "{message}");
 }
 
 #[test]
@@ -397,11 +396,11 @@ fn impossible_amounts() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(
             error(Amount::Mass(bad)),
-            format!("mesh: a mass of {bad:?} kg is impossible; give a positive, finite mass")
+            format!("mesh: mass must be positive and finite, got {bad:?} kg")
         );
         assert_eq!(
             error(Amount::Density(bad)),
-            format!("mesh: a density of {bad:?} kg/m³ is impossible; give a positive, finite density")
+            format!("mesh: density must be positive and finite, got {bad:?} kg/m³")
         );
     }
 }
@@ -415,6 +414,6 @@ fn impossible_moments() {
     let mut faces = OCTAHEDRON.to_vec();
     faces.extend(OCTAHEDRON.map(|[a, b, c]| [a + 6, c + 6, b + 6]));
     let message = body(vertices, faces);
-    assert!(message.starts_with("mesh: the moments come out as "), "{message}");
+    assert!(message.starts_with("mesh: no body has the moments "), "{message}");
     assert!(message.contains("inside-out or parts overlap"), "{message}");
 }

@@ -151,25 +151,20 @@ fn volumes() {
 fn impossible_solids_say_why() {
     let error = |solid: Solid, amount| solid.body(amount).unwrap_err().to_string();
     let mass = Amount::Mass(1.0);
-    assert_eq!(
-        error(Solid::Sphere { radius: 0.0 }, mass),
-        "radius = 0.0 m is impossible; give a positive, finite length"
-    );
+    assert_eq!(error(Solid::Sphere { radius: 0.0 }, mass), "radius must be positive and finite, got 0.0 m");
     assert!(error(Solid::Box { lengths: [1.0, -2.0, 1.0] }, mass).starts_with("lengths[1] = -2.0 m"));
     assert!(
         error(Solid::Ellipsoid { semi_axes: [1.0, 2.0, f64::NAN] }, mass).starts_with("semi_axes[2] = NaN")
     );
     assert_eq!(
         error(Solid::HollowSphere { outer_radius: 1.0, inner_radius: 1.5 }, mass),
-        "inner_radius = 1.5 m does not fit outer_radius = 1.0 m; give one from 0 to the outer radius"
+        "inner_radius must be between 0 and outer_radius = 1.0 m, got 1.5 m"
     );
-    assert!(
-        error(Solid::Torus { major_radius: 1.0, minor_radius: 1.5 }, mass).contains("runs through itself")
-    );
+    assert!(error(Solid::Torus { major_radius: 1.0, minor_radius: 1.5 }, mass).contains("intersects itself"));
     let density = Amount::Density(1.0);
     assert_eq!(
         error(Solid::Rod { length: 1.0 }, density),
-        "a rod has no volume, so a density gives it no mass; give the mass"
+        "a rod has no volume, so a density does not determine its mass; give the mass"
     );
     assert!(
         error(Solid::HollowSphere { outer_radius: 1.0, inner_radius: 1.0 }, density)
@@ -179,7 +174,7 @@ fn impossible_solids_say_why() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(
             error(ball, Amount::Density(bad)),
-            format!("a density of {bad:?} kg/m³ is impossible; give a positive, finite density")
+            format!("density must be positive and finite, got {bad:?} kg/m³")
         );
         assert!(error(ball, Amount::Mass(bad)).starts_with(&format!("a mass of {bad:?} kg")));
     }

@@ -37,7 +37,7 @@ fn rows_hold_what_they_say() {
 #[test]
 fn stepped_motions_are_known_for_their_run() {
     let error = opened(DAMPED).states(&[3.0]).unwrap_err();
-    assert!(error.contains("times[0] = 3 lies outside the motion"), "{error}");
+    assert!(error.contains("times[0] = 3 is outside the computed motion"), "{error}");
 }
 
 /// A scene that starts late: the times of its states, and of its bodies, are those of its laws.

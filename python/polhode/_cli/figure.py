@@ -128,7 +128,7 @@ def _film(options: argparse.Namespace, shown: Shown) -> int:
 
 def _scene_of_one(name: str) -> Scene:
     """Return the scene; a ValueError for an ensemble."""
-    from polhode._scene.scene import Scene
+    from polhode import Scene
 
     scene = Scene.read(name)
     if scene.ensemble is not None:

@@ -1,4 +1,4 @@
-"""Inertia and bodies: mass, centre of mass and the inertia map, from numbers, solids, points and meshes."""
+"""`Inertia` and `Body`, from numbers, solids, point masses and meshes."""
 
 from __future__ import annotations
 
@@ -19,43 +19,43 @@ from polhode._support.arrays import Array, as_components, as_float, as_floats
 class Inertia(LinearMap):
     """The inertia map ``I(B) = ∫ρ x∧(x·B) d³x`` of bivectors to bivectors (handout eq. 4.18).
 
-    It takes the plane of rotation to the plane of angular momentum; both are in body axes. About the
-    centre of mass unless its maker says otherwise. Units kg m². Its matrix over ``(e2e3, e3e1, e1e2)``
-    is the inertia tensor over axial vectors. A symmetric `LinearMap` of grade 2.
+    It maps the plane of rotation to the plane of angular momentum, both in body axes, in kg m². It is about
+    the centre of mass unless stated otherwise. Its matrix over ``(e2e3, e3e1, e1e2)`` is the inertia tensor
+    over axial vectors. A symmetric `LinearMap` of grade 2.
 
-    Made by `from_principal_moments`, `from_matrix`, `from_function` and `from_points`. Moments that no body
-    can have (``i1 + i2 < i3``, a negative one) are a ValueError.
+    Create one with `from_principal_moments`, `from_matrix`, `from_function` or `from_points`. Moments that no
+    body has (``i1 + i2 < i3``, or negative) raise a ValueError.
     """
 
     __slots__ = ("_core",)
 
     def __init__(self, core: _native.Inertia) -> None:
         if not isinstance(core, _native.Inertia):
-            raise TypeError("Inertia is made by from_principal_moments, from_matrix or from_points")
+            raise TypeError("use Inertia.from_principal_moments, from_matrix, from_function or from_points")
         self._core = core
 
     @staticmethod
     def from_principal_moments(i1: float, i2: float, i3: float) -> Inertia:
-        """From the moments (kg m²) about e1, e2 and e3, i.e. in the planes e2e3, e3e1, e1e2."""
+        """Return the inertia with moments (kg m²) about e1, e2, e3, i.e. in the planes e2e3, e3e1, e1e2."""
         moments = as_components([i1, i2, i3], 3, "moments")
         return Inertia(_native.Inertia.from_principal_moments(moments))
 
     @staticmethod
     def from_matrix(J: Any) -> Inertia:  # type: ignore[override]  # an inertia has one grade
-        """From a symmetric 3x3 matrix (kg m²) in body axes; principal moments come out rising."""
+        """Return the inertia with a symmetric 3x3 matrix (kg m²) in body axes; principal moments ascend."""
         matrix = as_floats(J, "inertia matrix")
         if matrix.shape != (3, 3):
-            raise ValueError(f"an inertia matrix has shape (3, 3), got {matrix.shape}")
+            raise ValueError(f"inertia matrix must have shape (3, 3), got {matrix.shape}")
         return Inertia(_native.Inertia.from_matrix(np.ascontiguousarray(matrix).reshape(9)))
 
     @staticmethod
     def from_function(f: Callable[[Multivector], Multivector]) -> Inertia:  # type: ignore[override]
-        """From a function on bivectors, such as ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25)."""
+        """Return the inertia of a function, as ``I(B) = i1 B + (i3 − i1) (B∧e3) e3`` (handout eq. 4.25)."""
         return Inertia.from_matrix(LinearMap.from_function(f, grade=2).matrix)
 
     @staticmethod
     def from_points(masses: Any, positions: Any) -> Inertia:
-        """From point masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
+        """Return the inertia of masses (n,) in kg at positions (n, 3) in m, about their centre of mass."""
         return Inertia(_native.Inertia.from_points(*_points(masses, positions)))
 
     def __call__(self, B: Any) -> Multivector:
@@ -124,9 +124,9 @@ def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
 class Body:
     """A rigid body: mass (kg), centre of mass (m) and inertia about the centre of mass, in body axes.
 
-    ``a + b`` is the two bodies fixed together in the same body axes; `moved` puts one elsewhere first.
-    Solids are uniform, centred on the origin (a cone stands on the plane e1e2), and have their axis
-    along e3; give `mass` in kg or `density` in kg/m³.
+    ``a + b`` joins two bodies rigidly in the same body axes; place them with `moved` first. Solids are
+    uniform and centred on the origin, with their axis along e3 (a cone has its base in the plane e1e2); give
+    `mass` in kg or `density` in kg/m³.
     """
 
     __slots__ = ("_core",)
@@ -174,7 +174,7 @@ class Body:
         mass: float | None = None,
         density: float | None = None,
     ) -> Body:
-        """Return the shell between two radii; equal radii make a thin shell, which needs a mass."""
+        """Return a spherical shell; equal radii give a thin shell, which requires `mass`."""
         return Body._solid("hollow_sphere", [outer_radius, inner_radius], mass, density)
 
     @staticmethod
@@ -217,7 +217,7 @@ class Body:
 
     @staticmethod
     def from_points(masses: Any, positions: Any) -> Body:
-        """From point masses (n,) in kg at positions (n, 3) in m."""
+        """Return the body of point masses (n,) in kg at positions (n, 3) in m."""
         return Body._of(_native.Body.from_points(*_points(masses, positions)))
 
     @staticmethod
@@ -228,15 +228,15 @@ class Body:
         mass: float | None = None,
         scale: float = 1.0,
     ) -> Body:
-        """From a closed triangle mesh (STL, OBJ or PLY), exactly; `scale` turns its coordinates into metres.
+        """Return the body enclosed by a triangle mesh (STL, OBJ or PLY), exactly; `scale` is its unit in m.
 
         Raises
         ------
         FileNotFoundError
             If there is no such file.
         ValueError
-            For a corrupt file, and for a mesh that is open, inconsistently wound, inside out or degenerate;
-            with the place.
+            For a corrupt file, or a mesh that is open, inconsistently wound, inside-out or degenerate; the
+            message gives the place.
         """
         if not os.path.lexists(path):
             raise FileNotFoundError(f"{os.fspath(path)}: no such file")
@@ -244,7 +244,7 @@ class Body:
             _native.Body.from_mesh(os.fspath(path), as_float(scale, "the scale"), *_amount(mass, density))
         )
 
-    # --- what it is
+    # --- properties
 
     @property
     def mass(self) -> float:
@@ -262,11 +262,11 @@ class Body:
         return Inertia(self._core.inertia())
 
     def inertia_about(self, point: Any) -> Inertia:
-        """Inertia about a point fixed in the body (a vector or (3,), in m)."""
+        """Return the inertia about a point fixed in the body (a vector or (3,), in m)."""
         return Inertia(self._core.inertia_about(as_point(point, "the point")))
 
     def moved(self, rotor: Rotor | None = None, position: Any = 0) -> Body:
-        """Return the body at a pose: its points x go to ``R x ~R + position``."""
+        """Return the body moved rigidly: its points x go to ``R x ~R + position``."""
         turn = Rotor.identity() if rotor is None else rotor
         if not isinstance(turn, Rotor) or turn.shape:
             raise TypeError(f"rotor must be a single Rotor, got {turn!r}; see Rotor.from_components")
@@ -303,7 +303,7 @@ class Body:
 
 
 def _amount(mass: float | None, density: float | None) -> tuple[float | None, float | None]:
-    """Exactly one of mass and density."""
+    """Return mass and density, of which exactly one is given."""
     if (mass is None) == (density is None):
         raise TypeError("give exactly one of mass= (kg) and density= (kg/m³)")
     return (
@@ -324,7 +324,7 @@ def _points(masses: Any, positions: Any) -> tuple[Array, Array]:
 
 
 def bodies_of(body: Any) -> Any:
-    """Return an array of objects, all of them bodies or inertias, from one or a nested sequence of them."""
+    """Return an object array of bodies or inertias from one or a nested sequence of them."""
     array: Any = np.empty((), dtype=object)
     if isinstance(body, list | tuple | np.ndarray):
         array = np.array(body, dtype=object)
@@ -339,7 +339,7 @@ def bodies_of(body: Any) -> Any:
 
 
 def mapped_objects(f: Callable[[Any], Any], array: Any) -> Any:
-    """Return f of the objects of an array, as such an array."""
+    """Return the object array of f(x) for each object x of an array."""
     result: Any = np.empty(array.shape, dtype=object)
     result.ravel()[:] = [f(one) for one in array.flat]
     return result

@@ -1,4 +1,4 @@
-"""Torqued motion in closed form: Lagrange's heavy top, the damped body, the sphere in a field."""
+"""Closed-form motions with torque: `LagrangeTop`, `DampedTop`, `LarmorSphere`."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from polhode._mechanics.state import State
 from polhode._support.arrays import Array, as_float, as_floats
 
 if TYPE_CHECKING:
-    from polhode._viewer.widget import Viewer
+    from polhode import _outputs
 
 
 class _Solution(Protocol):
     def at(self, times: Array) -> tuple[Array, Array]: ...
 
 
-class _ClosedForm:
-    """A solution, and what it was made of: inertia, rotor and angular velocity at time 0, torque."""
+class ClosedForm:
+    """A solution with its inertia, rotor and angular velocity at time 0, and parameter of the torque."""
 
     _solution: _Solution
     _given: tuple[Inertia, Rotor, Multivector, Any]
@@ -38,11 +38,8 @@ class _ClosedForm:
             time=times,
         )
 
-    def view(self, duration: float | None = None) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does, for so many s."""
-        from polhode._viewer.notebook import view
-
-        return view(self, duration=duration)
+    if TYPE_CHECKING:
+        view = _outputs.view_of
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), self._given
@@ -54,20 +51,20 @@ class _ClosedForm:
         return f"{type(self).__name__}({inertia!r}, rotor={rotor}, omega_body={omega_body}, {torque})"
 
 
-class LagrangeTop(_ClosedForm):
+class LagrangeTop(ClosedForm):
     """The heavy symmetric top, exact at any time (Klein & Sommerfeld; Whittaker §72).
 
-    The body is held at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
-    torque of `ph.torque.heavy`. Two principal moments are equal and ``c`` lies along the axis of symmetry,
-    whichever it is. Both Cayley–Klein parameters of the rotor are theta functions times uniform phases,
-    which are reduced in twice the precision: the error is rounding at t = 1e12 as at t = 1, near the
-    separatrix as far from it. The rotor is continuous in time on the double cover.
+    The body is fixed at the origin of its axes under gravity along −e3: ``V = c·γ``, ``γ = ~R e3 R``, the
+    torque of `ph.torque.heavy`. Two principal moments are equal and ``c`` is along the axis of symmetry,
+    which may be any principal axis. Both Cayley–Klein parameters of the rotor are theta functions times
+    uniform phases, reduced in double-double arithmetic: the error stays at rounding level at any time up to t
+    = 1e12, also near the separatrix. The rotor is continuous in time on the double cover.
 
-    Any tilt from the vertical is resolved, down to the least float; beside the unstable upright a tilt θ and
-    its rate keep a relative error of about ``ln(8/θ)`` roundings. Transverse moments that differ by a part
-    d <= 1.8e-15 of them count as equal, and ``c`` may lie by an angle d <= 1.4e-14 beside the axis. That
-    neglects an angle of about ``d ω t``, ω the largest rate, which grows with the fall of an unstable top;
-    `simulate` reports it as the error estimate.
+    Any tilt from the vertical is resolved, down to the smallest float; near the unstable upright, a tilt θ
+    and its rate have a relative error of about ``ln(8/θ)`` roundings. Transverse moments with a relative
+    difference d <= 1.8e-15 count as equal, and ``c`` may be off the axis by an angle d <= 1.4e-14. This
+    neglects an angle of about ``d ω t``, ω the largest rate, which grows as an unstable top falls; `simulate`
+    reports it as the error estimate.
 
     Parameters
     ----------
@@ -83,8 +80,8 @@ class LagrangeTop(_ClosedForm):
     Raises
     ------
     ValueError
-        If all moments differ, one is zero, or ``c`` lies beside the axis; for numbers that are not finite;
-        if the solution does not keep the start or the energy.
+        If all moments differ, one is zero, or ``c`` is off the axis; if a number is not finite; if the
+        solution does not reproduce the start or conserve the energy.
     """
 
     _solution: _native.LagrangeTop
@@ -96,23 +93,24 @@ class LagrangeTop(_ClosedForm):
         self._given = inertia, start.rotor, start.omega_body, c
 
     def describe(self) -> dict[str, Any]:
-        """Say what the invariants tell.
+        """Return the regime, periods and invariants of the motion.
 
-        The axis is that of symmetry, in the direction of the centre of mass. ``regime``; ``tilt_min`` and
+        The axis is the axis of symmetry, pointing to the centre of mass. ``regime``; ``tilt_min`` and
         ``tilt_max``, angles of the axis from up in rad; ``nutation_period`` in s; ``precession_rate`` and
-        ``spin_rate``, the means of φ' about e3 and of ψ' about the axis in rad/s, ``precession_period``;
+        ``spin_rate``, the mean rates of φ about e3 and of ψ about the axis in rad/s, ``precession_period``;
         ``modulus`` of the elliptic functions; ``energy`` in J, ``axial_momentum`` L3 and
-        ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and whether a top
-        with this spin ``sleeps``, that is would be stable upright. None where nothing repeats.
+        ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and ``sleeps``,
+        whether a top with this spin is stable upright. A period is None where the motion does not repeat.
         """
         return self._solution.describe()
 
 
-class DampedTop(_ClosedForm):
+class DampedTop(ClosedForm):
     """Any body with the torque ``N = −g L``, exact at any time.
 
-    The free body at ``τ = (1 − e^(−gt))/g``, its angular velocity times ``e^(−gt)``; g in 1/s of either sign.
-    τ is known in twice the precision. A ValueError if a principal moment is zero or a number is not finite.
+    The motion is that of the free body at time ``τ = (1 − e^(−gt))/g``, with its angular velocity times
+    ``e^(−gt)``; g is in 1/s, of either sign. τ is computed in double-double arithmetic. A ValueError if a
+    principal moment is zero or a number is not finite.
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any, g: float) -> None:
@@ -122,12 +120,12 @@ class DampedTop(_ClosedForm):
         self._given = inertia, start.rotor, start.omega_body, g
 
 
-class LarmorSphere(_ClosedForm):
+class LarmorSphere(ClosedForm):
     """A sphere with the axial torque ``N = L x b``, exact at any time: a spin in a uniform field.
 
     ``b``, a vector or (3,) in rad/s, is fixed in space: ``R(t) = exp(½ I b t) exp(−½ I (ω + b) t) R(0)`` with
-    the angular velocity ω in space at time 0. Both phases are reduced in twice the precision, so that the
-    error does not grow with time. Moments that differ by a part d <= 1.8e-15 of them count as equal; that
+    the angular velocity ω in space at time 0. Both phases are reduced in double-double arithmetic, so the
+    error does not grow with time. Moments with a relative difference d <= 1.8e-15 count as equal; this
     neglects an angle of about ``d |ω| t``, which `simulate` reports as the error estimate. A ValueError if
     the moments differ by more or a number is not finite.
     """
@@ -145,5 +143,5 @@ def _start(inertia: Inertia, rotor: Rotor, omega_body: Any, remedy: str = "Body.
     start = State(rotor, omega_body)
     if start.rotor.shape or start.omega_body.shape:
         shapes = (start.rotor.shape, start.omega_body.shape)
-        raise ValueError(f"the start must be a single one, got batch shapes {shapes}")
+        raise ValueError(f"rotor and omega_body must be single values, got batch shapes {shapes}")
     return start

@@ -1,4 +1,4 @@
-"""Many bodies at once: what is given of them, broadcast, and what comes of it."""
+"""Ensembles: broadcast inputs and collect results."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from polhode._mechanics.trajectory import Drift, Trajectory
 from polhode._support import memory
 from polhode._support.arrays import Array, Shape, frozen
 
-# Of a point: rotor, angular velocity, momentum and energy; place and velocity, where forces move bodies.
+# Of a point: rotor, angular velocity, momentum and energy; with forces, position and velocity.
 _BYTES_OF_POINT = 8 * (4 + 3 + 3 + 1)
 _BYTES_OF_CENTER = 8 * (3 + 3)
-# Of a body: its inertia and start on the way, and what the certificate tells of it.
+# Of a body: its inertia and start, and its part of the certificate.
 _BYTES_OF_BODY = 800
 
-# The longest step in s, how many steps a pass may take, and times at which steps end.
+# The longest step in s, the maximum number of steps of a pass, and times at which steps end.
 StepLimits = tuple[float | None, float | None, list[float]]
 
 _VECTOR, _BIVECTOR = 0b0010, 0b0100
@@ -35,10 +35,10 @@ _NOWHERE: Any = (None, None)
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """Bodies, their starts and what acts on them; batch shapes that broadcast to `shape`.
+    """Bodies, their starts, torques and forces, with batch shapes that broadcast to `shape`.
 
     `inertias` is an array of objects (...), `start_times` (...), `rotors` (..., 4), `omegas` (..., 3),
-    `places` and `velocities` (..., 3), `masses` (...), NaN where they are not known; `laws` may be batches.
+    `positions` and `velocities` (..., 3), `masses` (...), NaN where unknown; `laws` may be batches.
     """
 
     shape: Shape
@@ -46,7 +46,7 @@ class Ensemble:
     start_times: Array
     rotors: Array
     omegas: Array
-    places: Array
+    positions: Array
     velocities: Array
     masses: Array
     laws: tuple[_native.Law, ...]
@@ -63,7 +63,7 @@ class Ensemble:
 
     @property
     def bytes(self) -> int:
-        """What the results take, and what is needed on the way."""
+        """Memory for the results and for the computation."""
         point = _BYTES_OF_POINT + (_BYTES_OF_CENTER if self.forces else 0)
         return self.bodies * (point * len(self.times) + _BYTES_OF_BODY)
 
@@ -87,25 +87,25 @@ class Ensemble:
             start_times=own(self.start_times, 0),
             rotors=own(self.rotors),
             omegas=own(self.omegas),
-            places=own(self.places),
+            positions=own(self.positions),
             velocities=own(self.velocities),
             masses=own(self.masses, 0),
             laws=tuple(map(law, self.laws)),
         )
 
     def run(self, threads: int | None, progress: Callable[[int, float], object] | None) -> Trajectory:
-        """Return the motions. A MemoryError, before anything is computed, if they would not fit."""
+        """Return the motions; a MemoryError, raised first, if they would not fit into memory."""
         memory.require(
             self.bytes,
             f"the motions of {self.bodies} bodies at {len(self.times)} times",
-            "take fewer times, or blocks of bodies by ph.simulate_blocks",
+            "use fewer times, or ph.simulate_blocks",
         )
         if not self.bodies:
-            return self._nothing()
-        # The core takes one time at least.
+            return self._empty()
+        # The core needs at least one time.
         times = self.times if len(self.times) else self.start_times.ravel()[:1]
-        centers = np.concatenate(np.broadcast_arrays(self.places, self.velocities), axis=-1)
-        arrays, told = _native.simulate_many(
+        centers = np.concatenate(np.broadcast_arrays(self.positions, self.velocities), axis=-1)
+        arrays, summary = _native.simulate_many(
             self.shape,
             ([inertia._core for inertia in self.inertias.flat], self.inertias.shape),
             np.ascontiguousarray(self.start_times),
@@ -125,11 +125,11 @@ class Ensemble:
         )
         n = len(self.times)
         arrays = [frozen(x.reshape(*self.shape, *x.shape[1:])[..., :n, :]) for x in arrays]
-        certificate = self._certificate(told)
+        certificate = self._certificate(summary)
         warn_of(certificate)
-        return self._trajectory(arrays, certificate, self._failures(told))
+        return self._trajectory(arrays, certificate, self._failures(summary))
 
-    def _nothing(self) -> Trajectory:
+    def _empty(self) -> Trajectory:
         sizes = (4, 3, 3, 1, 3, 3) if self.forces else (4, 3, 3, 1)
         arrays = [frozen(np.zeros((*self.shape, len(self.times), size))) for size in sizes]
         none = np.zeros(self.shape)
@@ -142,7 +142,7 @@ class Ensemble:
     ) -> Trajectory:
         rotors, omegas, momenta, energies, *centers = arrays
         inertias = self.inertias
-        # Without forces they are found when they are asked for.
+        # Without forces they are computed on access.
         position, velocity = [Multivector._of(rows, _VECTOR) for rows in centers] or _NOWHERE
         return Trajectory(
             frozen(self.times.copy()),
@@ -162,15 +162,15 @@ class Ensemble:
         shape = (*self.shape, 3)
         return Drift(
             np.broadcast_to(self.start_times, self.shape),
-            np.broadcast_to(self.places, shape),
+            np.broadcast_to(self.positions, shape),
             np.broadcast_to(self.velocities, shape),
         )
 
-    def _certificate(self, told: dict[str, Any]) -> Certificate:
-        """Return what the core tells of each body; of those that failed no drift and no error."""
-        names, codes = told["methods"]
+    def _certificate(self, summary: dict[str, Any]) -> Certificate:
+        """Return the certificate of all bodies, without drifts and errors for those that failed."""
+        names, codes = summary["methods"]
         failed = np.zeros(len(codes), bool)
-        failed[told["failed"]] = True
+        failed[summary["failed"]] = True
 
         def column(numbers: Array) -> Array:
             return frozen(numbers.reshape(self.shape))
@@ -178,31 +178,31 @@ class Ensemble:
         def finished(numbers: Array) -> Array:
             return column(np.where(failed, np.nan, numbers))
 
-        # A body that failed before it had a method is told the one that was asked for.
+        # A body that failed before a method was chosen has the given one.
         names = np.array([name or self.method for name in names])
         used = np.unique(codes if failed.all() else codes[~failed])
         return Certificate(
             str(names[used[0]]) if len(used) == 1 else column(names[codes]),
-            column(told["step"]),
-            column(told["steps"]),
-            column(told["evaluations"]),
-            finished(told["error_estimate"]),
-            {name: column(numbers) for name, numbers in told["conserved"].items()},
-            {name: finished(numbers) for name, numbers in told["drift"].items()},
-            finished(told["norm_drift"]),
-            tuple(told["warnings"]),
+            column(summary["step"]),
+            column(summary["steps"]),
+            column(summary["evaluations"]),
+            finished(summary["error_estimate"]),
+            {name: column(numbers) for name, numbers in summary["conserved"].items()},
+            {name: finished(numbers) for name, numbers in summary["drift"].items()},
+            finished(summary["norm_drift"]),
+            tuple(summary["warnings"]),
         )
 
-    def _failures(self, told: dict[str, Any]) -> tuple[Failure, ...]:
-        if not told["failed"]:
+    def _failures(self, summary: dict[str, Any]) -> tuple[Failure, ...]:
+        if not summary["failed"]:
             return ()
-        indices = np.stack(np.unravel_index(told["failed"], self.shape), axis=-1).tolist()
-        rows = zip(indices, told["failure_times"], told["messages"], strict=True)
+        indices = np.stack(np.unravel_index(summary["failed"], self.shape), axis=-1).tolist()
+        rows = zip(indices, summary["failure_times"], summary["messages"], strict=True)
         return tuple(Failure(tuple(index), time, message) for index, time, message in rows)
 
 
 def _rows_of(argument: Any, rows: slice) -> Any:
-    """Return an argument of a law for some bodies; those of formulas are pairs of names and values."""
+    """Return an argument of a law for some rows; formulas have pairs of names and values."""
     if isinstance(argument, Batch):
         return argument[rows]
     if isinstance(argument, tuple) and any(isinstance(x, tuple) and len(x) == 2 for x in argument):
@@ -210,11 +210,11 @@ def _rows_of(argument: Any, rows: slice) -> Any:
     return argument
 
 
-# --- what is given
+# --- inputs
 
 
 def warn_of(certificate: Certificate) -> None:
-    """Report what the certificate warns of to the caller of `simulate`."""
+    """Issue the warnings of the certificate to the caller of `simulate`."""
     for warning in certificate.warnings:
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
 
@@ -226,7 +226,7 @@ def shape_of(bodies: Any, state: State, torque_shape: Shape) -> Shape:
 
 
 def check_state(state: State) -> None:
-    """A state's numbers must be finite."""
+    """Raise an error unless the numbers of a state are finite."""
     if not isinstance(state, State):
         raise TypeError(f"state must be a State, got {type(state).__name__}")
     for name in ("position", "velocity"):

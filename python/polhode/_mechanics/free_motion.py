@@ -1,4 +1,4 @@
-"""The free top, exact at any time: states, what its invariants tell, its curves, and derivatives."""
+"""`FreeMotion`: torque-free motion, exact at any time, its curves, invariants and derivatives."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from polhode._support.arrays import Array, Shape, as_float, as_floats, frozen, h
 from polhode._support.memory import require
 
 if TYPE_CHECKING:
-    from polhode._viewer.widget import Viewer
+    from polhode import _outputs
 
 _STATE = 7 * 8  # bytes
-_DERIVATIVES = 2 * 64 * 8  # bytes, as they are found and as they are told
-_BODY = 800  # bytes of a motion in a batch, at most
-_MANY = 64  # bodies that fill the lanes
+_DERIVATIVES = 2 * 64 * 8  # bytes, of the core's arrays and their copies
+_BODY = 800  # upper bound of the bytes of a motion in a batch
+_MANY = 64  # number of bodies that fills the SIMD lanes
 
 
 class FreeMotion:
-    """The torque-free motion of any body, exact at any time; or of a batch of bodies.
+    """Torque-free motion of any body, or of a batch of bodies, exact at any time.
 
     Jacobi's solution: the rotor is four theta series and one uniform turn about L, the angular velocity
-    three elliptic functions. Their phases are reduced in twice the precision, so that the error is rounding
-    at t = 1e12 as at t = 1, near the separatrix as far from it. The rotor is continuous in time on the
-    double cover. No two moments count as equal that are not, and no rate as zero: needles and spins beside an
-    axis may be as thin and as small as floats are. Moments and axes of a matrix that is not diagonal are
-    rounded before, which is a turn of about ``ε |ω| t``.
+    three elliptic functions. Their phases are reduced in double-double arithmetic, so the error stays at
+    rounding level up to t = 1e12, also near the separatrix. The rotor is continuous in time on the double
+    cover. Moments that differ are never treated as equal, nor small rates as zero: thin bodies and spins
+    close to an axis are resolved. For a matrix that is not diagonal, rounding of the moments and axes adds
+    a turn of about ``ε |ω| t``.
 
     Parameters
     ----------
@@ -48,13 +48,13 @@ class FreeMotion:
     omega_body
         Angular velocity in body axes at time 0, a bivector or an array (..., 3), in rad/s.
 
-    Batch shapes broadcast together, to `shape`. ``m[i]`` is one motion, or fewer. Bodies of a batch are
-    computed side by side, whatever their regimes are.
+    Batch shapes broadcast to `shape`; ``m[i]`` indexes the batch as in NumPy. The bodies of a batch are
+    computed in SIMD lanes, whatever their regimes.
 
     Raises
     ------
     ValueError
-        If a moment is zero or a number is not finite; with the batch index.
+        If a moment is zero or a number is not finite; the message has the batch index.
     """
 
     _core: _native.FreeMotion
@@ -105,11 +105,11 @@ class FreeMotion:
         return f"FreeMotion({self.describe()['regime']}, {self._inertia!r})"
 
     def at(self, t: Any) -> State:
-        """Return the state at time t in s; all at all times, of batch shape ``m.shape + t.shape``.
+        """Return the states of all bodies at all times t in s, of batch shape ``m.shape + t.shape``.
 
-        Each is the same to the last bit as that of one motion at one time. A ValueError for times that are
-        not finite, or so late that the phase is no longer known (1e17 turns); a MemoryError for more states
-        than there is memory for.
+        Each has the same bits as a single motion at a single time. A ValueError for times that are not
+        finite, or so large that the phase is lost to rounding (1e17 turns); a MemoryError if the states
+        would not fit into memory.
         """
         state, times = self._core.once(t), t
         if state is None:
@@ -121,12 +121,12 @@ class FreeMotion:
         return State._at_origin(*state, times)
 
     def at_each(self, t: Any) -> State:
-        """Return the state of each body at its own time t in s, or at its own times.
+        """Return the state of each body at its own time or times t in s.
 
         Times broadcast with the batch of bodies, to the batch shape of the state: bodies (N,) and times (N,)
-        give (N,), one time for each body; times (T, N), or bodies (N, 1) and times (N, T), T for each. Each
-        state is the same to the last bit as that of one motion at one time. Errors as in `at`, and a
-        ValueError for times whose shape does not fit the bodies.
+        give (N,), one time for each body; times (T, N), or bodies (N, 1) and times (N, T), give T for each.
+        Each state has the same bits as a single motion at a single time. Errors as in `at`, and a ValueError
+        if the shapes do not broadcast.
         """
         times = as_floats(t, "time")
         try:
@@ -134,10 +134,10 @@ class FreeMotion:
         except ValueError:
             raise ValueError(
                 f"times of shape {times.shape} do not broadcast with bodies of batch shape {self.shape}; "
-                "`at` takes all times for each body"
+                "`at` evaluates every body at all times"
             ) from None
         order, each = _order(self.shape, shape)
-        # The times, and the states once more where they are put into another order.
+        # The times, and a copy of the states where they are reordered.
         size = 8 + _STATE * (1 if order == tuple(range(len(shape))) else 2)
         require(size * math.prod(shape), f"states of batch shape {shape}")
         self._check_each(times, shape)
@@ -149,7 +149,7 @@ class FreeMotion:
         return State._at_origin(Rotor._from_rows(rows), _bivectors(rates, shape), times)
 
     def _check_each(self, times: Array, shape: Shape) -> None:
-        """Times must be finite and within the horizon of their bodies."""
+        """Raise a ValueError unless the times are finite and within the horizons of their bodies."""
         if not math.prod(shape) or np.abs(times).max() <= self._core.horizon:
             return
         for index in np.argwhere(~np.isfinite(times)):
@@ -160,15 +160,15 @@ class FreeMotion:
             body = _index(np.minimum(own, np.array(self.shape) - 1))
             time, horizon = np.broadcast_to(times, shape)[tuple(index)], horizons[tuple(index)]
             raise ValueError(
-                f"at index {_index(index)}: time {time:g} s of body {body} lies beyond {horizon:.1e} s, "
-                "where the phase of its rotation is no longer known to rounding; take times nearer to 0"
+                f"at index {_index(index)}: time {time:g} s of body {body} is beyond {horizon:.1e} s, "
+                "where the phase of the rotation is lost to rounding; use times closer to 0"
             )
 
     def describe(self) -> dict[str, Any]:
-        """Say what the invariants tell.
+        """Return the regime, periods and invariants of the motion.
 
-        - ``regime``, in words; ``axis``, the principal axis (1, 2, 3) that the polhode encircles; ``modulus``
-          k of the elliptic functions; ``energy`` in J; ``angular_momentum``, its size in kg m²/s.
+        - ``regime``, a name; ``axis``, the principal axis (1, 2, 3) that the polhode encircles; ``modulus``
+          k of the elliptic functions; ``energy`` in J; ``angular_momentum``, its magnitude in kg m²/s.
         - ``period`` T of the angular velocity in the body, and ``flip_time``, half of it, after which the
           spin about the middle axis is reversed (short- and long-axis mode), in s.
         - ``precession_rate``, the mean rate about L in rad/s, and ``precession_period``, 2π over it, in s.
@@ -177,47 +177,45 @@ class FreeMotion:
         - ``solid_angle`` A in sr that L sweeps in the body round the encircled axis in a period (Montgomery's
           geometric phase): ``φ = 2ET/|L| ± (2π − A)``, + if that axis has the largest moment, else −.
         - ``wobble_min``, ``wobble_max``: the extremes of the angle between L and the encircled axis, in rad.
-        - ``wobble_period`` in s of a small wobble, where the rotation is steady about an axis and stable.
+        - ``wobble_period`` in s of a small wobble, if the rotation is steady about a stable axis.
 
-        What has no meaning in a regime is None. For a batch all are arrays of its shape, NaN for None.
+        Values that a regime does not define are None. For a batch all are arrays of its shape, with NaN for
+        None.
         """
-        told = self._core.describe()
+        found = self._core.describe()
         if not self.shape:
-            return told
-        return {name: np.asarray(column).reshape(self.shape) for name, column in told.items()}
+            return found
+        return {name: np.asarray(column).reshape(self.shape) for name, column in found.items()}
 
     def polhode(self, n: int) -> Multivector:
         """Return n angular velocities in body axes along one period, bivectors (..., n).
 
-        They follow each other in equal times from the start on, and the last is the first, so that the curve
-        is closed. A steady rotation stays at its point. The separatrix is not closed: its curve goes from one
-        end of the middle axis to the other, up to 4e-9 of the way.
+        They are equally spaced in time from the start; the last equals the first, so the curve is closed. For
+        a steady rotation all are equal. On the separatrix the curve is open: it runs from one end of the
+        middle axis to the other, up to a relative distance of 4e-9.
         """
         return _bivectors(self._core.polhode(_count(n)), (*self.shape, n))
 
     def herpolhode(self, n: int, periods: float = 1.0) -> Multivector:
-        """Return n angular velocities in space axes over so many periods, bivectors (..., n).
+        """Return n angular velocities in space axes over a number of periods, bivectors (..., n).
 
-        Their tips lie in the invariable plane, ``Ω_S·L = −2E``; the curve is closed only by chance.
+        Their tips lie in the invariable plane, ``Ω_S·L = −2E``; in general the curve is not closed.
         """
         length = as_float(periods, "periods")
         if not (length > 0 and np.isfinite(length)):
             raise ValueError(f"periods is {length}; it must be positive and finite")
         return _bivectors(self._core.herpolhode(_count(n), length), (*self.shape, n))
 
-    def view(self, duration: float | None = None) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does for one body, for so many s."""
-        from polhode._viewer.notebook import view
-
-        return view(self, duration=duration)
+    if TYPE_CHECKING:
+        view = _outputs.view_of
 
     def derivatives(self, t: Any) -> FlowDerivatives:
-        """Return how the state at time t changes with the start and the body, exact at any time.
+        """Return the derivatives of the state at time t by the start and the body.
 
-        In closed form, so that the cost does not grow with t and the error is rounding. A ValueError as in
-        `at`, and where an unstable rotation has carried a change beyond floating point.
+        They are in closed form: the cost does not grow with t and the error is rounding. A ValueError as in
+        `at`, and where the derivatives of an unstable rotation overflow.
 
-        `polhode.jax.free` is the same as a function for JAX.
+        `polhode.jax.free` is the same function for JAX.
         """
         times = as_floats(t, "time")
         shape = self.shape + times.shape
@@ -243,18 +241,18 @@ class FlowDerivatives:
     """Derivatives of the state of a free motion at time t, for a batch of times and bodies of shape (...).
 
     Rows are components: of the rotor ``(1, e2e3, e3e1, e1e2)``, of the angular velocity in body axes
-    ``(e2e3, e3e1, e1e2)``. Columns are components of what is changed at the start.
+    ``(e2e3, e3e1, e1e2)``. Columns are components of the variable.
 
     Attributes
     ----------
     d_rotor_d_attitude
-        (..., 4, 3), by a turn of the start by a small bivector ε in space axes, ``exp(−½ε) R(0)``. The
-        angular velocity in the body does not change with it.
+        (..., 4, 3), by a rotation of the start by a small bivector ε in space axes, ``exp(−½ε) R(0)``,
+        which leaves the angular velocity in the body unchanged.
     d_rotor_d_omega, d_omega_d_omega
         (..., 4, 3) in s and (..., 3, 3), by the angular velocity in body axes at the start.
     d_rotor_d_moments, d_omega_d_moments
-        (..., 4, 3) and (..., 3, 3), by the principal moments in kg m², about principal axes that stay where
-        they are in the body, and at the same angular velocity at the start.
+        (..., 4, 3) and (..., 3, 3), by the principal moments in kg m², with fixed principal axes and a fixed
+        initial angular velocity.
     d_rotor_dt, d_omega_dt
         (..., 4) and (..., 3), by time: ``−½ R Ω_B`` and Euler's equations.
     """
@@ -269,18 +267,18 @@ class FlowDerivatives:
 
 
 class SymmetricTop(FreeMotion):
-    """The free top with two equal moments, by handout eq. (4.35); a single one.
+    """Torque-free motion of one body with two equal moments, by handout eq. (4.35).
 
-    ``R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)``, ``Ω_l = L/i1``, ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` with the
-    symmetry axis e3 of the body, or whichever it is. A ValueError if all three moments differ. The rates are
-    rounded, so the error grows with the angle turned. Moments that differ by a part d <= 1.8e-15 of them
-    count as equal, with an error of ``d |ω| t``. `FreeMotion` has neither error.
+    ``R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)``, ``Ω_l = L/i1``, ``Ω_r = ((i1 − i3)/i1) ω3 I e3`` for
+    the symmetry axis e3, or another. A ValueError if all three moments differ. The rates are rounded, so
+    the error grows with the angle turned. Moments with a relative difference d <= 1.8e-15 count as equal,
+    with an error of ``d |ω| t``. `FreeMotion` has neither error.
     """
 
     def __init__(self, inertia: Inertia, rotor: Rotor, omega_body: Any) -> None:
         super().__init__(inertia, rotor, omega_body)
         if self.shape:
-            raise ValueError(f"a SymmetricTop is a single one, got batch shape {self.shape}; use FreeMotion")
+            raise ValueError(f"SymmetricTop takes one body, got batch shape {self.shape}; use FreeMotion")
         self.at(0.0)
 
     def at(self, t: Any) -> State:
@@ -293,12 +291,12 @@ class SymmetricTop(FreeMotion):
 
 
 def describe_free(inertia: Inertia, omega_body: Any) -> dict[str, Any]:
-    """Say what the invariants of a free motion tell, as `FreeMotion.describe`."""
+    """Return the regime, periods and invariants of a free motion, as `FreeMotion.describe`."""
     return FreeMotion(inertia, Rotor.identity(), omega_body).describe()
 
 
 def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotion, Any]:
-    """Return motions and inertias from what may be batches."""
+    """Return the motions and inertias of arguments that may be batches."""
     inertias = _inertias(inertia)
     if not isinstance(rotor, Rotor):
         raise TypeError(f"rotor must be a Rotor, got {type(rotor).__name__}; see Rotor.from_components")
@@ -323,12 +321,12 @@ def _batch(inertia: Any, rotor: Any, omega_body: Any) -> tuple[_native.FreeMotio
 
 
 def _inertias(values: Any) -> Any:
-    """Return an array of objects, all of them inertias."""
+    """Return an object array of inertias."""
     array: Any = np.empty((), dtype=object)
     if isinstance(values, Inertia):
         array[()] = values
     elif isinstance(values, list | tuple) and set(map(type, values)) == {Inertia}:
-        # So as not to look for sequences in each.
+        # np.array would look for sequences in each.
         array = np.fromiter(values, object, len(values))
     elif isinstance(values, list | tuple | np.ndarray):
         array = np.array(values, dtype=object)
@@ -342,10 +340,10 @@ def _inertias(values: Any) -> Any:
 
 
 def _order(bodies: Shape, shape: Shape) -> tuple[Shape, int]:
-    """Return the order of the axes of the states in which they are computed, and the times of a body in turn.
+    """Return the order of axes in which the states are computed, and the number of times per body.
 
-    Bodies stand side by side in the core: they are to follow each other with all times that each has in turn,
-    and from the first one again only if they are many.
+    The core computes bodies in SIMD lanes: each body should come with all of its times, and the bodies should
+    repeat only if there are many.
     """
     own = (1,) * (len(shape) - len(bodies)) + bodies
     axes = [k for k, length in enumerate(own) if length != 1]
@@ -373,5 +371,5 @@ def _count(n: Any) -> int:
     except TypeError:
         raise TypeError(f"n must be a whole number, got {type(n).__name__}") from None
     if count < 2:
-        raise ValueError(f"n is {count}; a curve has at least 2 points")
+        raise ValueError(f"n is {count}; a curve needs at least 2 points")
     return count

@@ -1,4 +1,4 @@
-"""What is told of a run besides its states: its certificate, its events, its failures."""
+"""Results of a run besides its states: `Certificate`, `Crossings`, `Failure`."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from polhode._support.arrays import Array, hands_out_copies
 )
 @dataclass(frozen=True)
 class Certificate:
-    """How a run was made, and how far it went astray in what the law conserves.
+    """How a run was computed, and its drift in conserved quantities.
 
-    Of a batch of bodies all numbers are arrays of its shape; the method is a name where all bodies that were
-    followed to the end have the same, else an array of names. For bodies that failed, the error estimate and
-    the drifts are NaN.
+    For a batch of bodies all numbers are arrays of its shape; the method is one name if all bodies that
+    finished have the same, else an array of names. For failed bodies, the error estimate and the drifts are
+    NaN.
 
     Attributes
     ----------
     method, step, steps, evaluations
-        The method's name (``exact`` for the exact solution), its longest step in s, and the steps and the
-        evaluations of the torque of all passes.
+        Name of the method (``exact`` for the exact solution), longest step in s, and number of steps and of
+        torque evaluations in all passes.
     error_estimate
-        Cautious estimate of the relative error in rotor and angular velocity: truncation, from the last two
-        passes, and the rounding that the motion magnifies, measured by passes with added noise; of the exact
-        solution, what it neglects where moments that differ by rounding count as equal, else None. None for
-        a step that was given; NaN in a batch.
+        Conservative estimate of the relative error in rotor and angular velocity: truncation, from the last
+        two passes, plus the rounding amplified by the motion, measured by passes with added noise. For the
+        exact solution, the error of treating moments that differ by rounding as equal, else None. None for
+        a given step; NaN in a batch.
     conserved
-        Each conserved quantity's initial value in SI; NaN for a body of a batch that does not conserve it.
+        Initial value of each conserved quantity in SI; NaN for a body of a batch that does not conserve it.
     drift
-        Its largest change over the run, relative to the terms that make it up.
+        Largest change of each over the run, relative to the size of its terms.
     norm_drift
         Largest ``abs(|R| − 1)``.
     warnings
-        What the numbers do not show, such as a law that changes too fast for a fixed step.
+        Warnings, such as a law that changes too fast for a fixed step.
     """
 
     method: Any
@@ -57,19 +57,19 @@ class Certificate:
 
     @property
     def worst(self) -> float:
-        """The largest drift of all, over the bodies that were followed to the end; NaN if none was."""
+        """The largest of all drifts, over the bodies that finished; NaN if none did."""
         if not np.ndim(self.norm_drift):
             return float(max([self.norm_drift, *self.drift.values()]))
         finished = ~np.isnan(self.norm_drift)
         if not finished.any():
             return np.nan
         drifts = self.drift
-        told = ((drifts[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
-        columns = [(self.norm_drift, finished), *told]
+        largest = ((drifts[name], finished & ~np.isnan(start)) for name, start in self.conserved.items())
+        columns = [(self.norm_drift, finished), *largest]
         return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
 
     def _of(self, index: tuple[Any, ...]) -> Certificate:
-        """Return that of some bodies of a batch."""
+        """Return the certificate of some bodies of a batch."""
 
         def picked(numbers: Any) -> Any:
             found = np.asarray(numbers[index])
@@ -93,16 +93,16 @@ class Certificate:
 
 @dataclass(frozen=True)
 class Failure:
-    """A body of a batch that could not be followed to the end.
+    """A body of a batch whose motion could not be computed to the end.
 
     Attributes
     ----------
     index
-        Its place in the batch.
+        Index in the batch.
     time
-        Up to when it was followed, in s.
+        Time up to which it was computed, in s.
     message
-        Why no further.
+        The error.
     """
 
     index: tuple[int, ...]
@@ -116,18 +116,18 @@ class Failure:
 @hands_out_copies("time", "rising")
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """When and where an event happened, m times, in the order in which they were met: by `abs(time)`.
+    """Times and states of the m occurrences of an event, by increasing distance in time from the start.
 
     Attributes
     ----------
     name
-        What the event is called.
+        Name of the event.
     time
         Times in s, (m,).
     rising
-        Whether the quantity passed zero from below, in the direction in which time was followed, (m,).
+        Whether the quantity passed zero from below, in the direction of integration, (m,).
     rotor, omega_body, position, velocity
-        The states there, as in `Trajectory`, batch (m,).
+        The states at these times, as in `Trajectory`, batch (m,).
     """
 
     name: str
@@ -143,5 +143,5 @@ class Crossings:
 
     @property
     def states(self) -> State:
-        """The states there, a batch (m,), from which `simulate` goes on."""
+        """The states at these times, a batch (m,), from which `simulate` can continue."""
         return State(self.rotor, self.omega_body, self.position, self.velocity, time=self.time)

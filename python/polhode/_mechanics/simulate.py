@@ -1,4 +1,4 @@
-"""Simulation: a body, its start, its torques and forces, to a motion at given times."""
+"""`simulate` and `simulate_blocks`: motions at given times from bodies, states, torques and forces."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
+from polhode._mechanics.problem import Problem
 from polhode._mechanics.result import Certificate
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
-from polhode._scene.writer import Problem
 from polhode._support.arrays import as_count, as_float, as_floats, output_times
 from polhode.event import Event
 from polhode.force import Force
 from polhode.torque import Torque, constant_body, function, settled
 
-# Bytes of the results in a block, where nobody says how long it is to be.
+# Default size of the results of a block, in bytes.
 _BLOCK = 32 << 20
 
 METHODS: tuple[str, ...] = ("auto", "exact", *_native.methods())
@@ -48,105 +48,102 @@ def simulate(
     threads: int | None = None,
     progress: Callable[[int, float], object] | None = None,
 ) -> Trajectory:
-    """Return the motion of a body at given times: exact where it is known, else by steps that keep |R|.
+    """Return the motion of a body at given times: in closed form if there is one, else by integration.
 
-    Or the motions of many: bodies, states and what a torque law is given may be batches, whose shapes
-    broadcast together. Each body moves as it would alone, and one that fails does not stop the others: see
-    ``trajectory.failures``.
+    Bodies, states and parameters of torque laws may be batches, whose shapes broadcast. Each body moves as it
+    would alone, and a body that fails does not stop the others: see ``trajectory.failures``.
 
     Parameters
     ----------
     body
-        A `Body` or its `Inertia` in kg m². `ph.torque.gravity` holds a body at its pivot, `ph.torque.heavy`
-        at the origin of its axes; an inertia is then that about the fixed point, which is also what position
-        and velocity of the state are those of. Or a nested sequence or array of them, (...).
+        A `Body` or its `Inertia` in kg m², or a nested sequence or array of them, (...). `ph.torque.gravity`
+        fixes a body at its pivot, `ph.torque.heavy` at the origin of its axes; an inertia is then about the
+        fixed point, whose position and velocity are those of the state.
     state
-        The state at the start, ``state.time``; rotor, angular velocity, position, velocity and time may be
-        batches, (...).
+        The state at the start time ``state.time``; its values may be batches, (...).
     times
-        Output times in s, (n,), not decreasing, on the same clock as ``state.time`` and what laws call t:
-        ``[60.0]`` for one, ``np.linspace(0, 60, 601)`` for a motion of 60 s. Those before the start are
-        reached by going backwards.
+        Output times in s, (n,), not decreasing, on the same clock as ``state.time`` and the t of laws, such
+        as ``np.linspace(0, 60, 601)``, or ``[60.0]`` for one. Times before the start are reached by
+        integrating backwards.
     torque
         A law of `polhode.torque`, a sum of them, or a function as for `polhode.torque.function`; None for
-        free motion. Its numbers may be batches, (...).
+        free motion. Parameters of laws may be batches, (...).
     force
-        What moves the centre of mass: a law of `polhode.force`, a sum of them, a vector or (3,) in N for a
-        constant force in space, or a function as for `polhode.force.function`. It needs a `Body`.
+        Force on the centre of mass: a law of `polhode.force`, a sum of them, a vector or (3,) in N for a
+        constant force in space, or a function as for `polhode.force.function`. Requires a `Body`.
     method
         ``"auto"``: ``"exact"`` where the motion has a closed form and no `step` is given (free bodies,
         symmetric ones under `heavy` along their axis, damping alone, spheres under `larmor`, and constant
-        forces); for torques that depend on attitude and time, symmetric splittings, which keep the energy of
+        forces); for torques that depend on attitude and time, symmetric splittings, which conserve energy in
         long runs: ``rkn6`` for symmetric bodies and ``kahan_li8`` for others; for torques that depend on the
-        rate of turning, and for forces, ``dop853``, a Runge–Kutta method of order 8 on the group of rotors
-        that adapts its steps. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,
-        ``kahan_li6``, ``rk4``. A batch without a `step` is ``exact`` where known, else ``dop853``, each body
-        by its own steps. Where `dop853` would need steps far shorter than the motion itself, as under strong
-        damping, ``"auto"`` takes ``midpoint``.
+        angular velocity, and for forces, ``dop853``, an adaptive Runge–Kutta method of order 8 on the group
+        of rotors. Or one of these by name, or ``strang`` (order 2), ``yoshida4``, ``yoshida6``,
+        ``kahan_li6``, ``rk4``. A batch without a `step` is ``exact`` where possible, else ``dop853`` with
+        steps of its own for each body. Where the laws are stiff, as under strong damping, ``"auto"`` uses
+        ``midpoint``.
     rtol, atol
-        Without a `step`, runs with ever shorter steps until the estimated error of the last is less than the
-        larger of the two: in the rotor; in the angular velocity, relative to its largest size or, if that is
-        larger, to the rate √(N/i) at which the torque N makes the largest moment i swing; and so for the
-        centre of mass, where forces move it; at output times and events. The estimate includes the rounding
-        that the motion magnifies, which is measured. Nothing is returned whose estimate exceeds the
-        tolerance. With neither given the aim is 1e-10; where rounding allows only up to 1e-6, that is
-        accepted and the certificate has the estimate.
+        Without a `step`, the steps are refined until the estimated error at output times and events is less
+        than the larger of the two: in the rotor; in the angular velocity, relative to its maximum or, if
+        larger, to the rate √(N/i) of the swing of the largest moment i under the torque N; and likewise for
+        the centre of mass under forces. The estimate includes the measured amplification of rounding by the
+        motion. A result whose estimate exceeds the tolerance is an error. By default the tolerance is 1e-10,
+        or up to 1e-6 where rounding allows no less; the certificate has the estimate.
     step
-        A fixed step in s; shortened a little so that steps end on the output times. A law that changes too
-        fast for it is reported as a `RuntimeWarning`.
+        A fixed step in s, shortened slightly so that steps end at the output times. A law that changes too
+        fast for it raises a `RuntimeWarning`.
     max_step
-        The longest step in s. Laws that depend on time are sampled at 4096 times beforehand, and steps
-        shorten where they change; a push that lasts less than 1/4096 of the run needs `max_step` or `breaks`.
+        The longest step in s. Laws that depend on time are sampled at 4096 times first, and steps are
+        shortened where they change; a pulse shorter than 1/4096 of the run needs `max_step` or `breaks`.
     max_steps
-        How many steps a pass may take; 1e8 by default, 1e10 where a `step` is given. A run that is foreseen
-        to exceed it is refused.
+        Maximum number of steps of a pass; 1e8 by default, 1e10 with a `step`. A run predicted to exceed it
+        is an error.
     breaks
-        Times in s, (k,), at which steps end: where a law jumps, or before and after a short push.
+        Times in s, (k,), at which steps end: where a law jumps, or before and after a short pulse.
     events
-        What to look for on the way, from `polhode.event`: one or several; found in ``trajectory.events``.
-        Not for a batch.
+        Events of `polhode.event` to detect, one or several; see ``trajectory.events``. Not for a batch.
     threads
-        How many threads share the bodies of a batch; None for ``POLHODE_NUM_THREADS``, or all cores. The
-        results have the same bits for any.
+        Number of threads for a batch; None for ``POLHODE_NUM_THREADS``, or all cores. The results have the
+        same bits for any number.
     progress
-        Called now and then with the pass (from 1) and the fraction of it done. Ctrl-C stops the run.
+        Called repeatedly with the number of the pass (from 1) and the fraction of it done. Ctrl-C stops the
+        run.
 
     Raises
     ------
     ValueError
-        For input that is not usable, a tolerance that was not reached, or too many steps; in a batch, for
-        what no body could be followed with.
+        For invalid input, a tolerance that was not reached, or too many steps; in a batch, for input that is
+        invalid for all bodies.
     MemoryError
-        If the results of a batch do not fit into memory: before anything is computed.
+        If the results of a batch would not fit into memory; raised before anything is computed.
     """
     limits = _limits(max_step, max_steps, breaks)
-    given = _given(body, state, times, torque, force, method, rtol, atol, step, limits)
+    ensemble = _ensemble(body, state, times, torque, force, method, rtol, atol, step, limits)
     _check_progress(progress)
-    looked_for = _events(events)
+    wanted = _events(events)
     count = _threads(threads)
-    if given.shape:
-        if looked_for:
+    if ensemble.shape:
+        if wanted:
             raise ValueError(
-                f"events are looked for in the motion of one body, this is a batch of shape {given.shape}; "
-                "simulate each body whose events are wanted alone"
+                f"events are not supported for batches, got batch shape {ensemble.shape}; "
+                "simulate the bodies one by one"
             )
-        return given.run(count, progress)
-    inertia = given.inertias[()]
+        return ensemble.run(count, progress)
+    inertia = ensemble.inertias[()]
     motion = _native.simulate(
         inertia._core,
-        float(given.start_times),
-        given.rotors,
-        given.omegas,
-        list(given.laws),
-        np.concatenate([given.places, given.velocities]),
-        float(given.masses),
-        list(given.forces),
-        given.times,
-        given.method,
-        given.step,
-        given.rtol,
-        given.limits,
-        [event.law for event in looked_for],
+        float(ensemble.start_times),
+        ensemble.rotors,
+        ensemble.omegas,
+        list(ensemble.laws),
+        np.concatenate([ensemble.positions, ensemble.velocities]),
+        float(ensemble.masses),
+        list(ensemble.forces),
+        ensemble.times,
+        ensemble.method,
+        ensemble.step,
+        ensemble.rtol,
+        ensemble.limits,
+        [event.law for event in wanted],
         progress,
     )
     certificate = Certificate(**motion.certificate())
@@ -157,13 +154,13 @@ def simulate(
         state,
         law,
         None if force is None else as_force(force),
-        given.times,
-        given.method,
-        given.step,
-        given.rtol,
-        given.limits,
+        ensemble.times,
+        ensemble.method,
+        ensemble.step,
+        ensemble.rtol,
+        ensemble.limits,
     )
-    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for], problem)
+    return Trajectory._of(motion, inertia, certificate, [event.name for event in wanted], problem)
 
 
 def simulate_blocks(
@@ -184,10 +181,10 @@ def simulate_blocks(
     threads: int | None = None,
     progress: Callable[[int, float], object] | None = None,
 ) -> Iterator[tuple[slice, Trajectory]]:
-    """Yield the motions of a batch in blocks, so that all together need not fit into memory.
+    """Yield the motions of a batch in blocks, so that they need not fit into memory together.
 
-    Each block is a slice of the first batch axis and the `Trajectory` of these bodies: the same bits as in
-    ``simulate(…)[slice]``. What is wanted of a block is taken in the loop, such as `Moments`::
+    Each block is a slice of the first batch axis and the `Trajectory` of these bodies, with the same bits as
+    ``simulate(…)[slice]``. Reduce each block in the loop, for example to `Moments`::
 
         spins = ph.Moments()
         for rows, motion in ph.simulate_blocks(body, state, times, torque):
@@ -196,28 +193,28 @@ def simulate_blocks(
     Parameters
     ----------
     block
-        How many rows of the first axis a block has; None for some 32 MB of results.
+        Number of rows of the first axis in a block; None for about 32 MB of results.
     progress
-        Called now and then with 1 and the fraction of all blocks that is done. Ctrl-C stops the run.
+        Called repeatedly with 1 and the fraction of all blocks done. Ctrl-C stops the run.
 
-    The others, and the errors, are those of `simulate`: at once where arguments do not fit together, and else
-    with the first block.
+    The other parameters and the errors are those of `simulate`. Invalid arguments are reported by the call,
+    other errors with the first block.
     """
     limits = _limits(max_step, max_steps, breaks)
-    given = _given(body, state, times, torque, force, method, rtol, atol, step, limits)
+    ensemble = _ensemble(body, state, times, torque, force, method, rtol, atol, step, limits)
     _check_progress(progress)
-    if not given.shape:
-        raise ValueError("simulate_blocks is for a batch of bodies, this is one; use simulate")
+    if not ensemble.shape:
+        raise ValueError("simulate_blocks needs a batch of bodies, got one body; use simulate")
     if block is not None and as_count(block, "block") < 1:
-        raise ValueError(f"block is {block}; it must be 1 or more")
+        raise ValueError(f"block must be at least 1, got {block}")
     _threads(threads)
-    rows = given.shape[0]
-    size = block or max(1, _BLOCK * rows // max(given.bytes, 1))
-    return _blocks(given, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
+    rows = ensemble.shape[0]
+    size = block or max(1, _BLOCK * rows // max(ensemble.bytes, 1))
+    return _blocks(ensemble, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
 
 
 def _blocks(
-    given: Ensemble,
+    ensemble: Ensemble,
     blocks: list[slice],
     threads: int | None,
     progress: Callable[[int, float], object] | None,
@@ -228,12 +225,12 @@ def _blocks(
         def of_all(number: int, fraction: float, rows: slice = rows) -> None:
             done = rows.start + fraction * (rows.stop - rows.start)
             if progress is not None:
-                progress(number, done / given.shape[0])
+                progress(number, done / ensemble.shape[0])
 
-        yield rows, given.block(rows).run(count, of_all if progress else None)
+        yield rows, ensemble.block(rows).run(count, of_all if progress else None)
 
 
-def _given(
+def _ensemble(
     body: Any,
     state: State,
     times: Any,
@@ -245,7 +242,7 @@ def _given(
     step: float | None,
     limits: StepLimits,
 ) -> Ensemble:
-    """Return what is to be simulated, checked."""
+    """Return the checked arguments, with one entry per body where they are batches."""
     bodies, torque = settled(bodies_of(body), as_torque(torque))
     if method not in METHODS:
         raise ValueError(f"unknown method {method!r}, expected one of {', '.join(METHODS)}")
@@ -254,7 +251,7 @@ def _given(
     pushes, thrust = _forces(force, bodies)
     held = torque is not None and torque.holds
     if held and pushes:
-        raise ValueError("gravity and heavy of ph.torque hold the body at a fixed point: no force moves it")
+        raise ValueError("ph.torque.gravity and heavy fix a point of the body; leave force out")
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
@@ -278,7 +275,7 @@ def _given(
 
 
 def _limits(max_step: Any, max_steps: Any, breaks: Any) -> StepLimits:
-    """Return what bounds the steps, checked as far as the core does not."""
+    """Return the limits of steps, with the checks that the core does not make."""
     times = as_floats(breaks, "breaks")
     if times.ndim != 1:
         raise ValueError(f"breaks must be one-dimensional, got shape {times.shape}")
@@ -296,41 +293,41 @@ def _check_progress(progress: Any) -> None:
 
 def _threads(threads: Any) -> int | None:
     if threads is not None and as_count(threads, "threads") < 1:
-        raise ValueError(f"threads is {threads}; it must be 1 or more")
+        raise ValueError(f"threads must be at least 1, got {threads}")
     return None if threads is None else min(as_count(threads, "threads"), 1024)
 
 
 def as_torque(torque: Any) -> Torque | None:
     if torque is None or isinstance(torque, Torque):
         return torque
-    # A maker of laws, given without its arguments, is callable too.
+    # A constructor of laws, given without its arguments, is callable too.
     if callable(torque) and getattr(torque, "__module__", None) != function.__module__:
         return function(torque)
     raise TypeError(f"torque must be a law of polhode.torque, such as heavy(c), got {type(torque).__name__}")
 
 
 def _tolerance(rtol: float | None, atol: float | None) -> float | None:
-    """Both measure the same scaled difference, so the larger one rules."""
+    """Return the larger of the two, which measure the same scaled difference."""
     given = {name: as_float(x, name) for name, x in (("rtol", rtol), ("atol", atol)) if x is not None}
     for name, x in given.items():
         if not (x > 0 and np.isfinite(x)):
-            raise ValueError(f"{name} is {x}; it must be positive and finite")
+            raise ValueError(f"{name} must be positive and finite, got {x}")
     return max(given.values(), default=None)
 
 
 def _ruling_inertia(body: Body | Inertia, held: bool) -> Inertia:
-    """About the fixed point, the origin of the body's axes, where the body is held."""
+    """Return the inertia about the fixed point, the origin of the body's axes, if the body is held."""
     if isinstance(body, Inertia):
         return body
     return body.inertia_about(0) if held else body.inertia
 
 
 def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None]:
-    """Return the forces, and the torque of thrusts that act beside the centre of mass."""
+    """Return the forces, and the torque of thrusts that act away from the centre of mass."""
     if force is None:
         return [], None
     if Inertia in {*map(type, bodies.flat)}:
-        raise TypeError("a force needs a Body, whose mass it moves; got an Inertia")
+        raise TypeError("a force needs a Body, which has a mass, got an Inertia")
     law = as_force(force)
     thrusts = [law.arguments for law in law.laws if law.name == "thrust" and len(law.arguments) == 2]
     if not thrusts:
@@ -344,7 +341,7 @@ def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None
 def as_force(force: Any) -> Force:
     if isinstance(force, Force):
         return force
-    # A maker of forces, given without its arguments, is callable too.
+    # A constructor of forces, given without its arguments, is callable too.
     if callable(force) and not isinstance(force, Multivector):
         if getattr(force, "__module__", None) == forces.__name__:
             raise TypeError(f"force must be a law of polhode.force, such as drag(k), got {force.__name__}")
@@ -356,11 +353,11 @@ def _events(events: Event | Sequence[Event]) -> list[Event]:
     if isinstance(events, Event):
         return [events]
     if not isinstance(events, Iterable):
-        raise TypeError(f"events must be made by polhode.event, one or several, got {events!r}")
+        raise TypeError(f"events must be one or several events of polhode.event, got {events!r}")
     found = list(events)
     for k, event in enumerate(found):
         if not isinstance(event, Event):
             raise TypeError(
-                f"events[{k}] must be made by polhode.event, such as plane(e3, e3), got {event!r}"
+                f"events[{k}] must be an event of polhode.event, such as plane(e3, e3), got {event!r}"
             )
     return found

@@ -1,4 +1,4 @@
-"""States as close in time as a smooth curve needs."""
+"""Dense samples of a trajectory, for smooth curves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from polhode._support.arrays import Array
 if TYPE_CHECKING:
     from polhode._mechanics.trajectory import Trajectory
 
-# The body turns by less than this from one point to the next, in rad, unless that takes too many points.
+# Largest turn between samples, in rad, and maximum number of samples, which takes precedence.
 _TURN, _MOST = 0.08, 20_000
 
 
@@ -26,7 +26,7 @@ class Samples(NamedTuple):
 
 
 def samples(trajectory: Trajectory) -> Samples:
-    """Return the states at the output times; where these are too far apart and it can, at times between."""
+    """Return the states at the output times, and between them where these are far apart."""
     time = trajectory.time
     given = Samples(time, trajectory.rotor, trajectory.omega_body)
     if trajectory._motion is None or len(time) < 2:
@@ -46,6 +46,6 @@ def samples(trajectory: Trajectory) -> Samples:
 
 
 def rotor_at(trajectory: Trajectory, k: int) -> Rotor:
-    """Return the rotor at an output time by its number, as a rotor."""
+    """Return the rotor at an output time, by index."""
     rotor: Rotor = Rotor._from_rows(trajectory.rotor._data[k])
     return rotor

@@ -1,4 +1,4 @@
-"""States of a body: attitude, rotation, place, at a time."""
+"""`State`: attitude, angular velocity, position and velocity of a body at a time."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ _ORIGIN = vector([0.0, 0.0, 0.0])
 
 @dataclass(frozen=True, eq=False, init=False)
 class State:
-    """A body's state: attitude, rotation, place, time; or those of a batch of bodies, whose shapes broadcast.
+    """State of a body at a time, or of a batch of bodies, whose shapes broadcast.
 
-    ``a == b`` is a bool: whether the shapes and all numbers are equal. ``state[i]`` is one state of a batch,
-    or fewer, by an index of NumPy over its shape.
+    ``a == b`` is a bool: whether the shapes and all numbers are equal. ``state[i]`` indexes the batch as in
+    NumPy.
 
     Attributes
     ----------
     rotor
         From body axes to space axes.
     omega_body
-        Angular velocity in body axes, a bivector in rad/s; an array (..., 3) of its components
-        ``(e2e3, e3e1, e1e2)``, which are those of the axial vector, is taken too.
+        Angular velocity in body axes, a bivector in rad/s, or an array (..., 3) of its components
+        ``(e2e3, e3e1, e1e2)``, which equal those of the axial vector.
     position, velocity
         Of the centre of mass in space, vectors in m and m/s.
     time
-        In s, a float or an array (...): `simulate` starts there.
+        Time in s, a float or an array (...): the start time of `simulate`.
 
     Parameters
     ----------
     rotor, omega_body, position, velocity, time
-        The attributes. Position, velocity and time are 0 if left out.
+        The attributes. Position, velocity and time default to 0.
     omega_space
-        Angular velocity in space axes, in place of `omega_body`.
+        Angular velocity in space axes, instead of `omega_body`.
     """
 
     rotor: Rotor
@@ -69,7 +69,7 @@ class State:
             raise TypeError("give either omega_body or omega_space, the angular velocity in rad/s")
         if omega_space is not None:
             omega_body = (~rotor)(angular_velocity(omega_space))
-        # A frozen instance's own dictionary, which takes what a frozen instance does not.
+        # A frozen dataclass does not allow assignment to attributes.
         self.__dict__.update(
             rotor=rotor,
             omega_body=angular_velocity(omega_body),
@@ -80,9 +80,9 @@ class State:
 
     @classmethod
     def _at_origin(cls, rotor: Rotor, omega_body: Multivector, time: Any) -> State:
-        """Return the state of values that need no check, at rest in the origin."""
+        """Return a state at rest in the origin, without checking the values."""
         self = object.__new__(cls)
-        # Four times as fast as object.__setattr__.
+        # Four times faster than object.__setattr__.
         self.__dict__.update(
             rotor=rotor, omega_body=omega_body, position=_ORIGIN, velocity=_ORIGIN, time=_time(time)
         )
@@ -114,7 +114,7 @@ class State:
             time = np.broadcast_to(self.time, shape)[parts]
         except IndexError as error:
             raise IndexError(f"{error} (batch shape {shape})") from None
-        # The index is to stay off the axis of components.
+        # Keep the index off the axis of components.
         rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
 
         def picked(value: Multivector) -> Array:
@@ -141,7 +141,7 @@ class State:
         return (self[i] for i in range(len(self)))
 
     def _shapes(self) -> dict[str, Shape]:
-        """Return the batch shape of each part, by its name in messages."""
+        """Return the batch shapes, by the names used in error messages."""
         return {
             "the rotor": self.rotor.shape,
             "the angular velocity": self.omega_body.shape,

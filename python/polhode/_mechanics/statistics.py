@@ -1,4 +1,4 @@
-"""Running moments: mean, variance and extremes of many blocks of numbers, of which none is kept."""
+"""`Moments`: running mean, variance and extremes of blocks of numbers, which are not kept."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from polhode._support.arrays import Array, as_floats
 
 
 class Moments:
-    """Mean, variance and extremes over an axis of arrays that come one after the other.
+    """Running mean, variance and extremes over one axis of successive arrays.
 
-    ``Moments().add(values)`` of arrays (bodies, n, ...) holds arrays (n, ...): of each time over all bodies.
-    Blocks are merged by Chan, Golub and LeVeque's formulas, which lose no digits where the mean is large
-    beside the deviation; ``a + b`` merges two. NaN, as of bodies that failed, is counted apart in `missing`
-    and changes nothing else.
+    ``Moments().add(values)`` of arrays (bodies, n, ...) gives arrays (n, ...): at each time, over all bodies.
+    Blocks are merged by the formulas of Chan, Golub and LeVeque, which are accurate where the mean is large
+    compared with the deviation; ``a + b`` merges two. NaN, as for failed bodies, is only counted in
+    `missing`.
 
     Parameters
     ----------
     axis
-        The axis of `values` over which the moments are.
+        Axis of `values` to reduce.
     """
 
     __slots__ = ("_axis", "_count", "_maximum", "_mean", "_minimum", "_missing", "_squares")
@@ -38,9 +38,9 @@ class Moments:
         self._count = None
 
     def add(self, values: Any) -> Moments:
-        """Take values in, an array or a multivector (its components), and return self.
+        """Add values, an array or a multivector (its components), and return self.
 
-        A ValueError if what is left without the axis has not the shape of what was taken before.
+        A ValueError if the shape without the axis differs from that of the values added before.
         """
         array = as_floats(values._data if isinstance(values, Multivector) else values, "values")
         if not -array.ndim <= self._axis < array.ndim:
@@ -64,7 +64,7 @@ class Moments:
             return
         if self._count.shape != other.count.shape:
             raise ValueError(
-                f"moments of shape {self._count.shape} do not take in ones of shape {other.count.shape}"
+                f"cannot merge moments of shape {other.count.shape} into shape {self._count.shape}"
             )
         # Chan: M2 = M2a + M2b + δ² na nb / n, δ the difference of the means.
         count = self._count + other.count
@@ -80,23 +80,23 @@ class Moments:
 
     @property
     def count(self) -> Array:
-        """How many numbers were taken in."""
-        return self._told("_count")
+        """Number of values added, without NaN."""
+        return self._result("_count")
 
     @property
     def missing(self) -> Array:
-        """How many were NaN."""
-        return self._told("_missing")
+        """Number of NaN values."""
+        return self._result("_missing")
 
     @property
     def mean(self) -> Array:
-        """The mean; NaN where nothing was taken in."""
-        return self._told("_mean", empty=np.nan)
+        """The mean; NaN where no value was added."""
+        return self._result("_mean", empty=np.nan)
 
     @property
     def variance(self) -> Array:
         """The mean square of the deviation from the mean, as `numpy.var`."""
-        variance = self._told("_squares", empty=np.nan) / np.maximum(self.count, 1)
+        variance = self._result("_squares", empty=np.nan) / np.maximum(self.count, 1)
         return np.asarray(variance)
 
     @property
@@ -106,23 +106,23 @@ class Moments:
 
     @property
     def minimum(self) -> Array:
-        """The least; NaN where nothing was taken in."""
-        return self._told("_minimum")
+        """The minimum; NaN where no value was added."""
+        return self._result("_minimum")
 
     @property
     def maximum(self) -> Array:
-        """The largest; NaN where nothing was taken in."""
-        return self._told("_maximum")
+        """The maximum; NaN where no value was added."""
+        return self._result("_maximum")
 
-    def _told(self, name: str, empty: float | None = None) -> Array:
+    def _result(self, name: str, empty: float | None = None) -> Array:
         if self._count is None:
-            raise ValueError("nothing was taken in; add values first")
+            raise ValueError("no values were added; call add first")
         array = np.array(getattr(self, name))
         return array if empty is None else np.where(self._count == 0, empty, array)
 
     def __repr__(self) -> str:
         if self._count is None:
-            return "Moments(of nothing)"
+            return "Moments(empty)"
         most = int(self._count.max(initial=0))
         return f"Moments(of {most}, shape {self._count.shape}, {int(self._missing.sum())} missing)"
 
@@ -136,7 +136,7 @@ def _of(array: Array, axis: int) -> Moments:
     with np.errstate(invalid="ignore", over="ignore"):
         mean = np.sum(array, axis=axis, where=known) / size
         apart = array - np.expand_dims(mean, axis)
-        # What rounding of the mean leaves of the deviations' sum.
+        # The sum of the deviations, which rounding of the mean leaves nonzero.
         rest = np.sum(apart, axis=axis, where=known)
         one._squares = np.sum(apart * apart, axis=axis, where=known) - rest * rest / size
     one._count, one._mean, one._missing = count, mean, array.shape[axis] - count

@@ -1,11 +1,9 @@
-"""What a simulation gives: states at and between its output times, its events and its certificate."""
+"""`Trajectory`: states at and between output times, events and certificate of a simulation."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,20 +18,17 @@ from polhode._mechanics.state import State
 from polhode._support.arrays import Array, Shape, as_floats, frozen, hands_out_copies
 
 if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
-
+    from polhode import _outputs
+    from polhode._mechanics.problem import Problem
     from polhode._scene.scene import Scene
-    from polhode._scene.writer import Problem
-    from polhode._viewer.widget import Viewer
 
 
 @hands_out_copies("time", "energy")
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A motion at n times, or those of a batch of bodies at the same times.
+    """The motion of a body at n times, or the motions of a batch of bodies at the same times.
 
-    Of a batch all values have the shape ``(*shape, n)``, and ``trajectory[i]`` is one motion, or fewer.
+    For a batch all values have the shape ``(*shape, n)``; ``trajectory[i]`` indexes the batch as in NumPy.
 
     Attributes
     ----------
@@ -48,19 +43,19 @@ class Trajectory:
     energy
         Kinetic energy of rotation plus the potential energy of the torques that have one, in J, (n,).
     position, velocity
-        Of the centre of mass (of the fixed point, where there is one), vectors in m and m/s, batch (n,).
+        Of the centre of mass, or of the fixed point if there is one, vectors in m and m/s, batch (n,).
     inertia
-        The inertia that ruled the motion; where bodies have their own an array of them, of the batch's shape.
+        The `Inertia` used; an array of the batch's shape if bodies have their own.
     certificate
-        How the run was made and what it conserved.
+        How the run was computed, and its drift in conserved quantities.
     events
-        For each event that was asked for, when and where it happened.
+        Occurrences of each event.
     failures
-        The bodies of a batch that could not be followed to the end. Their values are NaN from there on, with
-        equal steps side by side, and else all of them, for no pass was confirmed; but for `position` and
-        `velocity` without forces, which are known all the same.
+        The bodies of a batch that failed. With equal steps, their values are NaN from the failure on;
+        otherwise all are NaN, because no pass was confirmed. Without forces, `position` and `velocity` are
+        always given.
     attributes
-        Text and numbers to be written with the data: title, scene, version.
+        Text and numbers saved with the data: title, scene, version.
     """
 
     time: Array
@@ -76,9 +71,9 @@ class Trajectory:
     failures: tuple[Failure, ...] = ()
     attributes: dict[str, Any] = field(default_factory=dict)
     _motion: _native.Motion | None = field(default=None, repr=False)
-    # Of a batch that no force moves: places and velocities are found when they are asked for.
+    # Of a batch without forces: positions and velocities are computed on access.
     _drift: Drift | None = field(default=None, repr=False)
-    # Of one body: what was run, or asked for.
+    # Of one body: the scene or problem that was solved.
     _origin: Scene | Problem | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -131,7 +126,7 @@ class Trajectory:
 
     @property
     def ok(self) -> Any:
-        """Whether a body was followed to the end: a bool, or an array of the batch's shape."""
+        """Whether a body finished: a bool, or an array of the batch's shape."""
         ok = np.ones(self.shape, bool)
         for failure in self.failures:
             ok[failure.index] = False
@@ -139,9 +134,7 @@ class Trajectory:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError(
-                "the trajectory of one body has no length; its times are n = len(trajectory.time)"
-            )
+            raise TypeError("the trajectory of one body has no length; use len(trajectory.time)")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -157,7 +150,7 @@ class Trajectory:
             picked = np.broadcast_to(np.False_, self.shape)[parts].shape
         except IndexError as error:
             raise IndexError(f"{error} (batch shape {self.shape})") from None
-        # The index is to stay off the axis of time.
+        # Keep the index off the axis of time.
         rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
         drift = None if self._drift is None else self._drift[parts]
         center: list[Any] = [None, None] if drift else [self.position[rows], self.velocity[rows]]
@@ -177,7 +170,7 @@ class Trajectory:
         )
 
     def _failures_at(self, index: tuple[Any, ...], shape: Shape) -> tuple[Failure, ...]:
-        """Return the failures among picked bodies, by their places among them."""
+        """Return the failures among the picked bodies, with their new indices."""
         if not self.failures:
             return ()
         which = np.full(self.shape, -1)
@@ -188,26 +181,23 @@ class Trajectory:
         return tuple(replace(self.failures[k], index=tuple(place)) for place, k in places)
 
     def _require_one(self, what: str, *, alone: bool = False) -> None:
-        """Raise a ValueError for a batch; `alone` where one picked from a batch does not serve either."""
+        """Raise a ValueError for a batch; `alone` if a body picked from a batch is not enough either."""
         if self.shape:
             first = ", ".join("0" for _ in self.shape)
             remedy = "simulate that body alone" if alone else f"pick one of them, as in trajectory[{first}]"
-            raise ValueError(f"{what} is for one body, this is a batch of shape {self.shape}; {remedy}")
+            raise ValueError(f"{what} is for one body, got a batch of shape {self.shape}; {remedy}")
 
     def at(self, t: Any) -> State:
-        """Return the state at any time t in s between the first and the last; an array gives a batch.
+        """Return the state at a time t in s within the motion; an array of times gives a batch.
 
-        The first and the last are those of the output times, of the start and of the events. The time of the
-        state is t.
-
-        In closed form where the motion has one, else by the same method and the same steps from the nearest
-        output time before, so that it is as accurate as the states at the output times. A ValueError outside,
-        and for a batch of bodies.
+        The motion extends over the output times, the start and the events. The state is computed in closed
+        form if there is one, else by the same method and steps from the nearest output time before, so it is
+        as accurate as the states at the output times. A ValueError outside, and for a batch of bodies.
         """
         self._require_one("at", alone=True)
         if self._motion is None:
             raise ValueError(
-                "this trajectory was picked from a batch, read or unpickled: it has no states but its own; "
+                "a trajectory picked from a batch, read or unpickled has no states between its times; "
                 "simulate the body alone"
             )
         times = as_floats(t, "time")
@@ -223,12 +213,12 @@ class Trajectory:
 
     @property
     def final(self) -> State:
-        """The state at the last output time, from which `simulate` goes on; of a batch, those of all bodies.
+        """The state at the last output time, from which `simulate` can continue; for a batch, of all bodies.
 
-        A ValueError where there are no output times. An event that ended the motion lies after it.
+        A ValueError without output times. An event that ended the motion is later.
         """
         if not len(self.time):
-            raise ValueError("there is no last state: the motion has no output times")
+            raise ValueError("the motion has no output times, so it has no final state")
         return State(
             Rotor._from_rows(np.ascontiguousarray(self.rotor._data[..., -1, :])),
             bivector(self.omega_body._data[..., -1, :]),
@@ -238,139 +228,20 @@ class Trajectory:
         )
 
     def drifts(self) -> dict[str, Array]:
-        """Return each conserved quantity's change since the start, relative as in the certificate, (n,) each.
+        """Return the change of each conserved quantity since the start, (n,), relative as in the certificate.
 
-        Of one body; a ValueError for a batch.
+        A ValueError for a batch.
         """
         self._require_one("drifts", alone=True)
         return dict(self._motion.drifts()) if self._motion is not None else {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: all but the motion between the output times, and what was asked for."""
+        """Return what is pickled: all but the motion between the output times and its problem."""
         return self.__dict__ | {"_motion": None, "_origin": None}
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return an `xarray.Dataset` with labelled dimensions, units and the conventions.
-
-        Of a batch the dimension `body` counts the bodies in C order; the attribute `batch_shape` tells the
-        shape.
-        """
-        from polhode._report.netcdf import to_xarray
-
-        return to_xarray(self)
-
-    @staticmethod
-    def read(path: str | os.PathLike[str]) -> Trajectory:
-        """Read the motion of one body from a netCDF file that `save` or ``polhode run -o`` wrote.
-
-        All numbers are those that were written, to the last bit; between its times it is no longer known. A
-        ValueError for the file of a batch, which xarray reads, and for one that is not ours; an OSError for
-        one that cannot be read.
-        """
-        from polhode._report.netcdf import read
-
-        return read(path)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a netCDF file, whole or not at all: an older file stays until the new one is complete.
-
-        Raises
-        ------
-        ValueError
-            If the suffix of the path is not ``.nc``.
-        """
-        from polhode._report.netcdf import netcdf
-        from polhode._support.files import form_of, write_atomically
-
-        form_of(path, "a motion")
-        write_atomically({Path(path): netcdf(self)})
-
-    def plot(self, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
-        """Return a matplotlib figure for paper, of one body.
-
-        Parameters
-        ----------
-        kind
-            ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
-            ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
-            conserved quantities; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors,
-            captured from the viewer in a headless browser.
-        view
-            Azimuth and elevation to look from, in degrees, for kinds that have depth; None for the default.
-        time
-            Time of the scene in s; None for the last one.
-
-        Raises
-        ------
-        ValueError
-            For a batch, a kind that does not fit the motion, or too few output times.
-        ImportError
-            Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
-        OSError
-            For ``"scene"`` without a browser.
-        """
-        self._require_one("plot")
-        from polhode._figures.registry import figure
-
-        return figure(self, kind, view, time)
-
-    def film(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        seconds: float | None = None,
-        fps: float = 25.0,
-        size: tuple[int, int] | None = None,
-        view: Any = None,
-        progress: Callable[[float], object] | None = None,
-    ) -> None:
-        """Write a film of the motion of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
-
-        The frames are captured from the viewer in a headless browser, at equally spaced times from the first
-        output time on.
-
-        Parameters
-        ----------
-        seconds
-            Length of the film; None for true speed, a second of motion in a second of film.
-        fps
-            Frames per second.
-        size
-            Width and height in pixels; None for (1280, 720), of a GIF (640, 360).
-        view
-            As for `plot`; None for that of the viewer.
-        progress
-            Called after each frame with the fraction done.
-
-        Raises
-        ------
-        ValueError
-            For a batch, another suffix, fewer than 2 output times, fewer than 2 frames, or a motion too long
-            or too short for true speed.
-        ImportError
-            Without Playwright: ``pip install 'polhode[film]'``.
-        OSError
-            Without a browser or ffmpeg, or if the file cannot be written; an older file stays.
-
-        Warns
-        -----
-        UserWarning
-            If the body turns by more than a quarter turn between frames, so that it appears to turn at
-            another rate; with the speed up to which the film is faithful.
-        """
-        self._require_one("film")
-        from polhode._figures.film import write
-
-        write(self, Path(path), seconds, fps, size, view, progress)
-
-    def view(self) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does.
-
-        Of one body; a ValueError for a batch.
-        """
-        from polhode._viewer.notebook import view
-
-        return view(self)
+    if TYPE_CHECKING:
+        to_xarray, save, plot, film = _outputs.to_xarray, _outputs.save, _outputs.plot, _outputs.film
+        view, read = _outputs.view_of, staticmethod(_outputs.read)
 
     def __repr__(self) -> str:
         n = len(self.time)
@@ -384,27 +255,27 @@ class Trajectory:
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """The uniform motion of centres of mass from their starts: times (*shape), the others (*shape, 3)."""
+    """Uniform motion of centres of mass: start times (*shape), positions and velocities (*shape, 3)."""
 
     start_times: Array
-    places: Array
+    positions: Array
     velocities: Array
 
     def __getitem__(self, index: tuple[Any, ...]) -> Drift:
         rest: tuple[Any, ...] = (slice(None),) if any(part is Ellipsis for part in index) else ()
         return Drift(
             np.asarray(self.start_times[index]),
-            self.places[(*index, *rest)],
+            self.positions[(*index, *rest)],
             self.velocities[(*index, *rest)],
         )
 
     def position(self, times: Array) -> Multivector:
-        """Places at times (n,), vectors of batch (*shape, n)."""
+        """Return the positions at times (n,), vectors of batch (*shape, n)."""
         elapsed = (times - self.start_times[..., np.newaxis])[..., np.newaxis]
-        return vector(self.places[..., np.newaxis, :] + self._rates(times) * elapsed)
+        return vector(self.positions[..., np.newaxis, :] + self._rates(times) * elapsed)
 
     def velocity(self, times: Array) -> Multivector:
-        """The velocities, at each time the same."""
+        """Return the velocities, constant in time."""
         return vector(self._rates(times))
 
     def _rates(self, times: Array) -> Array:
@@ -414,7 +285,7 @@ class Drift:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """The arrays of the core, as values."""
+    """Arrays of the core as values."""
 
     time: Array
     rotor: Rotor

@@ -11,9 +11,9 @@ from polhode._algebra.constructors import vector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.free_motion import SymmetricTop, describe_free
+from polhode._mechanics.problem import Problem
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.scene import Scene
-from polhode._scene.writer import Problem
 from polhode._support.arrays import Array
 from polhode.torque import Torque
 

@@ -23,7 +23,7 @@ from polhode.force import Force
 from polhode.torque import Torque
 
 if TYPE_CHECKING:
-    from polhode._viewer.widget import Viewer
+    from polhode import _outputs
 
 DRIFT_BOUND = 1e-8
 
@@ -184,11 +184,8 @@ class Scene:
             return self._moved(body, self.state, self.torque, progress, threads)
         return self._drawn(slice(0, self.ensemble.number), progress, threads)
 
-    def view(self) -> Viewer:
-        """Show the motion in a notebook, as `polhode.view` does."""
-        from polhode._viewer.notebook import view
-
-        return view(self)
+    if TYPE_CHECKING:
+        view = _outputs.view_of
 
     def run_blocks(
         self,

@@ -4,133 +4,98 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from polhode import _native
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.bodies import Body
+from polhode._mechanics.problem import Problem
 from polhode._mechanics.registry import FORCES, TORQUES, Entry
-from polhode._mechanics.state import State
-from polhode._support.arrays import Array
-from polhode.force import Force
-from polhode.torque import Torque
 
 
 class UnwritableError(ValueError):
     """A motion that no scene can ask for; the message says what is in the way."""
 
 
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """The motion of one body as `polhode.simulate` was asked for it.
+def scene_text(problem: Problem) -> str:
+    """Return the scene, in TOML, whose body, start and laws are these to the last bit.
 
-    Attributes
-    ----------
-    body
-        A `Body`, or the `Inertia` that rules its motion.
-    state
-        The single state at the start.
-    torque, force
-        What turns and moves it; None where nothing does.
-    times
-        Output times in s, (n,).
-    method, step, tolerance
-        As for `polhode.simulate`; the larger one of rtol and atol.
-    limits
-        `max_step`, `max_steps` and `breaks`.
+    Its output times go from the start to the last one in equal intervals. Principal moments are found
+    from the same inertia matrix again, to its rounding, and rise where it is not diagonal. An
+    `UnwritableError` for Python functions, linear maps, a law that stands twice, and motions that do not
+    go beyond their start.
     """
+    laws = problem.torque.laws if problem.torque else ()
+    tables = {
+        "define": _definitions(law for law in laws if law.name == "formula"),
+        "body": _body(problem),
+        "initial": _initial(problem),
+        "torque": _fields(laws, TORQUES, "torque"),
+        "force": _fields(problem.force.laws if problem.force else (), FORCES, "force"),
+        "run": _run(problem),
+        "method": _method(problem),
+    }
+    written = [
+        "\n".join([f"[{title}]", *(f"{_key(name)} = {_value(x)}" for name, x in table.items())])
+        for title, table in tables.items()
+        if table
+    ]
+    return f"# Written by Polhode {_native.__version__}. SI units.\n\n" + "\n\n".join(written) + "\n"
 
-    body: Body | Inertia
-    state: State
-    torque: Torque | None
-    force: Force | None
-    times: Array
-    method: str = "auto"
-    step: float | None = None
-    tolerance: float | None = None
-    limits: tuple[float | None, float | None, list[float]] = (None, None, [])
 
-    @property
-    def held(self) -> bool:
-        """Whether the body is held at a fixed point, the origin of its axes."""
-        return self.torque is not None and self.torque.holds
+def _body(problem: Problem) -> dict[str, Any]:
+    inertia = problem.body.inertia if isinstance(problem.body, Body) else problem.body
+    frame, moments = inertia.principal_frame.components, inertia.principal_moments
+    own = np.array_equal(frame, [1, 0, 0, 0]) and np.array_equal(np.diag(moments), inertia.matrix)
+    fields: dict[str, Any] = {"moments": moments} if own else {"inertia": inertia.matrix}
+    if isinstance(problem.body, Body):
+        fields |= {"mass": problem.body.mass, "center_of_mass": problem.body.center_of_mass.components}
+    return fields
 
-    def scene(self) -> str:
-        """Return the scene, in TOML, whose body, start and laws are these to the last bit.
 
-        Its output times go from the start to the last one in equal intervals. Principal moments are found
-        from the same inertia matrix again, to its rounding, and rise where it is not diagonal. An
-        `UnwritableError` for Python functions, linear maps, a law that stands twice, and motions that do not
-        go beyond their start.
-        """
-        laws = self.torque.laws if self.torque else ()
-        tables = {
-            "define": _definitions(law for law in laws if law.name == "formula"),
-            "body": self._body(),
-            "initial": self._initial(),
-            "torque": _fields(laws, TORQUES, "torque"),
-            "force": _fields(self.force.laws if self.force else (), FORCES, "force"),
-            "run": self._run(),
-            "method": self._method(),
-        }
-        written = [
-            "\n".join([f"[{title}]", *(f"{_key(name)} = {_value(x)}" for name, x in table.items())])
-            for title, table in tables.items()
-            if table
-        ]
-        return f"# Written by Polhode {_native.__version__}. SI units.\n\n" + "\n\n".join(written) + "\n"
+def _initial(problem: Problem) -> dict[str, Any]:
+    fields: dict[str, Any] = {
+        "attitude": {"rotor": problem.state.rotor.components},
+        "spin": {"bivector": problem.state.omega_body.components},
+    }
+    for name in ("position", "velocity"):
+        components = getattr(problem.state, name).components
+        if components.any():
+            fields[name] = components
+    if problem.state.time:
+        fields["time"] = problem.state.time
+    return fields
 
-    def _body(self) -> dict[str, Any]:
-        inertia = self.body.inertia if isinstance(self.body, Body) else self.body
-        frame, moments = inertia.principal_frame.components, inertia.principal_moments
-        own = np.array_equal(frame, [1, 0, 0, 0]) and np.array_equal(np.diag(moments), inertia.matrix)
-        fields: dict[str, Any] = {"moments": moments} if own else {"inertia": inertia.matrix}
-        if isinstance(self.body, Body):
-            fields |= {"mass": self.body.mass, "center_of_mass": self.body.center_of_mass.components}
-        return fields
 
-    def _initial(self) -> dict[str, Any]:
-        fields: dict[str, Any] = {
-            "attitude": {"rotor": self.state.rotor.components},
-            "spin": {"bivector": self.state.omega_body.components},
-        }
-        for name in ("position", "velocity"):
-            components = getattr(self.state, name).components
-            if components.any():
-                fields[name] = components
-        if self.state.time:
-            fields["time"] = self.state.time
-        return fields
+def _run(problem: Problem) -> dict[str, Any]:
+    start = float(problem.state.time)
+    duration = float(np.max(problem.times, initial=start)) - start
+    if duration <= 0:
+        raise UnwritableError(
+            f"a scene goes on from its start at {start:g} s, and this motion has no later time"
+        )
+    return {"duration": duration, "samples": max(2, len(problem.times))}
 
-    def _run(self) -> dict[str, Any]:
-        start = float(self.state.time)
-        duration = float(np.max(self.times, initial=start)) - start
-        if duration <= 0:
-            raise UnwritableError(
-                f"a scene goes on from its start at {start:g} s, and this motion has no later time"
-            )
-        return {"duration": duration, "samples": max(2, len(self.times))}
 
-    def _method(self) -> dict[str, Any]:
-        fields: dict[str, Any] = {}
-        # A scene is exact by itself where a closed form is known.
-        if self.method not in ("auto", "exact"):
-            fields["name"] = self.method
-        if self.step is not None:
-            fields["step"] = self.step
-        if self.tolerance is not None:
-            if self.tolerance >= 1:
-                raise UnwritableError(f"tolerance must be less than 1 in a scene, got {self.tolerance}")
-            fields["rtol"] = self.tolerance
-        max_step, max_steps, breaks = self.limits
-        if breaks:
-            raise UnwritableError("a scene has no breaks; give max_step instead")
-        given = {"max_step": max_step, "max_steps": max_steps}
-        fields |= {name: value for name, value in given.items() if value is not None}
-        return fields
+def _method(problem: Problem) -> dict[str, Any]:
+    fields: dict[str, Any] = {}
+    # A scene is exact by itself where a closed form is known.
+    if problem.method not in ("auto", "exact"):
+        fields["name"] = problem.method
+    if problem.step is not None:
+        fields["step"] = problem.step
+    if problem.tolerance is not None:
+        if problem.tolerance >= 1:
+            raise UnwritableError(f"tolerance must be less than 1 in a scene, got {problem.tolerance}")
+        fields["rtol"] = problem.tolerance
+    max_step, max_steps, breaks = problem.limits
+    if breaks:
+        raise UnwritableError("a scene has no breaks; give max_step instead")
+    given = {"max_step": max_step, "max_steps": max_steps}
+    fields |= {name: value for name, value in given.items() if value is not None}
+    return fields
 
 
 # --- laws, as the fields of [torque] and [force]

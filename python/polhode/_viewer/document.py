@@ -19,15 +19,17 @@ import numpy as np
 from polhode._algebra.constructors import bivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
-from polhode._mechanics.closed_forms import DampedTop, LagrangeTop, LarmorSphere, _ClosedForm
+from polhode._mechanics.closed_forms import ClosedForm, DampedTop, LagrangeTop, LarmorSphere
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.laws import finite
+from polhode._mechanics.problem import Problem
 from polhode._mechanics.simulate import as_force, as_torque, simulate
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
 from polhode._native import SceneError
+from polhode._report.netcdf import read
 from polhode._scene.scene import Scene
-from polhode._scene.writer import Problem, UnwritableError
+from polhode._scene.writer import UnwritableError, scene_text
 from polhode._support.arrays import Array, as_float
 from polhode._support.packing import packed, unpacked
 from polhode._viewer.recording import recorded
@@ -81,7 +83,7 @@ def document(
         bodies, law = settled(bodies_of(x), law)
         return _of_problem(_problem(bodies[()], state, law, push, duration))
     _refuse(x, state=state, torque=torque, force=force)
-    if isinstance(x, (FreeMotion, _ClosedForm)):
+    if isinstance(x, (FreeMotion, ClosedForm)):
         return _of_problem(_solved(x, duration))
     _refuse(x, duration=duration)
     if isinstance(x, Scene):
@@ -125,7 +127,7 @@ def of_text(text: str, path: Path) -> Document:
 def of_file(path: Path) -> Document:
     """Return the document of a scene file or a netCDF file; a `SceneError` for an invalid scene."""
     if path.suffix.lower() == ".nc":
-        return of_trajectory(Trajectory.read(path), path)
+        return of_trajectory(read(path), path)
     return of_scene(Scene.read(path))
 
 
@@ -152,8 +154,8 @@ def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem
     nothing: Document = {"format": 1, "name": path.name}
     if origin is not None:
         try:
-            # An event may have ended it before the last requested time.
-            scene = replace(origin, times=trajectory.time).scene()
+            # An event may have ended it before the last time that was asked for.
+            scene = scene_text(replace(origin, times=trajectory.time))
             return {"format": 1, "scene": scene, "name": "motion.toml"}, origin
         except UnwritableError:
             return nothing, origin
@@ -227,7 +229,7 @@ def _of_problem(problem: Problem) -> Document:
     """Return the document of a problem; if no scene can describe it, it is solved here."""
     _refuse_batch(problem.state, problem.torque)
     try:
-        return {"format": 1, "scene": problem.scene(), "name": "motion.toml"}
+        return {"format": 1, "scene": scene_text(problem), "name": "motion.toml"}
     except UnwritableError:
         motion = simulate(problem.body, problem.state, problem.times, problem.torque, problem.force)
         return of_trajectory(motion)
@@ -238,8 +240,8 @@ def _refuse_batch(state: State, torque: Torque | None) -> None:
         raise ValueError("the viewer shows one body, this is a batch: pick one body")
 
 
-def _solved(motion: FreeMotion | _ClosedForm, duration: float | None) -> Problem:
-    """Return the problem that a motion in closed form solves."""
+def _solved(motion: FreeMotion | ClosedForm, duration: float | None) -> Problem:
+    """Return what a motion in closed form is the answer to."""
     if isinstance(motion, FreeMotion):
         if motion.shape:
             raise ValueError(

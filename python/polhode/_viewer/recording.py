@@ -18,11 +18,11 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.free_motion import describe_free
+from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory, _Points
 from polhode._report.describe import kind_of, weight
 from polhode._scene.scene import Scene
-from polhode._scene.writer import Problem
 from polhode._support.arrays import Array
 from polhode._support.packing import packed, unpacked
 

@@ -1,4 +1,4 @@
-//! Torqued motion in closed form: Lagrange's top, the damped body, the sphere in a field.
+//! Closed forms with torque: Lagrange's top, the damped body, the sphere in a field.
 
 use super::bodies::{Inertia, rotor};
 use crate::support::arrays::{Array, Rows, bad, numbers, one, threads};
@@ -12,13 +12,13 @@ use polhode_rigid::exact::larmor;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// States between looks for Ctrl-C.
+/// States between checks for Ctrl-C.
 const PIECE: usize = 1 << 16;
 
 /// Rotors (n, 4) and angular velocities (n, 3) at times (n,).
 type States<'py> = PyResult<(Array<'py>, Array<'py>)>;
 
-/// The states by a function that fills rows for a piece of the times, known between two times.
+/// The states from a function that fills rows for a chunk of the times, between two horizons.
 fn states<'py>(
     py: Python<'py>,
     times: &Rows<'py>,
@@ -47,7 +47,7 @@ fn states<'py>(
     Ok((rotors, omegas))
 }
 
-/// One state after another.
+/// Fills the rows one by one.
 fn one_by_one(at: impl Fn(f64) -> (Rotor, Bivector)) -> impl Fn(&[f64], &mut [f64], &mut [f64]) {
     move |times, rotors, omegas| {
         let rows = rotors.as_chunks_mut::<4>().0.iter_mut().zip(omegas.as_chunks_mut::<3>().0);

@@ -1,4 +1,4 @@
-//! Simulation of many bodies at once.
+//! Simulation of ensembles.
 
 use super::bodies::Inertia;
 use super::columns::spread;
@@ -19,11 +19,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Rotors, angular velocities, momenta, energies and, where forces move them, places and velocities of all bodies at all
-/// times, body by body; and what is told of the bodies.
-type Told<'py> = PyResult<(Vec<Array<'py>>, Bound<'py, PyDict>)>;
+/// times, body by body; and the summary of the bodies.
+type Results<'py> = PyResult<(Vec<Array<'py>>, Bound<'py, PyDict>)>;
 
 /// Simulates bodies of a batch shape. Inertias with their shape, start times (…), rotors (…, 4), angular velocities (…, 3), laws, places and
-/// velocities (…, 6) and masses (…), NaN where they are not known, broadcast to it. No batch is empty, nor are the times.
+/// velocities (…, 6) and masses (…), NaN where unknown, broadcast to it. Neither the batch nor the times may be empty.
 #[pyfunction]
 #[pyo3(signature = (
     shape, inertias, begins, rotors, omegas, laws, centers, masses, forces, times, method, step, rtol, limits, threads,
@@ -48,10 +48,10 @@ pub(crate) fn simulate_many<'py>(
     limits: Limits,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
-) -> Told<'py> {
+) -> Results<'py> {
     let (method, exact) = method_of(method)?;
     if shape.contains(&0) || times.len() == 0 {
-        return Err(bad("there is nothing to simulate"));
+        return Err(bad("no bodies or no times to simulate"));
     }
     let made: Vec<Py<LawValue>> = laws
         .iter()
@@ -100,10 +100,10 @@ pub(crate) fn simulate_many<'py>(
     if let Some(failure) = unfit {
         return Err(bad(format!("{}{}", place(failure.body, &shape), failure.error)));
     }
-    Ok((arrays, told(py, summary)?))
+    Ok((arrays, dictionary(py, summary)?))
 }
 
-/// How the bodies start.
+/// The starts of the bodies.
 fn starts(
     shape: &[usize],
     begins: &Rows<'_>,
@@ -116,8 +116,8 @@ fn starts(
     let rotors = {
         let own = batch(rotors);
         let rows = numbers(rotors)?.as_chunks::<4>().0.iter().enumerate();
-        let told = |row, error| bad(format!("{}{error}", place(row, own)));
-        let rotors = rows.map(|(row, c)| Rotor::from_components(*c).map_err(|error| told(row, error)));
+        let failed = |row, error| bad(format!("{}{error}", place(row, own)));
+        let rotors = rows.map(|(row, c)| Rotor::from_components(*c).map_err(|error| failed(row, error)));
         spread(rotors.collect::<PyResult<Vec<_>>>()?, own, shape)
     };
     let omegas = spread(numbers(omegas)?.as_chunks::<3>().0.to_vec(), batch(omegas), shape);
@@ -142,8 +142,8 @@ fn batch<'a>(rows: &'a Rows<'_>) -> &'a [usize] {
     rows.shape().split_last().map_or(&[][..], |(_, batch)| batch)
 }
 
-/// The summary: arrays of one number for each body, and the failures as lists of numbers, times and messages.
-fn told<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> {
+/// The summary as a dict: arrays with one number per body, and lists of numbers, times and messages of failures.
+fn dictionary<'py>(py: Python<'py>, summary: Summary) -> PyResult<Bound<'py, PyDict>> {
     let mut names: Vec<&str> = Vec::new();
     let mut code = |name| {
         names.iter().position(|known| *known == name).unwrap_or_else(|| {

@@ -1,6 +1,6 @@
-//! The free flow over rows, each a body of its own at times of its own: for who traces and batches himself.
+//! The free flow over rows, each a body with its own times: for JAX, which traces and batches itself.
 //!
-//! A row without a motion is NaN, and no error: who differentiates may look where there is none.
+//! A row without a motion is NaN and not an error, because derivatives may be evaluated there.
 
 use super::free::{flat, pieces};
 use crate::support::arrays::{Array, Rows, bad, numbers, table};
@@ -9,7 +9,7 @@ use polhode_ga::{Bivector, Rotor};
 use polhode_rigid::exact::free::{FlowDerivatives, FreeMotion};
 use pyo3::prelude::*;
 
-/// From so many times on lanes pay.
+/// Number of times from which lanes are faster.
 const IN_LANES: usize = 8;
 
 /// Bodies in principal axes, and each one's times.
@@ -33,7 +33,7 @@ impl<'a> Bodies<'a> {
         let (omegas, times) = (numbers(omegas)?.as_chunks().0, numbers(times)?);
         let bodies = moments.len();
         if rotors.len() != bodies || omegas.len() != bodies || !times.len().is_multiple_of(bodies.max(1)) {
-            return Err(bad("bodies, rotors, angular velocities and times of different numbers"));
+            return Err(bad("numbers of bodies, rotors, angular velocities and times differ"));
         }
         Ok(Bodies { moments, rotors, omegas, times, count: times.len() / bodies.max(1) })
     }
@@ -71,7 +71,7 @@ impl<'a> Bodies<'a> {
         rows
     }
 
-    /// The derivatives of a body's states; None where there are none.
+    /// The derivatives of a body's states; None if it has none.
     fn derivatives(&self, body: usize) -> Vec<Option<FlowDerivatives>> {
         let Some(motion) = self.motion(body) else { return vec![None; self.count] };
         let (common, horizon) = (motion.differentiated(), motion.horizon());
@@ -102,8 +102,8 @@ pub(crate) fn free_flow<'py>(
 }
 
 /// Their derivatives, rows of 49 numbers: of the rotor by angular velocity and moments (12 each) and by time (4), of
-/// the angular velocity by itself and by the moments (9 each) and by time (3) — see [`FlowDerivatives`] — less
-/// what is by the attitude, which is a product of rotors.
+/// the angular velocity by itself and by the moments (9 each) and by time (3) — see [`FlowDerivatives`] — without
+/// the derivative by the attitude, which is a product of rotors.
 #[pyfunction]
 pub(crate) fn free_flow_derivatives<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! The free top: one motion, or a batch of them, whose solutions stay in Rust.
+//! Free motion of one body or a batch, with solutions kept in Rust.
 
 use super::bodies::Inertia;
 use super::motion::{angular_velocity, check_times};
@@ -15,10 +15,10 @@ use polhode_rigid::state::checks::check_horizons;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// States between looks for Ctrl-C.
+/// States between checks for Ctrl-C.
 const PIECE: usize = 1 << 19;
 
-/// To set a motion up, or to find its derivatives once, takes as long as so many numbers of other kernels.
+/// Cost of setting up a motion, or of its derivatives at one time, in states.
 const WORK: usize = 256;
 
 /// Free motions, a batch of some shape.
@@ -27,10 +27,10 @@ pub(crate) struct FreeMotion {
     motions: Motions,
     /// One for all, or one for each.
     inertias: Vec<inertia::Inertia>,
-    /// Rotor and angular velocity at the start, as they were given.
+    /// Rotor and angular velocity at the start, as given.
     starts: Vec<Start>,
     shape: Vec<usize>,
-    /// How far in time all are known, in s.
+    /// The horizon of all motions, in s.
     horizon: f64,
 }
 
@@ -38,7 +38,7 @@ type Start = ([f64; 4], [f64; 3]);
 
 enum Motions {
     One(Box<free::FreeMotion>),
-    /// What states need; for all else a motion is made again.
+    /// Data for states; other results set a motion up again.
     Many(Vec<Tile>),
 }
 
@@ -53,8 +53,8 @@ fn components<const N: usize>(value: &Bound<'_, PyAny>, grades: Grades) -> Optio
     (value.grades() == grades).then(|| value.components().try_into().ok())?
 }
 
-/// Results of some work, in pieces between which Python may interrupt: each takes as long as to set so many
-/// motions up.
+/// Results of work in chunks, between which Python may interrupt; each chunk costs as much as setting up this number
+/// of motions.
 pub(crate) fn pieces<T: Send>(
     py: Python<'_>,
     count: usize,
@@ -80,8 +80,8 @@ pub(crate) fn pieces<T: Send>(
 
 #[pymethods]
 impl FreeMotion {
-    /// The motion of a single body from a single Rotor and a single bivector, or three floats; None if they are
-    /// anything else.
+    /// The motion of a single body from a single Rotor and a single bivector, or three floats; None for other
+    /// types.
     #[staticmethod]
     fn single(
         inertia: &Inertia,
@@ -150,8 +150,8 @@ impl FreeMotion {
         self.states(py, Times::Common(times), self.starts.len() * times.len())
     }
 
-    /// The same of each motion at its own times, so many in turn, and again after the last motion. Whoever calls
-    /// has checked the times.
+    /// The same of each motion at its own times, `each` in turn, and again after the last motion. The
+    /// caller has checked the times.
     fn at_each<'py>(
         &self,
         py: Python<'py>,
@@ -170,18 +170,18 @@ impl FreeMotion {
         self.states(py, Times::Own(times, each), times.len())
     }
 
-    /// How far in time each motion is known, in s.
+    /// The horizon of each motion, in s.
     fn horizons<'py>(&self, py: Python<'py>) -> Array<'py> {
         line(py, self.motions.horizons().collect())
     }
 
-    /// How far all are.
+    /// The horizon of all motions, in s.
     #[getter]
     fn horizon(&self) -> f64 {
         self.horizon
     }
 
-    /// What the invariants tell, as a dict; of a batch as lists and arrays, NaN where there is nothing to tell.
+    /// The description as a dict; for a batch with lists and arrays, NaN for None.
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let told = pieces(py, self.starts.len(), 1, |row| self.motion(row).map(|motion| motion.describe()))?;
         let told: Vec<FreeDescription> = told.into_iter().collect::<Result<_, _>>().map_err(bad)?;
@@ -203,7 +203,7 @@ impl FreeMotion {
         Ok(result)
     }
 
-    /// Angular velocities in body axes along the polhode, so many for each motion.
+    /// Angular velocities in body axes along the polhode, n for each motion.
     fn polhode<'py>(&self, py: Python<'py>, count: usize) -> PyResult<Array<'py>> {
         let curves = pieces(py, self.starts.len(), 1, |row| self.motion(row).map(|m| m.polhode(count)))?;
         let curves: Vec<_> = curves.into_iter().collect::<Result<_, _>>().map_err(bad)?;
@@ -211,7 +211,7 @@ impl FreeMotion {
         table(py, all.into_iter().map(|omega| omega.0))
     }
 
-    /// The same in space axes, over so many periods.
+    /// The same in space axes, over a number of periods.
     fn herpolhode<'py>(&self, py: Python<'py>, count: usize, periods: f64) -> PyResult<Array<'py>> {
         let curves = pieces(py, self.starts.len(), 1, |row| {
             self.motion(row)?.herpolhode(count, periods).map_err(|error| error.to_string())
@@ -235,7 +235,7 @@ impl FreeMotion {
         let times = numbers(&times)?;
         self.check(times)?;
         let mut found: Vec<FlowDerivatives> = Vec::with_capacity(self.starts.len() * times.len());
-        // What a motion's derivatives have in common is large, and kept for some motions at a time.
+        // Data shared by the derivatives of a motion is large, so motions are processed in groups.
         for first in (0..self.starts.len()).step_by(TILE) {
             let count = TILE.min(self.starts.len() - first);
             let common = pieces(py, count, 1, |row| self.motion(first + row).map(|m| m.differentiated()))?;
@@ -247,8 +247,8 @@ impl FreeMotion {
         if let Some(row) = found.iter().position(|one| !one.is_finite()) {
             let (body, index) = (place(row / times.len(), &self.shape), row % times.len());
             return Err(bad(format!(
-                "{body}the derivatives at times[{index}] = {:e} s are beyond floating point: the rotation is not \
-                 stable, and a small change of its start has grown too much; take times nearer to 0",
+                "{body}the derivatives at times[{index}] = {:e} s overflow, because the rotation is \
+                 unstable; use times closer to 0",
                 times[index]
             )));
         }
@@ -263,7 +263,7 @@ impl FreeMotion {
         ))
     }
 
-    /// Rotors (rows, 4) and angular velocities (rows, 3) at the start, as they were given.
+    /// Rotors (rows, 4) and angular velocities (rows, 3) at the start, as given.
     fn starts<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
         let rotors = table(py, self.starts.iter().map(|start| start.0))?;
         Ok((rotors, table(py, self.starts.iter().map(|start| start.1))?))
@@ -276,7 +276,7 @@ impl FreeMotion {
     }
 }
 
-/// What a description tells in numbers.
+/// The numbers of a description.
 type Number = (&'static str, fn(&FreeDescription) -> Option<f64>);
 const NUMBERS: [Number; 12] = [
     ("modulus", |d| Some(d.modulus)),
@@ -319,7 +319,7 @@ impl FreeMotion {
         FreeMotion { motions, inertias, starts, shape, horizon }
     }
 
-    /// One of the motions; that it can be made was found out before.
+    /// One of the motions, which was set up successfully before.
     fn motion(&self, row: usize) -> Result<free::FreeMotion, String> {
         match &self.motions {
             Motions::One(motion) => Ok(**motion),
@@ -327,7 +327,7 @@ impl FreeMotion {
         }
     }
 
-    /// Times must be finite, and within the horizon of every motion.
+    /// Checks that times are finite and within the horizon of every motion.
     fn check(&self, times: &[f64]) -> PyResult<()> {
         check_times(times)?;
         let furthest = times.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
@@ -341,7 +341,7 @@ impl FreeMotion {
         }
     }
 
-    /// So many states. Threads share large batches; Python may interrupt between pieces of some milliseconds.
+    /// Computes states. Threads share large batches; Python may interrupt every few milliseconds.
     fn states<'py>(
         &self,
         py: Python<'py>,

@@ -23,7 +23,7 @@ fn states<'py>(py: Python<'py>, times: &[f64], at: impl Fn(f64) -> (Rotor, Bivec
     Ok((rotors, table(py, states.iter().map(|s| s.1.0))?))
 }
 
-/// Finite.
+/// Checks that an angular velocity is finite.
 pub(crate) fn angular_velocity(omega: [f64; 3]) -> PyResult<Bivector> {
     if !omega.iter().all(|x| x.is_finite()) {
         return Err(bad(format!("the angular velocity is {omega:?}; it must be finite")));

@@ -1,4 +1,4 @@
-//! Simulation.
+//! Simulation of one body.
 
 use super::bodies::{Inertia, rotor};
 use super::forces_and_events::{Event, Force};
@@ -16,16 +16,16 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::time::{Duration, Instant};
 
-/// How often a run looks for Ctrl-C and reports where it stands.
+/// Interval between checks for Ctrl-C and calls of `progress`.
 const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 
-/// Names of the methods, by rising order.
+/// Names of the methods, in ascending order.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<&'static str> {
     polhode_rigid::methods::methods().map(Method::name).collect()
 }
 
-/// Calls `progress(pass, fraction)` and looks for Ctrl-C, at most every 50 ms; keeps the error it met.
+/// Calls `progress(pass, fraction)` and checks for Ctrl-C, at most every 50 ms; keeps the error raised.
 struct Watcher<'a> {
     progress: Option<&'a Py<PyAny>>,
     last: Instant,
@@ -85,7 +85,7 @@ impl Motion {
         points(py, states)
     }
 
-    /// The events in the order in which they were met: which, whether rising, and the states there.
+    /// The events in the order of integration: index, whether rising, and states.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<(Vec<usize>, Vec<bool>, [Array<'py>; 7])> {
         let which = self.motion.events.iter().map(|happened| happened.event).collect();
         let rising =
@@ -99,7 +99,7 @@ impl Motion {
         drifts.map(|(quantity, change)| (quantity.name(), line(py, change))).collect()
     }
 
-    /// How the motion was made and what it conserved.
+    /// The certificate of the run.
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let proof = &self.motion.certificate;
         let certificate = PyDict::new(py);
@@ -143,7 +143,7 @@ pub(crate) fn run<T: Send>(
     }
 }
 
-/// The method of a name, if any is asked for, and whether it is to be exact.
+/// The method of a name, and whether the closed form is required.
 pub(crate) fn method_of(name: &str) -> PyResult<(Option<Method>, bool)> {
     match name {
         "auto" | "exact" => Ok((None, name == "exact")),
@@ -153,11 +153,11 @@ pub(crate) fn method_of(name: &str) -> PyResult<(Option<Method>, bool)> {
     }
 }
 
-/// The longest step in s, how many steps a pass may take, and times at which steps end.
+/// The longest step in s, the maximum number of steps of a pass, and times at which steps end.
 pub(crate) type Limits = (Option<f64>, Option<f64>, Vec<f64>);
 
-/// Simulates from a start time on. `center` is the place and velocity of the centre of mass, the mass NaN where it is
-/// not known.
+/// Simulates from a start time on. `center` is the position and velocity of the centre of mass; the mass is NaN if
+/// unknown.
 #[pyfunction]
 #[pyo3(signature = (
     inertia, start, rotor_row, omega, laws, center, mass, forces, times, method, step, rtol, limits, events, progress

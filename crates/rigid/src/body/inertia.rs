@@ -20,14 +20,14 @@ use polhode_ga::general::eigen::symmetric_eigen;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
 
-/// A relation between moments may fail by this much of the largest one and be rounding: a matrix from a
-/// sum or a product of matrices is rounded a few dozen times before its moments are known.
+/// Tolerance of relations between moments, relative to the largest: a matrix from a sum or product of matrices is
+/// rounded a few dozen times before its moments are computed.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A moment that a full matrix gives below this much of its largest one is the rounding of its entries.
+/// A moment of a full matrix below this fraction of the largest is rounding of its entries.
 const ZERO_MOMENT: f64 = 8.0 * f64::EPSILON;
 
-/// The inertia map `I(B)`, in kg m²; for which point and in which axes is its owner's to say.
+/// The inertia map `I(B)`, in kg m²; its owner defines the point and the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
     matrix: [[f64; 3]; 3],
@@ -51,7 +51,7 @@ impl Inertia {
         Ok(inertia)
     }
 
-    /// The map that told this matrix, these principal moments and this frame before; to restore it as it was.
+    /// Restores a map from its matrix, principal moments and frame.
     pub fn restored(matrix: [[f64; 3]; 3], moments: [f64; 3], frame: Rotor) -> Result<Inertia, BodyError> {
         check_moments(moments)?;
         Ok(Inertia { matrix: checked_symmetric(matrix)?, moments, frame })
@@ -69,8 +69,7 @@ impl Inertia {
         Inertia::from_matrix(from_fn(|i| from_fn(|j| if i == j { diagonal[i] } else { -c[i][j] })))
     }
 
-    /// From a matrix that is symmetric and belongs to a body by the way it was made.
-    /// An error only if its numbers are beyond floating point.
+    /// From a matrix that is known to be symmetric and valid; an error only if it overflows.
     pub(crate) fn from_symmetric(matrix: [[f64; 3]; 3]) -> Result<Inertia, BodyError> {
         if let Some(&value) = matrix.iter().flatten().find(|x| !x.is_finite()) {
             return Err(BodyError::NotFinite { what: "an entry of the inertia matrix".into(), value });
@@ -107,7 +106,7 @@ impl Inertia {
     }
 
     /// The angular velocity with the angular momentum `l`: in the principal frame, a division by the
-    /// moments. A thin rod has none: it carries no momentum about itself.
+    /// moments. An error for a thin rod, which has no momentum about its axis.
     pub fn inverse(&self, l: Bivector) -> Result<Bivector, BodyError> {
         if let Some(k) = self.moments.iter().position(|&i| i == 0.0) {
             let mut axis = Vector::default();

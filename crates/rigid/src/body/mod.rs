@@ -1,4 +1,4 @@
-//! Bodies: how much, where, and how it turns.
+//! Bodies: mass, centre of mass and inertia.
 //!
 //! All that the motion of a rigid body needs of its shape is the mass, the centre of mass and the inertia
 //! map about it (handout eq. 4.15, 4.18). Moving the point from the centre of mass by `d` adds the
@@ -47,7 +47,7 @@ impl Body {
         Ok(Body { mass, center_of_mass, inertia })
     }
 
-    /// A body that has an extent: were its moments too small for floating point they would read as zero.
+    /// A body with an extent; an error if its moments underflow to zero.
     pub(crate) fn extended(mass: f64, inertia: Inertia, center_of_mass: Vector) -> Result<Body, BodyError> {
         let largest = inertia.principal_moments().into_iter().fold(0.0, f64::max);
         if largest < f64::MIN_POSITIVE {
@@ -56,7 +56,7 @@ impl Body {
         Body::new(mass, inertia, center_of_mass)
     }
 
-    /// The body made of point masses. Zero masses are allowed as long as some mass is left.
+    /// The body made of point masses. Zero masses are allowed if the total is positive.
     pub fn from_points(masses: &[f64], positions: &[Vector]) -> Result<Body, BodyError> {
         check_points(masses, positions)?;
         let Some(&first) = positions.first() else { return Err(BodyError::NoPoints) };

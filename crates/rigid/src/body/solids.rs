@@ -6,7 +6,7 @@ use crate::error::BodyError;
 use polhode_ga::Vector;
 use std::f64::consts::PI;
 
-/// How much of a solid or a mesh there is.
+/// The mass or the density of a solid or a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
     /// Total mass in kg.
@@ -71,7 +71,7 @@ pub enum Size {
 }
 
 impl Amount {
-    /// The mass that this amount of a volume has; `name` is the solid's, for the message.
+    /// The mass of a volume; `name` is the solid's, for errors.
     pub(crate) fn mass(self, volume: Option<f64>, name: &'static str) -> Result<f64, BodyError> {
         let mass = match self {
             Amount::Mass(m) => m,
@@ -215,7 +215,7 @@ impl Solid {
         }
     }
 
-    /// Every length positive and finite; a torus that does not run through itself; a cavity that fits.
+    /// Checks that every length is positive and finite, a torus does not intersect itself, and a cavity fits.
     fn check(self) -> Result<(), BodyError> {
         let positive = |lengths: &[(&'static str, f64)]| match lengths
             .iter()

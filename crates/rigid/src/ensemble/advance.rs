@@ -1,22 +1,21 @@
-//! Equal steps of bodies side by side, one after the other.
+//! Sequences of equal steps of bodies in SIMD lanes.
 
 use polhode_ga::simd::lanes::Work;
 use std::ops::Range;
 
-/// So many steps get their times at once, by one division for many.
+/// Number of steps whose times are computed together, with one division.
 const TIMED: usize = 32;
 
 /// Equal steps from one time to another.
 #[derive(Clone, Copy)]
-pub(super) struct Stretch {
+pub(super) struct Segment {
     pub from: f64,
     pub to: f64,
     pub count: u64,
 }
 
-impl Stretch {
-    /// Where a step begins, and the one before it ends. The differences of these rounded times are the steps, so that they
-    /// add up to the time.
+impl Segment {
+    /// The time at which a step begins. The steps are the differences of these rounded times, so that they add up.
     #[inline(always)]
     pub fn begin(&self, step: u64) -> f64 {
         if step == self.count {
@@ -27,18 +26,17 @@ impl Stretch {
     }
 }
 
-/// Some of the steps of a stretch. Apart from what is done between them, so that the compiler has the registers for the
-/// steps alone.
+/// Some of the steps of a segment, compiled apart from the work between them so that the steps have all registers.
 pub(super) struct Advance<'a, M, const F: bool> {
     pub method: M,
-    pub stretch: Stretch,
+    pub segment: Segment,
     pub steps: &'a Range<u64>,
 }
 
-/// A method that goes from each of some times to the next.
+/// A method that steps from each time to the next.
 pub(super) trait Steps {
     /// `#[inline(always)]`.
-    fn walk(&mut self, times: &[f64]);
+    fn advance_over(&mut self, times: &[f64]);
 }
 
 impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
@@ -46,15 +44,15 @@ impl<M: Steps, const F: bool> Work for Advance<'_, M, F> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(mut self) {
-        // The caller is on the same path; nothing need be compiled for others.
+        // The caller is on the same path; other paths are not compiled.
         if FUSED == F {
             for first in self.steps.clone().step_by(TIMED) {
                 let mut times = [0.0; TIMED + 1];
                 for k in 0..=TIMED {
-                    times[k] = self.stretch.begin(first + k as u64);
+                    times[k] = self.segment.begin(first + k as u64);
                 }
                 let count = TIMED.min((self.steps.end - first) as usize);
-                self.method.walk(&times[..count + 1]);
+                self.method.advance_over(&times[..count + 1]);
             }
         }
     }

@@ -1,95 +1,96 @@
-//! A body on its way through its passes, by the rules of a single one.
+//! BodyRun: the sweeps of one body in a lane, by the rules for a single body.
 
-use super::crew::{Crew, METHOD, Member, Told};
+use super::member::{METHOD, Member, Outcome};
+use super::scheduler::Scheduler;
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
 use crate::methods::runge_kutta::{DOP853, Points, RungeKutta};
-use crate::methods::step_control::{Limit, Stride, next_stop};
+use crate::methods::step_control::{Limit, StepController, next_stop};
 use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
 use crate::run::certificate::{Certificate, Watch, off_unit};
-use crate::run::limits::{Course, span};
+use crate::run::limits::{StepBounds, span};
 use crate::run::noise::Noise;
-use crate::run::refine::{Aim, Converged, Convergence, Order, Scales};
-use crate::run::sweep::{Pace, Pass};
+use crate::run::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
+use crate::run::sweep::{StepRule, Sweep};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use std::mem;
 
-/// A body in a lane, on its way through its passes.
-pub(super) struct Seat<'a> {
+/// A body in a lane, with the state of its sweeps.
+pub(super) struct BodyRun<'a> {
     pub member: Member<'a>,
-    /// Times at which steps end, rising: there its laws are not smooth, or change fast.
+    /// Ascending times at which steps end: its laws are not smooth there, or change fast.
     breaks: Vec<f64>,
     /// The longest step, in s.
     longest: f64,
     limit: Limit,
-    /// A guess of the first step of a pass, in s.
+    /// A guess of the first step of a sweep, in s.
     first: f64,
-    passes: Convergence,
-    /// The one under way, with its points in the order of the walk.
-    pub pass: Pass,
-    /// What shakes its points.
+    sweeps: Convergence,
+    /// The current sweep, with its points in the order of integration.
+    pub sweep: Sweep,
+    /// Noise added to its points.
     pub noise: Option<Noise>,
-    /// Where all of them begin.
+    /// The start of all sweeps.
     begin: Carried,
-    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    /// Lower bound of the scale of angular velocities, in rad/s.
     least_rate: f64,
-    /// The largest one that the pass before met.
+    /// The largest angular velocity in the previous sweep.
     known_rate: f64,
-    pub stride: Stride,
-    /// The largest estimate of the error of a step that may stand.
+    pub controller: StepController,
+    /// The largest error estimate of an accepted step.
     pub tolerance: f64,
-    /// Where to stop next.
+    /// The next stop.
     pub stop: f64,
-    /// Parts of the way that were counted.
+    /// Parts of the run counted as done.
     so_far: u64,
 }
 
-impl<'a> Seat<'a> {
-    pub fn new(mut member: Member<'a>, torques: &[Torque], crew: &Crew<'a>) -> Seat<'a> {
+impl<'a> BodyRun<'a> {
+    pub fn new(mut member: Member<'a>, torques: &[Torque], scheduler: &Scheduler<'a>) -> BodyRun<'a> {
         let start = Carried::new(member.start, Center::default());
-        let Course { breaks, is_smooth, longest, limit, least_rate } = mem::take(&mut member.course);
+        let StepBounds { breaks, is_smooth, longest, limit, least_rate } = mem::take(&mut member.bounds);
         let first = 0.1 / fastest_rate(&member.gyrostat, torques, &member.start).max(f64::MIN_POSITIVE);
-        let aim = Aim::new(METHOD.order(), crew.options.rtol);
+        let accuracy = Accuracy::new(METHOD.order(), scheduler.options.rtol);
         let scales =
             Scales { body: member.gyrostat, rounding: ROUNDING_OF_RUNGE_KUTTA, in_space: true, is_smooth };
-        Seat {
+        BodyRun {
             member,
             breaks,
             longest,
             limit,
             first,
-            passes: Convergence::new(aim.tolerance(), aim, scales),
-            pass: Pass::default(),
+            sweeps: Convergence::new(accuracy.tolerance(), accuracy, scales),
+            sweep: Sweep::default(),
             noise: None,
             begin: start,
             least_rate,
             known_rate: 0.0,
-            stride: Stride::new(first, longest),
-            tolerance: aim.goal,
+            controller: StepController::new(first, longest),
+            tolerance: accuracy.goal,
             stop: start.phase.time,
             so_far: 0,
         }
     }
 
-    /// Begins the next pass: where it starts.
-    pub fn begin_pass(&mut self) -> Carried {
-        let Order { pace, known_rate, noise, .. } = self.passes.next();
+    /// Begins the next sweep and returns its start.
+    pub fn begin_sweep(&mut self) -> Carried {
+        let SweepPlan { rule, known_rate, noise, .. } = self.sweeps.next();
         self.known_rate = known_rate;
-        if let Pace::Tolerance(tolerance) = pace {
+        if let StepRule::Tolerance(tolerance) = rule {
             self.tolerance = tolerance;
         }
-        (self.noise, self.stride) = (noise, Stride::new(self.first, self.longest));
+        (self.noise, self.controller) = (noise, StepController::new(self.first, self.longest));
         self.begin
     }
 
-    /// The size of the angular velocity, and no less than what counts, in rad/s.
+    /// The magnitude of the angular velocity, bounded below by its scale, in rad/s.
     pub fn rate(&self, at: &Carried) -> f64 {
         self.member.gyrostat.omega(at.phase.momentum).norm().max(self.least_rate).max(self.known_rate)
     }
 
-    /// Takes the points at output times and goes on to where the next stop is known: on the other side of the start and
-    /// in the next pass too. The last pass, once it is good enough.
+    /// Records the points at output times and sets the next stop, also on the other side of the start and in the next
+    /// sweep. Returns the last sweep once it is accurate enough.
     pub fn proceed(
         &mut self,
         at: &mut Carried,
@@ -98,15 +99,15 @@ impl<'a> Seat<'a> {
     ) -> Result<Option<Converged>, SimulateError> {
         let early = times.partition_point(|&t| t < self.begin.phase.time);
         loop {
-            let taken = self.pass.states.len();
-            self.pass.meet(*fastest, &at.center);
+            let taken = self.sweep.states.len();
+            self.sweep.meet(*fastest, &at.center);
             if taken == times.len() {
-                let mut pass = mem::take(&mut self.pass);
-                pass.states[..early].reverse();
-                if let Some(found) = self.passes.take(pass, &|from, _| *from)? {
+                let mut sweep = mem::take(&mut self.sweep);
+                sweep.states[..early].reverse();
+                if let Some(found) = self.sweeps.take(sweep, &|from, _| *from)? {
                     return Ok(Some(found));
                 }
-                *at = self.begin_pass();
+                *at = self.begin_sweep();
                 *fastest = self.rate(at);
                 continue;
             }
@@ -115,84 +116,83 @@ impl<'a> Seat<'a> {
                 self.stop = next_stop(&self.breaks, at.phase.time, time);
                 return Ok(None);
             }
-            self.pass.states.push(*at);
+            self.sweep.states.push(*at);
             if taken + 1 == early {
-                (*at, self.stride) = (self.begin, Stride::new(self.first, self.longest));
+                (*at, self.controller) = (self.begin, StepController::new(self.first, self.longest));
                 *fastest = self.rate(at);
             }
         }
     }
 
-    /// Counts a step that may stand.
+    /// Counts an accepted step.
     pub fn arrive<const W: usize, const F: bool>(
         &mut self,
         h: f64,
         next: &Points<W, F>,
         l: usize,
-        crew: &Crew<'a>,
+        scheduler: &Scheduler<'a>,
     ) -> Result<(), SimulateError> {
-        self.pass.steps += 1;
-        self.pass.longest = self.pass.longest.max(h.abs());
+        self.sweep.steps += 1;
+        self.sweep.longest = self.sweep.longest.max(h.abs());
         if !next.is_finite(l) {
             return Err(SimulateError::Diverged { time: next.time.0[l] });
         }
         let turn = self.member.gyrostat.omega(next.get(l).phase.momentum).norm() * h;
         let time = next.time.0[l];
-        self.limit.check(self.pass.steps, h, turn, || self.fraction(time, crew))
+        self.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
     }
 
-    /// Why a step has no error: it is too long, or a law has no torque on the way, which the step of a single body
-    /// tells.
+    /// Why a step has no error estimate: it is too long, or a law cannot be evaluated, as a step of a single body shows.
     #[cold]
     pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
         let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
         alone.step(at, h, self.rate(at)).map(|_| ())
     }
 
-    /// Counts the way gone in a pass.
-    pub fn count(&mut self, time: f64, crew: &Crew<'a>) {
-        let fraction = self.fraction(time, crew);
-        crew.count(&mut self.so_far, fraction, 1);
+    /// Updates the progress.
+    pub fn count(&mut self, time: f64, scheduler: &Scheduler<'a>) {
+        let fraction = self.fraction(time, scheduler);
+        scheduler.count(&mut self.so_far, fraction, 1);
     }
 
-    /// The fraction of a pass that is done at a time.
-    fn fraction(&self, time: f64, crew: &Crew<'a>) -> f64 {
+    /// The fraction of a sweep done at a time.
+    fn fraction(&self, time: f64, scheduler: &Scheduler<'a>) -> f64 {
         let start = self.begin.phase.time;
-        let [first, last] = span(crew.times, start);
+        let [first, last] = span(scheduler.times, start);
         let total = (last - first).max(f64::MIN_POSITIVE);
         (if self.stop < start { start - time } else { time - first }) / total
     }
 
-    /// Writes and tells what was found.
-    pub fn done(mut self, found: Converged, torques: &[Torque], crew: &Crew<'a>) {
+    /// Writes the points and records the outcome.
+    pub fn done(mut self, found: Converged, torques: &[Torque], scheduler: &Scheduler<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
         let mut watch = Watch::new(gyrostat, torques, start);
         let mut norm_drift = 0.0_f64;
-        for (index, Carried { phase, .. }) in found.pass.states.iter().enumerate() {
+        for (index, Carried { phase, .. }) in found.sweep.states.iter().enumerate() {
             watch.look(phase);
             norm_drift = norm_drift.max(off_unit(phase.rotor));
-            own.write(index, (frame, &gyrostat, torques), phase, &crew.center(body, phase.time));
+            own.write(index, (frame, &gyrostat, torques), phase, &scheduler.center(body, phase.time));
         }
         let certificate = Certificate {
             method: METHOD.name(),
-            step: found.pass.longest,
-            steps: found.pass.steps,
-            evaluations: found.pass.evaluations,
+            step: found.sweep.longest,
+            steps: found.sweep.steps,
+            evaluations: found.sweep.evaluations,
             error_estimate: Some(found.error),
             drifts: watch.finish(),
             norm_drift,
             warnings: Vec::new(),
         };
-        crew.count(&mut self.so_far, 1.0, 1);
-        crew.tell([Told { body, certificate, failure: None }]);
+        scheduler.count(&mut self.so_far, 1.0, 1);
+        scheduler.record([Outcome { body, certificate, failure: None }]);
     }
 
-    pub fn failed(mut self, error: SimulateError, crew: &Crew<'a>) {
+    pub fn failed(mut self, error: SimulateError, scheduler: &Scheduler<'a>) {
         if let SimulateError::Stiff { .. } = error {
-            // As a single body it is followed by another method.
-            return crew.alone(self.member.body, self.member.own, &mut |_| true);
+            // A single body is integrated by another method then.
+            return scheduler.run_single(self.member.body, self.member.own, &mut |_| true);
         }
-        crew.count(&mut self.so_far, 1.0, 1);
-        crew.fail(self.member.body, &mut self.member.own, METHOD.name(), error);
+        scheduler.count(&mut self.so_far, 1.0, 1);
+        scheduler.fail(self.member.body, &mut self.member.own, METHOD.name(), error);
     }
 }

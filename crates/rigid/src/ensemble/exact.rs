@@ -1,17 +1,18 @@
-//! Free bodies, whose motion is known at all times.
+//! Free bodies of an ensemble, in closed form.
 
-use super::crew::{Crew, Member, Told};
-use crate::exact::closed_form::{Since, check_kept};
+use super::member::{Member, Outcome};
+use super::scheduler::Scheduler;
 use crate::exact::free::FreeMotion;
 use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::run::closed_form::{Since, check_kept};
 use crate::state::checks::check_horizons_from;
 use crate::state::phase::Phase;
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
 use std::borrow::Cow;
 
-impl<'a> Crew<'a> {
-    /// Writes the motion of a free body, the times side by side in lanes; its momentum and energy are those of the start.
+impl<'a> Scheduler<'a> {
+    /// Writes the motion of a free body, with the times in lanes; its momentum and energy are those of the start.
     pub fn free(&self, mut member: Member<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = member;
         let motion = FreeMotion::in_frame(frame, gyrostat.moments, start.rotor, member.omega);
@@ -53,6 +54,6 @@ impl<'a> Crew<'a> {
         }
         let certificate = Certificate { method, drifts, norm_drift, ..Certificate::default() };
         self.count(&mut 0, 1.0, 1);
-        self.tell([Told { body, certificate, failure: None }]);
+        self.record([Outcome { body, certificate, failure: None }]);
     }
 }

@@ -1,19 +1,21 @@
-//! Equal steps of bodies side by side.
+//! Fixed-step integration of bodies in SIMD lanes.
 
-use super::advance::Stretch;
-use super::crew::{Crew, Member, Plan, SIDE_BY_SIDE, Told};
-use super::laws::{Acting, Laws};
+use super::advance::Segment;
+use super::laws::{LaneForcing, Laws};
+use super::member::{Member, Outcome, Plan, SIDE_BY_SIDE};
+use super::scheduler::Scheduler;
 use super::steppers::{Components, Kicks, Stepper, of};
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
+use crate::methods::Method;
 use crate::methods::classical::Bodies;
 use crate::methods::kicks::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
-use crate::methods::{Engine, Method};
 use crate::run::Progress;
 use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::run::engine::Engine;
 use crate::run::limits::span;
-use crate::run::stops::{aliasing, is_aliased};
+use crate::run::stops::{aliasing_warning, is_aliased};
 use crate::run::sweep::is_finite;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -21,12 +23,12 @@ use crate::state::phase::Phase;
 use polhode_ga::simd::lanes::Work;
 use std::array;
 
-/// Steps between looks at whether all is finite, and whether to go on.
+/// Steps between checks for finite states and calls of `progress`.
 const BETWEEN_LOOKS: u64 = 1024;
 
-/// At most [`SIDE_BY_SIDE`] bodies to be stepped over all times.
+/// Integration of at most [`SIDE_BY_SIDE`] bodies over all times.
 pub(super) struct FixedSteps<'a, 'b> {
-    pub crew: &'b Crew<'a>,
+    pub scheduler: &'b Scheduler<'a>,
     pub plan: Plan,
     pub members: Vec<Member<'a>>,
     pub progress: &'b mut dyn FnMut(Progress) -> bool,
@@ -48,57 +50,57 @@ impl Work for FixedSteps<'_, '_> {
             let fixed = |l: usize| fixed_momentum(laws(l), &of(members, l).start).map(|momentum| momentum.0);
             let turns = Turns::new(array::from_fn(|l| (gyrostats[l], damping(l), fixed(l))));
             let (stages, laws) = ((&stages[..], last), Laws::new(gyrostats, array::from_fn(laws)));
-            self.walk(&mut Kicks::<F> { turns, stages, laws }, &torques);
+            self.advance_all(&mut Kicks::<F> { turns, stages, laws }, &torques);
         } else {
             let bodies = Bodies::new(array::from_fn(|l| (gyrostats[l], damping(l))));
-            let acting = Acting::new(gyrostats, array::from_fn(laws));
-            self.walk(&mut Components::<F> { bodies, acting }, &torques);
+            let forcing = LaneForcing::new(gyrostats, array::from_fn(laws));
+            self.advance_all(&mut Components::<F> { bodies, forcing }, &torques);
         }
     }
 }
 
 impl FixedSteps<'_, '_> {
-    fn walk<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
-        let FixedSteps { crew, plan, mut members, progress } = self;
+    fn advance_all<const F: bool, S: Stepper<F>>(self, stepper: &mut S, torques: &[Vec<Torque>]) {
+        let FixedSteps { scheduler, plan, mut members, progress } = self;
         let Plan { start, step, method, .. } = plan;
-        let times = crew.times;
+        let times = scheduler.times;
         let mut watches: Vec<Watch> =
             members.iter().zip(torques).map(|(m, t)| Watch::new(m.gyrostat, t, m.start)).collect();
         let mut failures: [Option<(f64, SimulateError)>; SIDE_BY_SIDE] = [const { None }; SIDE_BY_SIDE];
         let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
-        let breaks = breaks(torques, &crew.options.breaks);
+        let breaks = breaks(torques, &scheduler.options.breaks);
         let [begin, end] = span(times, start);
         let total = (end - begin).max(f64::MIN_POSITIVE);
         let early = times.partition_point(|&t| t < start);
         let sides: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..early).rev(), &mut (early..times.len())];
         for (side, indices) in sides.into_iter().enumerate() {
             let mut state = stepper.start(&members);
-            // A body that failed on one side of the start is followed on the other.
+            // A body that failed on one side of the start is integrated on the other.
             let mut lost = [false; SIDE_BY_SIDE];
             let mut time = start;
             for index in indices {
-                for stretch in stretches(time, times[index], step, &breaks) {
-                    longest = longest.max((stretch.to - stretch.from).abs() / stretch.count as f64);
-                    for first in (0..stretch.count).step_by(BETWEEN_LOOKS as usize) {
-                        let last = stretch.count.min(first + BETWEEN_LOOKS);
+                for segment in segments(time, times[index], step, &breaks) {
+                    longest = longest.max((segment.to - segment.from).abs() / segment.count as f64);
+                    for first in (0..segment.count).step_by(BETWEEN_LOOKS as usize) {
+                        let last = segment.count.min(first + BETWEEN_LOOKS);
                         let before = state;
-                        stepper.advance(&mut state, stretch, &(first..last));
+                        stepper.advance(&mut state, segment, &(first..last));
                         steps += last - first;
                         for (l, member) in members.iter().enumerate() {
-                            let now = stepper.phase(&member.gyrostat, &state, l, stretch.begin(last));
+                            let now = stepper.phase(&member.gyrostat, &state, l, segment.begin(last));
                             if !lost[l] && !is_finite(&Carried::new(now, Center::default())) {
-                                let from = stepper.phase(&member.gyrostat, &before, l, stretch.begin(first));
-                                let part = (&stretch, first..last);
+                                let from = stepper.phase(&member.gyrostat, &before, l, segment.begin(first));
+                                let part = (&segment, first..last);
                                 lost[l] = true;
                                 let failure = diagnose(method, member, &torques[l], from, part);
                                 failures[l].get_or_insert(failure);
                             }
                         }
-                        let gone = stretch.begin(last);
-                        let walked = if side == 0 { start - gone } else { gone - begin };
-                        crew.count(&mut so_far, walked / total, members.len());
-                        if !crew.report(progress) {
+                        let gone = segment.begin(last);
+                        let passed = if side == 0 { start - gone } else { gone - begin };
+                        scheduler.count(&mut so_far, passed / total, members.len());
+                        if !scheduler.report(progress) {
                             return;
                         }
                     }
@@ -112,21 +114,21 @@ impl FixedSteps<'_, '_> {
                     let phase = stepper.phase(&member.gyrostat, &state, l, time);
                     norm_drifts[l] = norm_drifts[l].max(off_unit(phase.rotor));
                     watches[l].look(&phase);
-                    let center = crew.center(member.body, time);
+                    let center = scheduler.center(member.body, time);
                     let of = (member.frame, &member.gyrostat, &torques[l][..]);
                     member.own.write(index, of, &phase, &center);
                 }
             }
         }
-        crew.count(&mut so_far, 1.0, members.len());
-        // Laws are of one kind for all bodies: the first ones show it.
+        scheduler.count(&mut so_far, 1.0, members.len());
+        // Laws are of the same kinds for all bodies: the first body stands for all.
         let first = &members[0];
         let is_aliased = |law: &&Torque| is_aliased(law, &first.gyrostat, &first.start, [begin, end], step);
         let aliased = torques[0].iter().filter(is_aliased);
-        let mut warnings: Vec<String> = aliased.map(|law| aliasing(law, step)).collect();
+        let mut warnings: Vec<String> = aliased.map(|law| aliasing_warning(law, step)).collect();
         let failures = failures.into_iter();
-        let told = members.iter().zip(watches).zip(failures).zip(norm_drifts);
-        crew.tell(told.map(|(((member, watch), failure), norm_drift)| Told {
+        let outcomes = members.iter().zip(watches).zip(failures).zip(norm_drifts);
+        scheduler.record(outcomes.map(|(((member, watch), failure), norm_drift)| Outcome {
             body: member.body,
             certificate: Certificate {
                 method: method.name(),
@@ -143,16 +145,16 @@ impl FixedSteps<'_, '_> {
     }
 }
 
-/// Where the laws are not smooth, rising; all bodies share such laws.
-fn breaks(torques: &[Vec<Torque>], asked: &[f64]) -> Vec<f64> {
+/// Ascending times at which the laws are not smooth; all bodies share such laws.
+fn breaks(torques: &[Vec<Torque>], extra: &[f64]) -> Vec<f64> {
     let laws = torques[0].iter().flat_map(|law| law.breaks());
-    let mut breaks: Vec<f64> = laws.chain(asked).copied().collect();
+    let mut breaks: Vec<f64> = laws.chain(extra).copied().collect();
     breaks.sort_by(f64::total_cmp);
     breaks
 }
 
-/// The ways to a time, parted where a law is not smooth.
-fn stretches(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Stretch> {
+/// The segments up to a time, split where a law is not smooth.
+fn segments(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Segment> {
     if from == to {
         return Vec::new();
     }
@@ -166,21 +168,21 @@ fn stretches(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Stretch> {
     let mut begin = from;
     let part = |end: f64| {
         let count = ((end - begin).abs() / step).ceil().max(1.0) as u64;
-        let stretch = Stretch { from: begin, to: end, count };
+        let segment = Segment { from: begin, to: end, count };
         begin = end;
-        stretch
+        segment
     };
-    ends.into_iter().map(part).filter(|stretch| stretch.from != stretch.to).collect()
+    ends.into_iter().map(part).filter(|segment| segment.from != segment.to).collect()
 }
 
-/// When and why the steps from a point lead to nothing: steps them once more, alone.
+/// When and why steps from a point fail: repeats them for the body alone.
 #[cold]
 fn diagnose(
     method: Method,
     member: &Member,
     torques: &[Torque],
     from: Phase,
-    (stretch, steps): (&Stretch, std::ops::Range<u64>),
+    (segment, steps): (&Segment, std::ops::Range<u64>),
 ) -> (f64, SimulateError) {
     let mut at = Carried::new(from, Center::default());
     let alone = match Engine::new(method, member.gyrostat, torques, None, &member.start) {
@@ -188,7 +190,7 @@ fn diagnose(
         Err(error) => return (from.time, error),
     };
     for i in steps {
-        let (begin, end) = (stretch.begin(i), stretch.begin(i + 1));
+        let (begin, end) = (segment.begin(i), segment.begin(i + 1));
         match alone.step(&at, end - begin, 0.0) {
             Ok((next, _)) if is_finite(&next) => at = next,
             Ok(_) => return (begin, SimulateError::Diverged { time: end }),

@@ -1,7 +1,7 @@
-//! Torque laws of bodies side by side.
+//! Torque laws of bodies in SIMD lanes.
 //!
-//! Laws of one kind whose parameters add up become one. What all bodies share at a time, as an orbit or a table, is
-//! evaluated once for all, and not again while the time stays.
+//! Laws of one kind are merged where their parameters add up. What all bodies share, such as an orbit or a table, is
+//! evaluated once per time.
 
 use crate::laws::forcing::{Forcing, Place};
 use crate::laws::formula::{Formula, Formulas};
@@ -15,9 +15,9 @@ use std::array;
 use std::sync::Arc;
 
 /// Free bodies without wheels.
-pub(super) struct Nothing;
+pub(super) struct NoForcing;
 
-impl<const W: usize, const F: bool> Forcing<W, F> for Nothing {
+impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     const ACTS: bool = false;
 
     #[inline(always)]
@@ -31,7 +31,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Nothing {
     }
 }
 
-/// Nothing but weights and damping, without wheels: what stays in registers.
+/// Weights and damping only, without wheels: their parameters stay in registers.
 pub(super) struct Weight<const W: usize, const F: bool>(Three<W, F>);
 
 impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
@@ -50,7 +50,7 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     }
 }
 
-/// Nothing but the gradient along one orbit and damping, without wheels.
+/// One gravity gradient and damping only, without wheels.
 pub(super) struct Gradient<const W: usize, const F: bool> {
     moments: Three<W, F>,
     orbits: Orbits<W>,
@@ -71,36 +71,36 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     }
 }
 
-/// What turns bodies side by side, by how much of it there is.
-pub(super) enum Acting<'t, const W: usize, const F: bool> {
-    Nothing,
+/// The forcing of bodies in lanes, specialised for the simple cases.
+pub(super) enum LaneForcing<'t, const W: usize, const F: bool> {
+    NoForcing,
     Weight(Weight<W, F>),
     Gradient(Gradient<W, F>),
     Laws(Laws<'t, W, F>),
 }
 
-impl<'t, const W: usize, const F: bool> Acting<'t, W, F> {
+impl<'t, const W: usize, const F: bool> LaneForcing<'t, W, F> {
     /// Every body has laws of the same kinds in the same order.
-    pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> Acting<'t, W, F> {
+    pub fn new(gyrostats: [Gyrostat; W], torques: [&'t [Torque]; W]) -> LaneForcing<'t, W, F> {
         if torques[0].is_empty() {
-            return Acting::Nothing;
+            return LaneForcing::NoForcing;
         }
         let mut laws = Laws::new(gyrostats, torques);
         let wheels = gyrostats.iter().any(|body| body.wheel != Bivector::default());
         match laws.laws.pop() {
-            Some(Law::Heavy(c)) if laws.laws.is_empty() && !wheels => Acting::Weight(Weight(c)),
+            Some(Law::Heavy(c)) if laws.laws.is_empty() && !wheels => LaneForcing::Weight(Weight(c)),
             Some(Law::GravityGradient(orbits)) if laws.laws.is_empty() && !wheels => {
-                Acting::Gradient(Gradient { moments: laws.moments, orbits })
+                LaneForcing::Gradient(Gradient { moments: laws.moments, orbits })
             }
             last => {
                 laws.laws.extend(last);
-                Acting::Laws(laws)
+                LaneForcing::Laws(laws)
             }
         }
     }
 }
 
-/// The laws of bodies side by side, in principal axes.
+/// The laws of bodies in lanes, in principal axes.
 pub(super) struct Laws<'t, const W: usize, const F: bool> {
     gyrostats: [Gyrostat; W],
     moments: Three<W, F>,
@@ -128,14 +128,14 @@ enum Law<'t, const W: usize, const F: bool> {
         rest: [Lanes<W, F>; 4],
     },
     Larmor(Three<W, F>),
-    /// A table that all share, in its axes.
+    /// A table shared by all, in its axes.
     Tabulated(Latest<'t>),
     Formula(Box<Formulas<'t, W, F>>),
     /// Lane by lane.
     Other([&'t Torque; W]),
 }
 
-/// The orbits of all bodies, with their latest places.
+/// The orbits of all bodies, with their latest positions.
 struct Orbits<const W: usize> {
     orbits: [Orbit; W],
     shared: bool,
@@ -198,8 +198,8 @@ fn formula_of(law: &Torque) -> Option<&Formula> {
 }
 
 impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
-    /// The same law of each body as one in lanes; a controller is a spring and a damper. Damping and wheels are with the
-    /// bodies.
+    /// Combines the same law of each body into one in lanes; a controller is a spring and a damper. Damping and wheels
+    /// are stored with the bodies.
     fn new(each: [&'t Torque; W], gyrostats: &[Gyrostat; W]) -> Vec<Law<'t, W, F>> {
         let own: [Vec<f64>; W] = each.map(numbers);
         let law = match each[0] {
@@ -288,7 +288,7 @@ impl<const W: usize> Orbits<W> {
         gradient(moments, &seen(&at.rotor, &[Lanes(x), Lanes(y), Lanes::ZERO]), Lanes(strength))
     }
 
-    /// Brings the places to these times.
+    /// Updates the positions to these times.
     fn go_to(&mut self, times: &[f64; W]) {
         self.times = *times;
         if self.shared && times.iter().all(|time| *time == times[0]) {
@@ -346,7 +346,7 @@ impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
     }
 }
 
-/// By the law of each body; NaN where one has no torque.
+/// Evaluates the law of each body; NaN where it fails.
 #[inline(never)]
 fn lane_by_lane<const W: usize, const F: bool>(
     gyrostats: &[Gyrostat; W],
@@ -360,7 +360,7 @@ fn lane_by_lane<const W: usize, const F: bool>(
         let known = rotor[0].is_finite();
         let momentum = body.momentum(Bivector(at.omega.map(|lanes| lanes.0[l])));
         let phase = Phase { rotor: Rotor::from_unit_components(rotor), momentum, time: at.time.0[l] };
-        // A body that failed is asked no more.
+        // Laws are not evaluated for a failed body.
         let torque = if known { each[l].value(body, &phase).ok() } else { None };
         let torque = torque.unwrap_or(Bivector([f64::NAN; 3]));
         for k in 0..3 {
@@ -370,8 +370,8 @@ fn lane_by_lane<const W: usize, const F: bool>(
     torques
 }
 
-/// The torque of a law of the kind K, by the order below. Each kind is compiled by itself, and apart from the steps, in whose
-/// stages its code would stand many times.
+/// The torque of a law of kind K, numbered as below. Each kind is compiled by itself, outside the stages of the steps,
+/// which would repeat its code.
 struct Term<'a, 't, const K: usize, const W: usize, const F: bool> {
     law: &'a mut Law<'t, W, F>,
     moments: &'a Three<W, F>,
@@ -384,7 +384,7 @@ impl<const K: usize, const W: usize, const F: bool> Work for Term<'_, '_, K, W, 
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Three<W, F> {
-        // The caller is on the same path; nothing need be compiled for others.
+        // The caller is on the same path; other paths are not compiled.
         if FUSED == F { self.torque() } else { [Lanes::ZERO; 3] }
     }
 }

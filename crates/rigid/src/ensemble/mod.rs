@@ -1,18 +1,17 @@
-//! Many bodies at once: each as alone, many side by side in lanes.
+//! Ensembles: many bodies, integrated in SIMD lanes and threads.
 //!
-//! A body has its own inertia, start and laws, or shares them with the others. What becomes of one never depends on the
-//! others, on how many there are, or on how many threads share them. Without a step and a method, a
-//! motion in closed form is known at any time, and others are stepped by `dop853`, each by its own steps to its own
-//! tolerance: in the lanes, where the drifts of what is conserved are looked at at the output times. What the lanes have
-//! no form for is followed one by one. A body that fails is told, and the others go on.
+//! A body has its own inertia, start and laws, or shares them with the others. Its result never depends on the others,
+//! on their number, or on the number of threads. Without a step and a method, motions in closed form are evaluated, and
+//! others are integrated by `dop853` with steps of their own: in lanes, where drifts of conserved quantities are measured
+//! at the output times. What lanes do not support is solved one by one. A body that fails does not stop the others.
 
 mod adaptive;
 mod advance;
 mod body_run;
-mod crew;
 mod exact;
 mod fixed;
 mod laws;
+mod member;
 mod output;
 mod scheduler;
 mod steppers;
@@ -25,11 +24,10 @@ use crate::run::limits::span;
 use crate::run::{NO_CLOSED_FORM, Options, Problem, Progress, check_start_time};
 use crate::state::center::Center;
 use crate::state::checks::check_moments;
-use crew::Crew;
-pub(crate) use output::Own;
 pub use output::{Outputs, Summary};
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
+use scheduler::Scheduler;
 
 /// One value for all bodies, or one for each.
 #[derive(Clone, Debug)]
@@ -61,7 +59,7 @@ impl<T> Rows<T> {
     }
 }
 
-/// How a body starts.
+/// The start of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
     /// In s.
@@ -74,34 +72,34 @@ pub struct Start {
     pub center: Center,
 }
 
-/// Bodies, their starts and what acts on them. Vectors of a body are in body axes.
+/// Bodies, their starts, torques and forces. Vectors of a body are in body axes.
 #[derive(Clone, Debug)]
 pub struct Ensemble {
     /// About the centres of mass, or about fixed points.
     pub inertias: Rows<Inertia>,
     /// One for each body.
     pub starts: Vec<Start>,
-    /// Laws that add up.
+    /// Torque laws, which add up.
     pub laws: Vec<Rows<Torque>>,
-    /// In kg; NaN where nobody said it.
+    /// In kg; NaN where unknown.
     pub masses: Rows<f64>,
-    /// What moves the centres of mass.
+    /// Forces on the centres of mass.
     pub forces: Vec<Force>,
 }
 
-/// A body that could not be followed to the end.
+/// A body whose motion could not be computed to the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// Its number.
     pub body: usize,
-    /// Up to where it was followed, in s.
+    /// Time up to which it was computed, in s.
     pub time: f64,
-    /// Why no further.
+    /// The error.
     pub error: SimulateError,
 }
 
 impl Ensemble {
-    /// A body with its laws, to be followed alone.
+    /// The problem of one body.
     pub fn problem(&self, body: usize) -> Problem {
         let start = &self.starts[body];
         let laws: Vec<Torque> = self.laws.iter().map(|law| law.of(body).clone()).collect();
@@ -110,12 +108,12 @@ impl Ensemble {
             .starting_at(start.time)
     }
 
-    /// Follows all bodies to the times (s, not decreasing; those before a body's start are reached backwards), with
-    /// options as for one body, by so many threads. `progress` is asked now and then by the calling thread; at false all
-    /// ends with [`SimulateError::Interrupted`]. An error for what none of the bodies could be followed with.
+    /// Computes the motions of all bodies at the times (s, not decreasing; those before a body's start are reached
+    /// backwards), with options as for one body, using `threads`. The calling thread calls `progress` repeatedly; if it
+    /// returns false, the run ends with [`SimulateError::Interrupted`]. Input that is invalid for all bodies is an error.
     ///
     /// # Panics
-    /// If numbers of rows do not fit together.
+    /// If the numbers of rows do not match.
     pub fn run(
         &self,
         times: &[f64],
@@ -128,10 +126,10 @@ impl Ensemble {
         let rows = [self.inertias.0.len(), self.masses.0.len()];
         let rows = rows.into_iter().chain(self.laws.iter().map(|law| law.0.len()));
         assert!(rows.into_iter().all(|n| n == 1 || n == self.starts.len()), "one for all, or one for each");
-        Crew::new(self, times, options, outputs).work(threads, progress)
+        Scheduler::new(self, times, options, outputs).work(threads, progress)
     }
 
-    /// What is wrong for all bodies alike.
+    /// Checks input that concerns all bodies.
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {
         options.check(times)?;
         self.starts.iter().try_for_each(|start| check_start_time(start.time))?;
@@ -149,7 +147,7 @@ impl Ensemble {
         Ok(())
     }
 
-    /// A body whose number comes with what is wrong with it, before anything is computed.
+    /// The first body that is invalid, by its number, and its error.
     pub fn first_unusable(&self) -> Option<(usize, SimulateError)> {
         (0..self.starts.len()).find_map(|body| {
             let inertia = self.inertias.of(body);
@@ -158,10 +156,10 @@ impl Ensemble {
         })
     }
 
-    /// Whether lanes can step these bodies, by equal steps or by steps of their own: only constant forces move them.
+    /// Whether these bodies can be integrated in lanes, by equal or adaptive steps: forces must be constant.
     fn in_lanes(&self, equal: bool) -> bool {
-        // Laws are of one kind for all bodies, so that one of them tells; to ask them all would take, body by body, the
-        // square of their number. A table of its own gives each body its own steps.
+        // Laws are of the same kinds for all bodies, so one stands for all; checking all of them for each body would take
+        // quadratic time. A table of its own gives each body its own steps.
         let apart = |law: &Rows<Torque>| equal && !law.is_one() && !law.of(0).breaks().is_empty();
         // A function is called for one body at a time.
         let called = |law: &Rows<Torque>| !equal && matches!(law.of(0), Torque::Function(_));

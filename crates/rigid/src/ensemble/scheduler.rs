@@ -1,27 +1,272 @@
-//! The work on an ensemble, shared by threads: each takes bodies that nobody has taken yet.
+//! Scheduler: distributes the bodies of an ensemble among threads and collects their outcomes.
 
-use super::Failure;
 use super::adaptive::AdaptedSteps;
-use super::crew::{Crew, Member, Plan, SIDE_BY_SIDE, Told, lock};
 use super::fixed::FixedSteps;
-use super::output::Summary;
+use super::member::{METHOD, Member, Outcome, Plan, SIDE_BY_SIDE, Strategy};
+use super::output::{Outputs, Summary};
+use super::{Ensemble, Failure};
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
-use crate::run::Progress;
+use crate::laws::force::Force;
+use crate::laws::torque::{Torque, wheel};
+use crate::methods::Method;
+use crate::methods::splitting::Sequence;
+use crate::methods::splitting::turns::Kind;
+use crate::run::certificate::Certificate;
+use crate::run::closed_form::{ClosedForm, Fall};
+use crate::run::limits::{Samples, StepBounds, samples};
+use crate::run::output::BodyOutput;
+use crate::run::{Options, Progress, check_body};
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::Vector;
 use polhode_ga::simd::lanes::fastest;
 use polhode_ga::simd::threads::Threads;
-use std::sync::atomic::Ordering;
+use std::borrow::Cow;
+use std::iter::Enumerate;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How often a thread that has no more work tells how far the others are.
+/// Parts into which the progress of a body is divided.
+const PARTS: f64 = 1024.0;
+
+/// Interval at which an idle thread reports the progress of the others.
 const BETWEEN_REPORTS: Duration = Duration::from_millis(20);
 
-/// How many groups of bodies that are stepped alike wait for more at a time.
+/// Maximum number of incomplete groups of bodies with the same plan.
 const MOST_WAITING: usize = 64;
 
-impl Crew<'_> {
-    /// Does all the work.
+type Queue<'a> = Enumerate<Box<dyn Iterator<Item = BodyOutput<'a>> + Send + 'a>>;
+
+/// State shared by the threads.
+pub(super) struct Scheduler<'a> {
+    pub ensemble: &'a Ensemble,
+    pub times: &'a [f64],
+    pub options: &'a Options,
+    queue: Mutex<Queue<'a>>,
+    pub(super) outcomes: Mutex<Vec<Outcome>>,
+    pub(super) stopped: AtomicBool,
+    /// In parts of bodies.
+    done: AtomicU64,
+    /// Number of running threads; `ended` is notified when one ends.
+    pub(super) running: Mutex<usize>,
+    pub(super) ended: Condvar,
+    /// The laws in principal axes, if all bodies share them and an inertia.
+    shared: Option<Vec<Torque>>,
+    /// Their samples in time, if all bodies also start at one time.
+    samples: Option<OnceLock<Samples>>,
+}
+
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl<'a> Scheduler<'a> {
+    pub fn new(
+        ensemble: &'a Ensemble,
+        times: &'a [f64],
+        options: &'a Options,
+        outputs: Outputs<'a>,
+    ) -> Scheduler<'a> {
+        let each: Box<dyn Iterator<Item = BodyOutput<'a>> + Send + 'a> =
+            Box::new(outputs.each(times.len().max(1)));
+        let alike = ensemble.inertias.is_one() && ensemble.laws.iter().all(|law| law.is_one());
+        let one_clock = ensemble.starts.iter().all(|start| start.time == ensemble.starts[0].time);
+        let frame = ensemble.inertias.of(0).principal_frame();
+        let turned = || ensemble.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect();
+        Scheduler {
+            ensemble,
+            times,
+            options,
+            queue: Mutex::new(each.enumerate()),
+            outcomes: Mutex::new(Vec::with_capacity(ensemble.starts.len())),
+            stopped: AtomicBool::new(false),
+            done: AtomicU64::new(0),
+            running: Mutex::new(0),
+            ended: Condvar::new(),
+            shared: alike.then(turned),
+            samples: (alike && one_clock).then(OnceLock::new),
+        }
+    }
+
+    /// The next unassigned body, with its output arrays.
+    pub fn next_body(&self) -> Option<(usize, BodyOutput<'a>)> {
+        if self.stopped.load(Ordering::Relaxed) { None } else { lock(&self.queue).next() }
+    }
+
+    /// The next body for adaptive steps in lanes. Bodies before it that lanes do not support are solved at once.
+    pub fn next_member(&self, progress: &mut dyn FnMut(Progress) -> bool) -> Option<Member<'a>> {
+        let method = self.options.method.unwrap_or(METHOD);
+        let adapts = method == METHOD && self.ensemble.in_lanes(false);
+        while let Some((body, own)) = self.next_body() {
+            if !adapts {
+                self.run_single(body, own, progress);
+                continue;
+            }
+            let mut member = self.member(body, own);
+            match self.strategy(&member) {
+                Strategy::Lanes => {
+                    member.bounds = self.bounds(&member);
+                    return Some(member);
+                }
+                Strategy::Free => {
+                    self.free(member);
+                    self.report(progress);
+                }
+                Strategy::Alone => self.run_single(body, member.own, progress),
+            }
+        }
+        None
+    }
+
+    /// The plan of a body for equal steps in lanes, if they are supported.
+    pub fn plan(&self, body: usize, step: f64) -> Option<Plan> {
+        if !self.ensemble.in_lanes(true) {
+            return None;
+        }
+        let method = self.options.method.unwrap_or_else(|| self.ensemble.problem(body).best());
+        let kind = match method {
+            Method::Classical => None,
+            Method::Splitting(sequence) => {
+                let torques = self.torques(body);
+                let moments = self.ensemble.inertias.of(body).principal_moments();
+                let gyrostat = Gyrostat { moments, wheel: wheel(&torques) };
+                let kind = Kind::of(&gyrostat);
+                let exact_drift = matches!(sequence, Sequence::Nystrom(_)) && !kind.is_symmetric();
+                if exact_drift || method.unfit(&gyrostat, &torques).is_some() {
+                    return None;
+                }
+                Some(kind)
+            }
+            _ => return None,
+        };
+        Some(Plan { start: self.ensemble.starts[body].time, step, method, kind })
+    }
+
+    /// How a body is solved without a given step.
+    fn strategy(&self, member: &Member) -> Strategy {
+        let Member { gyrostat, torques, start, omega, .. } = member;
+        let chosen = self.options.method.is_some() && !self.options.exact;
+        if check_body(gyrostat, *omega, torques).is_err() {
+            // The error is reported as for a single body.
+            Strategy::Alone
+        } else if chosen {
+            Strategy::Lanes
+        } else if torques.is_empty() {
+            Strategy::Free
+        } else {
+            let (center, acceleration) = (Center::default(), Vector::default());
+            let fall = Fall { time: start.time, start: center, acceleration };
+            let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
+            if closed.is_some() || self.options.exact { Strategy::Alone } else { Strategy::Lanes }
+        }
+    }
+
+    /// The laws of a body in principal axes.
+    fn torques(&self, body: usize) -> Cow<'_, [Torque]> {
+        if let Some(shared) = &self.shared {
+            return shared.into();
+        }
+        let frame = self.ensemble.inertias.of(body).principal_frame();
+        self.ensemble.laws.iter().map(|law| law.of(body).clone().in_axes(frame)).collect()
+    }
+
+    pub fn member(&self, body: usize, own: BodyOutput<'a>) -> Member<'a> {
+        let (inertia, start) = (self.ensemble.inertias.of(body), &self.ensemble.starts[body]);
+        let frame = inertia.principal_frame();
+        let torques = self.torques(body).into_owned();
+        let gyrostat = Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) };
+        let omega = frame.reverse().apply_bivector(start.omega);
+        let (rotor, momentum) = (start.rotor * frame, gyrostat.momentum(omega));
+        let start = Phase { rotor, momentum, time: start.time };
+        Member { body, frame, gyrostat, torques, omega, start, bounds: StepBounds::default(), own }
+    }
+
+    /// What bounds the steps of a body. Laws in lanes are not functions of the caller: sampling them does not fail.
+    fn bounds(&self, member: &Member) -> StepBounds {
+        let Member { gyrostat, torques, start, .. } = member;
+        let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();
+        let own;
+        // They depend on the law alone, which the bodies may share.
+        let samples = match &self.samples {
+            Some(shared) => shared.get_or_init(sample),
+            None => {
+                own = sample();
+                &own
+            }
+        };
+        StepBounds::new(torques, samples, gyrostat, start, self.options)
+    }
+
+    /// Solves a body alone.
+    pub fn run_single(
+        &self,
+        body: usize,
+        mut own: BodyOutput<'a>,
+        progress: &mut dyn FnMut(Progress) -> bool,
+    ) {
+        let problem = self.ensemble.problem(body);
+        let mut so_far = 0;
+        let mut go_on = |at: Progress| {
+            self.count(&mut so_far, at.fraction, 1);
+            self.report(progress)
+        };
+        let found = problem.simulate(self.times, self.options.clone(), &mut go_on);
+        self.count(&mut so_far, 1.0, 1);
+        match found {
+            Ok(motion) => {
+                motion.write(&mut own);
+                self.record([Outcome { body, certificate: motion.certificate, failure: None }]);
+            }
+            Err(error) => self.fail(body, &mut own, "", error),
+        }
+    }
+
+    /// Records that a body failed with a method, and writes NaN as its points.
+    pub fn fail(&self, body: usize, own: &mut BodyOutput<'a>, method: &'static str, error: SimulateError) {
+        (0..self.times.len()).for_each(|index| own.unknown(index));
+        let time = error.time().unwrap_or(self.ensemble.starts[body].time);
+        let certificate = Certificate { method, ..Certificate::default() };
+        self.record([Outcome { body, certificate, failure: Some((time, error)) }]);
+    }
+
+    /// The centre of mass at a time, under constant forces.
+    pub fn center(&self, body: usize, time: f64) -> Center {
+        let (start, mass) = (&self.ensemble.starts[body], *self.ensemble.masses.of(body));
+        let force = self.ensemble.forces.iter().fold(Vector::default(), |sum, force| match force {
+            Force::Constant(force) => sum + *force,
+            _ => sum,
+        });
+        let acceleration = if self.ensemble.forces.is_empty() { Vector::default() } else { force / mass };
+        Fall { time: start.time, start: start.center, acceleration }.at(time)
+    }
+
+    pub fn record(&self, outcomes: impl IntoIterator<Item = Outcome>) {
+        lock(&self.outcomes).extend(outcomes);
+    }
+
+    /// Counts a number of bodies as done to this fraction; `so_far` holds the parts of each counted before.
+    pub fn count(&self, so_far: &mut u64, fraction: f64, bodies: usize) {
+        let parts = (fraction * PARTS) as u64;
+        self.done.fetch_add(parts.saturating_sub(*so_far) * bodies as u64, Ordering::Relaxed);
+        *so_far = parts.max(*so_far);
+    }
+
+    /// Calls `progress`. False if the run is to stop.
+    pub fn report(&self, progress: &mut dyn FnMut(Progress) -> bool) -> bool {
+        let whole = PARTS * self.ensemble.starts.len() as f64;
+        let fraction = (self.done.load(Ordering::Relaxed) as f64 / whole).min(1.0);
+        if !progress(Progress { pass: 1, fraction }) {
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+        !self.stopped.load(Ordering::Relaxed)
+    }
+}
+
+impl Scheduler<'_> {
+    /// Solves all bodies.
     pub fn work(
         &self,
         threads: Threads,
@@ -31,32 +276,32 @@ impl Crew<'_> {
         thread::scope(|scope| {
             for _ in 1..count {
                 *lock(&self.running) += 1;
-                // Where no more threads are to be had, those that are there do all the work.
-                if thread::Builder::new().spawn_scoped(scope, || self.take_turns(&mut |_| true)).is_err() {
+                // If no more threads can be created, the existing ones do all the work.
+                if thread::Builder::new().spawn_scoped(scope, || self.work_loop(&mut |_| true)).is_err() {
                     *lock(&self.running) -= 1;
                 }
             }
             *lock(&self.running) += 1;
-            self.take_turns(progress);
+            self.work_loop(progress);
             self.wait(progress);
         });
         if self.stopped.load(Ordering::Relaxed) {
             return Err(SimulateError::Interrupted);
         }
-        Ok(summary(std::mem::take(&mut *lock(&self.told))))
+        Ok(summary(std::mem::take(&mut *lock(&self.outcomes))))
     }
 
-    /// Takes bodies and follows them, until there are no more.
-    fn take_turns(&self, progress: &mut dyn FnMut(Progress) -> bool) {
+    /// Solves bodies until none is left.
+    fn work_loop(&self, progress: &mut dyn FnMut(Progress) -> bool) {
         match self.options.step {
             Some(step) => self.equal_steps(step.min(self.options.max_step.unwrap_or(step)), progress),
-            None => fastest(AdaptedSteps { crew: self, progress }),
+            None => fastest(AdaptedSteps { scheduler: self, progress }),
         }
         *lock(&self.running) -= 1;
         self.ended.notify_all();
     }
 
-    /// Waits for the other threads, and tells how far they are.
+    /// Waits for the other threads and reports their progress.
     fn wait(&self, progress: &mut dyn FnMut(Progress) -> bool) {
         let mut running = lock(&self.running);
         while *running > 0 {
@@ -68,19 +313,19 @@ impl Crew<'_> {
         }
     }
 
-    /// Follows bodies by equal steps.
+    /// Integrates bodies by equal steps.
     fn equal_steps(&self, step: f64, progress: &mut dyn FnMut(Progress) -> bool) {
-        // Bodies wait for others that are stepped alike.
+        // Bodies wait for others with the same plan.
         let mut waiting: Vec<(Plan, Vec<Member>)> = Vec::new();
-        while let Some((body, own)) = self.take() {
+        while let Some((body, own)) = self.next_body() {
             let Some(plan) = self.plan(body, step) else {
-                self.alone(body, own, progress);
+                self.run_single(body, own, progress);
                 continue;
             };
             let place = waiting.iter().position(|(alike, _)| *alike == plan).unwrap_or_else(|| {
                 if waiting.len() == MOST_WAITING {
                     let (plan, members) = waiting.remove(0);
-                    fastest(FixedSteps { crew: self, plan, members, progress });
+                    fastest(FixedSteps { scheduler: self, plan, members, progress });
                 }
                 waiting.push((plan, Vec::with_capacity(SIDE_BY_SIDE)));
                 waiting.len() - 1
@@ -88,21 +333,21 @@ impl Crew<'_> {
             waiting[place].1.push(self.member(body, own));
             if waiting[place].1.len() == SIDE_BY_SIDE {
                 let (plan, members) = waiting.swap_remove(place);
-                fastest(FixedSteps { crew: self, plan, members, progress });
+                fastest(FixedSteps { scheduler: self, plan, members, progress });
             }
         }
         for (plan, members) in waiting {
-            fastest(FixedSteps { crew: self, plan, members, progress });
+            fastest(FixedSteps { scheduler: self, plan, members, progress });
         }
     }
 }
 
-/// What was told, by bodies.
-fn summary(mut told: Vec<Told>) -> Summary {
-    told.sort_by_key(|told| told.body);
-    let count = told.len();
+/// Collects the outcomes by body.
+fn summary(mut outcomes: Vec<Outcome>) -> Summary {
+    outcomes.sort_by_key(|outcome| outcome.body);
+    let count = outcomes.len();
     let mut all = Summary::default();
-    for (row, Told { body, certificate, failure }) in told.into_iter().enumerate() {
+    for (row, Outcome { body, certificate, failure }) in outcomes.into_iter().enumerate() {
         all.methods.push(certificate.method);
         all.steps.push([certificate.steps, certificate.evaluations]);
         all.longest.push(certificate.step);

@@ -1,8 +1,8 @@
-//! Methods of equal steps over bodies side by side.
+//! Fixed-step methods for bodies in SIMD lanes.
 
-use super::advance::{Advance, Steps, Stretch};
-use super::crew::{Member, SIDE_BY_SIDE as W};
-use super::laws::{Acting, Laws, Nothing};
+use super::advance::{Advance, Segment, Steps};
+use super::laws::{LaneForcing, Laws, NoForcing};
+use super::member::{Member, SIDE_BY_SIDE as W};
 use crate::laws::forcing::Forcing;
 use crate::methods::classical::{self, Bodies, State};
 use crate::methods::splitting::turns::{Spin, Turns};
@@ -12,25 +12,25 @@ use polhode_ga::{Bivector, Rotor};
 use std::array;
 use std::ops::Range;
 
-/// A method at work.
+/// A fixed-step method.
 pub(super) trait Stepper<const F: bool> {
-    /// What is carried from step to step.
+    /// The state between steps.
     type State: Copy;
 
-    /// The bodies at their starts; lanes without a body hold the first one's.
+    /// The states at the start; lanes without a body hold the first one's.
     fn start(&self, members: &[Member]) -> Self::State;
 
-    /// Some of the steps of a stretch.
-    fn advance(&mut self, state: &mut Self::State, stretch: Stretch, steps: &Range<u64>);
+    /// Some of the steps of a segment.
+    fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>);
 
-    /// Where the body of a lane is.
+    /// The point of the body of a lane.
     fn phase(&self, body: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase;
 }
 
 /// The classical method.
 pub(super) struct Components<'t, const F: bool> {
     pub bodies: Bodies<W, F>,
-    pub acting: Acting<'t, W, F>,
+    pub forcing: LaneForcing<'t, W, F>,
 }
 
 /// A splitting, with its kicks and drifts.
@@ -61,21 +61,21 @@ impl<const F: bool> Stepper<F> for Components<'_, F> {
         state
     }
 
-    fn advance(&mut self, state: &mut Self::State, stretch: Stretch, steps: &Range<u64>) {
+    fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>) {
         let bodies = &self.bodies;
-        match &mut self.acting {
-            Acting::Nothing => {
-                let method = OnComponents { bodies, exert: &mut Nothing, state };
-                fastest(Advance::<_, F> { method, stretch, steps });
+        match &mut self.forcing {
+            LaneForcing::NoForcing => {
+                let method = OnComponents { bodies, forcing: &mut NoForcing, state };
+                fastest(Advance::<_, F> { method, segment, steps });
             }
-            Acting::Weight(exert) => {
-                fastest(Advance::<_, F> { method: OnComponents { bodies, exert, state }, stretch, steps });
+            LaneForcing::Weight(forcing) => {
+                fastest(Advance::<_, F> { method: OnComponents { bodies, forcing, state }, segment, steps });
             }
-            Acting::Gradient(exert) => {
-                fastest(Advance::<_, F> { method: OnComponents { bodies, exert, state }, stretch, steps });
+            LaneForcing::Gradient(forcing) => {
+                fastest(Advance::<_, F> { method: OnComponents { bodies, forcing, state }, segment, steps });
             }
-            Acting::Laws(exert) => {
-                fastest(Advance::<_, F> { method: OnComponents { bodies, exert, state }, stretch, steps });
+            LaneForcing::Laws(forcing) => {
+                fastest(Advance::<_, F> { method: OnComponents { bodies, forcing, state }, segment, steps });
             }
         }
     }
@@ -104,9 +104,9 @@ impl<const F: bool> Stepper<F> for Kicks<'_, F> {
         spin
     }
 
-    fn advance(&mut self, state: &mut Self::State, stretch: Stretch, steps: &Range<u64>) {
+    fn advance(&mut self, state: &mut Self::State, segment: Segment, steps: &Range<u64>) {
         let method = BySplitting { turns: &self.turns, stages: self.stages, laws: &mut self.laws, state };
-        fastest(Advance::<_, F> { method, stretch, steps });
+        fastest(Advance::<_, F> { method, segment, steps });
     }
 
     fn phase(&self, _: &Gyrostat, state: &Self::State, lane: usize, time: f64) -> Phase {
@@ -120,17 +120,17 @@ impl<const F: bool> Stepper<F> for Kicks<'_, F> {
 
 struct OnComponents<'a, E, const F: bool> {
     bodies: &'a Bodies<W, F>,
-    exert: &'a mut E,
+    forcing: &'a mut E,
     state: &'a mut State<7, W, F>,
 }
 
 impl<E: Forcing<W, F>, const F: bool> Steps for OnComponents<'_, E, F> {
     #[inline(always)]
-    fn walk(&mut self, times: &[f64]) {
+    fn advance_over(&mut self, times: &[f64]) {
         // Copies, which the compiler may keep in registers.
         let (bodies, mut now) = (*self.bodies, *self.state);
         for k in 1..times.len() {
-            classical::step(&bodies, self.exert, &mut now, times[k - 1], times[k] - times[k - 1]);
+            classical::step(&bodies, self.forcing, &mut now, times[k - 1], times[k] - times[k - 1]);
         }
         *self.state = now;
     }
@@ -145,7 +145,7 @@ struct BySplitting<'a, 't, const F: bool> {
 
 impl<const F: bool> Steps for BySplitting<'_, '_, F> {
     #[inline(always)]
-    fn walk(&mut self, times: &[f64]) {
+    fn advance_over(&mut self, times: &[f64]) {
         let mut now = *self.state;
         for k in 1..times.len() {
             self.turns.step(self.stages, self.laws, &mut now, times[k - 1], times[k] - times[k - 1]);

@@ -7,7 +7,7 @@
 //! R(t) = R̃(τ),   Ω(t) = e^{−gt} Ω̃(τ),   τ = (1 − e^{−gt})/g.
 //! ```
 //!
-//! The free body turns on to `τ = 1/g` and no farther. The phase needs τ in twice the precision: from its
+//! The free body turns on to `τ = 1/g` and no farther. The phase needs τ in double-double precision: from its
 //! rounded value a step of its rounding error, with the rates in the middle of the step, leads to the state.
 
 use super::free::FreeMotion;
@@ -45,7 +45,7 @@ impl DampedTop {
         omega: Bivector,
         damping: f64,
     ) -> Result<DampedTop, SimulateError> {
-        // Products in twice the precision overflow early.
+        // Products in double-double precision overflow early.
         if damping.is_nan() || damping.abs() > 1e150 {
             return Err(SimulateError::BadValue { what: "the damping g", value: damping });
         }

@@ -1,6 +1,5 @@
 //! Motions in closed form.
 
-pub(crate) mod closed_form;
 pub mod damped;
 pub mod free;
 pub mod lagrange;

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! whose first makes |R| change by a power of the step in every step: it is taken out at the end of each. Nothing but |R|
-//! is conserved by construction. What it has is few operations, so that bodies side by side in lanes stay in registers:
+//! is conserved by construction. What it has is few operations, so that bodies in lanes stay in registers:
 //! a step of a free body is 146 products, sums and products with sums.
 
 use crate::error::SimulateError;
@@ -24,7 +24,7 @@ use std::array;
 /// Rotor and angular velocity in principal axes; with place and velocity of the centre of mass where they are stepped too.
 pub(crate) type State<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 
-/// Bodies side by side, in principal axes.
+/// Bodies in lanes, in principal axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bodies<const W: usize, const F: bool> {
     /// 1/i_k.
@@ -78,7 +78,7 @@ impl<const W: usize, const F: bool> Bodies<W, F> {
 #[inline(always)]
 pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
-    exert: &mut E,
+    forcing: &mut E,
     y: &mut State<N, W, F>,
     time: f64,
     h: f64,
@@ -86,13 +86,13 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     let (half, whole) = (Lanes::all(0.5 * h), Lanes::all(h));
     let (sixth, third) = (Lanes::all(h / 6.0), Lanes::all(h / 3.0));
     let (begin, middle, end) = (Lanes::all(time), Lanes::all(time + 0.5 * h), Lanes::all(time + h));
-    let k = slope(bodies, exert, y, begin);
+    let k = slope(bodies, forcing, y, begin);
     let mut sum = moved(y, &k, sixth);
-    let k = slope(bodies, exert, &moved(y, &k, half), middle);
+    let k = slope(bodies, forcing, &moved(y, &k, half), middle);
     sum = moved(&sum, &k, third);
-    let k = slope(bodies, exert, &moved(y, &k, half), middle);
+    let k = slope(bodies, forcing, &moved(y, &k, half), middle);
     sum = moved(&sum, &k, third);
-    let k = slope(bodies, exert, &moved(y, &k, whole), end);
+    let k = slope(bodies, forcing, &moved(y, &k, whole), end);
     sum = moved(&sum, &k, sixth);
     renormalize(&mut sum);
     *y = sum;
@@ -117,7 +117,7 @@ fn moved<const N: usize, const W: usize, const F: bool>(
 #[inline(always)]
 fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
-    exert: &mut E,
+    forcing: &mut E,
     y: &State<N, W, F>,
     time: Lanes<W, F>,
 ) -> State<N, W, F> {
@@ -131,7 +131,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
         slope[4 + k] = bodies.coupling[k] * products[k];
     }
     if E::ACTS {
-        let mut torque = exert.torque(&Place { rotor: r, omega: w, time });
+        let mut torque = forcing.torque(&Place { rotor: r, omega: w, time });
         if E::WHEELS {
             let h = bodies.wheel;
             torque[0] += h[2].times_from(w[1], h[1] * w[2]);
@@ -145,7 +145,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     }
     if N == 13 {
         let center = [y[7], y[8], y[9], y[10], y[11], y[12]];
-        let acceleration = exert.acceleration(&Place { rotor: r, omega: w, time }, &center);
+        let acceleration = forcing.acceleration(&Place { rotor: r, omega: w, time }, &center);
         slope[7..10].copy_from_slice(&y[10..]);
         slope[10..].copy_from_slice(&acceleration);
     }

@@ -1,11 +1,11 @@
-//! Torques at fixed attitude, solved exactly, and what the rounding of a free step is taken out by.
+//! Kicks: torques at fixed attitude, solved exactly; restores the momentum after free steps.
 
 use crate::error::SimulateError;
 use crate::laws::torque::{Torque, exerted};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
 
-/// What kicks the momentum while the attitude stands still.
+/// Torques that kick the momentum at fixed attitude.
 #[derive(Clone, Debug)]
 pub(crate) struct Kicks {
     wheel: Bivector,
@@ -27,7 +27,7 @@ impl Kicks {
         let mut impulse = h;
         let decay = -self.damping * h;
         if decay != 0.0 {
-            // What is lost is added, not m multiplied by e^(−gt), whose rounding is the same at every step.
+            // The loss is added: multiplying m by e^(−gt) would round alike at every step.
             let lost = decay.exp_m1();
             state.momentum += (state.momentum - self.wheel) * lost;
             impulse = h * lost / decay;
@@ -37,13 +37,13 @@ impl Kicks {
     }
 }
 
-/// L in space, where the laws leave it constant.
+/// L in space, if the laws conserve it.
 pub(crate) fn fixed_momentum(torques: &[Torque], start: &Phase) -> Option<Bivector> {
     let free = torques.iter().all(|t| matches!(t, Torque::Wheel(_)));
     free.then(|| start.rotor.apply_bivector(start.momentum))
 }
 
-/// Takes the rounding of one free step out of |m| and the direction of `R m ~R`, to first order.
+/// Removes the rounding of one free step from |m| and the direction of `R m ~R`, to first order.
 ///
 /// The direction of m is left alone: on an unstable axis a component that is zero stays zero.
 pub(crate) fn restore_momentum(state: &mut Phase, fixed: Bivector) {
@@ -52,9 +52,9 @@ pub(crate) fn restore_momentum(state: &mut Phase, fixed: Bivector) {
         // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
         let missing = 0.5 * (size - state.momentum.norm_squared()) / size;
         state.momentum += state.momentum * missing;
-        let wandered = state.rotor.apply_bivector(state.momentum);
-        // exp(−½ a∧b/|a||b|) turns the axial vector a into b; of so small a turn the first term is the whole.
-        let [x, y, z] = (wandered.dual().wedge(fixed.dual()) * (-0.5 / size)).0;
+        let drifted = state.rotor.apply_bivector(state.momentum);
+        // exp(−½ a∧b/|a||b|) turns the axial vector a into b; the first term suffices for so small a turn.
+        let [x, y, z] = (drifted.dual().wedge(fixed.dual()) * (-0.5 / size)).0;
         state.rotor = Rotor::from_unit_components([1.0, x, y, z]) * state.rotor;
     }
 }

@@ -30,21 +30,21 @@ const MOST_ITERATIONS: u32 = 60;
 /// A correction this small relative to the momentum is rounding, or the last: the next would be its square.
 const CONVERGED: f64 = 4.0 * f64::EPSILON;
 
-/// Below this the corrections end where they no longer fall.
+/// Below this, iteration ends when corrections no longer decrease.
 const ROUNDING: f64 = 1e-12;
 
-/// A smaller momentum, in kg m²/s, is rest: its rounding is not relative to it.
+/// A smaller momentum, in kg m²/s, counts as rest.
 const LEAST: f64 = 1e-290;
 
-/// A body and what turns it.
+/// The midpoint rule for a body and its torques.
 #[derive(Clone, Debug)]
 pub struct Midpoint {
     body: Gyrostat,
     torques: Vec<Torque>,
     damping: f64,
-    /// Whether a torque depends on the rate of turning, apart from damping.
+    /// Whether a torque other than damping depends on the angular velocity.
     rates: bool,
-    /// L in space, where it is constant.
+    /// L in space, if it is constant.
     fixed: Option<Bivector>,
 }
 
@@ -93,10 +93,8 @@ impl Midpoint {
             last = relative;
             residual = self.residual(state, mean, h)?;
         }
-        let message = format!(
-            "the equation of the midpoint rule was not solved for a step of {h:e} s, Newton's method does not converge; \
-             use a shorter step"
-        );
+        let message =
+            format!("Newton's method did not converge for a midpoint step of {h:e} s; use a shorter step");
         Err(SimulateError::Torque { time: state.time, message })
     }
 

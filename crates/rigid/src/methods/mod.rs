@@ -1,4 +1,4 @@
-//! Methods by name, and what each is fit for.
+//! Stepping methods: names, orders, and the laws that each supports.
 
 pub mod classical;
 pub(crate) mod kicks;
@@ -9,19 +9,12 @@ pub mod splitting;
 pub(crate) mod step_control;
 
 use crate::body::inertia::equal;
-use crate::error::SimulateError;
-use crate::exact::closed_form::ClosedForm;
-use crate::laws::force::Translation;
 use crate::laws::torque::{Dependence, Torque};
-use crate::state::carried::Carried;
 use crate::state::phase::{Gyrostat, Phase};
-use classical::Classical;
-use midpoint::Midpoint;
-use moser_veselov::MoserVeselov;
-use runge_kutta::{DOP853, RungeKutta, Tableau};
-use splitting::{COMPOSITIONS, RKN6, Sequence, Splitting};
+use runge_kutta::{DOP853, Tableau};
+use splitting::{COMPOSITIONS, RKN6, Sequence};
 
-/// How a motion is stepped.
+/// A stepping method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Exact turns and kicks.
@@ -36,7 +29,7 @@ pub enum Method {
     MoserVeselov,
 }
 
-/// Every method, splittings first, each kind by rising order.
+/// All methods, splittings first, each kind in ascending order.
 pub fn methods() -> impl Iterator<Item = Method> {
     let compositions = COMPOSITIONS.iter().map(|c| Method::Splitting(Sequence::Composition(c)));
     let others = [
@@ -55,7 +48,7 @@ impl Method {
         methods().find(|m| m.name() == name)
     }
 
-    /// The name it is asked for by.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Method::Splitting(Sequence::Composition(composition)) => composition.name,
@@ -78,20 +71,19 @@ impl Method {
         }
     }
 
-    /// Whether it estimates the error of each step, and chooses the next by it.
+    /// Whether it estimates the error of each step and adapts the next.
     pub fn adapts(self) -> bool {
         matches!(self, Method::RungeKutta(_))
     }
 
-    /// How far the fastest turn may go in the first step that is tried, in rad: an implicit equation has a solution for
-    /// short steps alone.
+    /// The largest turn in the first step tried, in rad: implicit equations have a solution for short steps only.
     pub(crate) fn first_turn(self) -> f64 {
         if matches!(self, Method::Midpoint | Method::MoserVeselov) { 0.4 } else { 1.5 }
     }
 
-    /// The method for these laws: a splitting with equal steps where the torque depends on the attitude alone, or turns
-    /// with a circular orbit, for it keeps the energy of long runs; Runge–Kutta with steps of their own for others.
-    /// Where a spring may come to half a turn, at which its torque jumps, equal steps would lose their order.
+    /// The default method for these laws: a splitting with equal steps if the torque depends on the attitude only, or
+    /// rotates with a circular orbit, because it conserves energy in long runs; else adaptive Runge–Kutta. Equal steps
+    /// would lose their order where a spring reaches half a turn, at which its torque jumps.
     pub fn best(body: &Gyrostat, torques: &[Torque], translated: bool, start: &Phase) -> Method {
         let steady =
             |t: &Torque| t.is_autonomous() || matches!(t, Torque::GravityGradient(o) if o.is_circular());
@@ -109,35 +101,33 @@ impl Method {
         }
     }
 
-    /// Why it is not fit for this body and these laws, and what is.
+    /// Why it does not support this body and these laws, and what to use instead.
     pub(crate) fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
         if matches!(self, Method::Classical | Method::RungeKutta(_) | Method::Midpoint) {
             return None;
         }
         if torques.iter().any(|t| t.dependence() == Dependence::Rate) {
             return Some(
-                "kicks at fixed attitude, but a torque depends on the rate of turning; use auto, dop853 or midpoint",
+                "does not support torques that depend on the angular velocity; use auto, dop853 or midpoint",
             );
         }
         let wheel = body.wheel != Default::default();
         match self {
             Method::Splitting(Sequence::Nystrom(_)) if torques.iter().any(|t| t.damping_rate() != 0.0) => {
-                Some(
-                    "is of its order for torques that depend on the attitude alone, not with damping; use kahan_li8",
-                )
+                Some("does not support damping; use kahan_li8")
             }
             Method::Splitting(Sequence::Nystrom(_)) if wheel => {
-                Some("needs the exact free motion, which a wheel has not; use kahan_li8")
+                Some("does not support wheels; use kahan_li8")
             }
-            Method::MoserVeselov if wheel => Some(
-                "has no form for a body with a wheel; use midpoint, which conserves as much, or kahan_li8",
-            ),
+            Method::MoserVeselov if wheel => {
+                Some("does not support wheels; use midpoint, which conserves as much, or kahan_li8")
+            }
             _ => None,
         }
     }
 }
 
-/// Whether the energy lets a spring turn by π.
+/// Whether the energy allows a spring to turn by π.
 fn may_jump(body: &Gyrostat, torques: &[Torque], start: &Phase) -> bool {
     let half_a_turn = |t: &Torque| match t {
         Torque::TorsionSpring { stiffness, .. } if *stiffness > 0.0 => Some(t.potential_range()),
@@ -145,7 +135,7 @@ fn may_jump(body: &Gyrostat, torques: &[Torque], start: &Phase) -> bool {
         _ => None,
     };
     let known = torques.iter().all(|t| t.potential(body, start).is_some());
-    // Others may give all that their potentials range over.
+    // Other laws may release the full range of their potentials.
     let range: f64 = torques.iter().filter(|t| half_a_turn(t).is_none()).map(Torque::potential_range).sum();
     let springs = |t: &&Torque| half_a_turn(t).is_some();
     let at_start: f64 = torques.iter().filter(springs).filter_map(|t| t.potential(body, start)).sum();
@@ -158,98 +148,8 @@ fn symmetric(body: &Gyrostat) -> bool {
     equal(a, b) || equal(b, c) || equal(c, a)
 }
 
-/// The typical relative rounding of one step: the increments are small, and their sum and the last turn are rounded.
+/// Typical relative rounding of one step: the increments are small; their sum and the last turn are rounded.
 pub(crate) const ROUNDING_OF_RUNGE_KUTTA: f64 = 0.4 * f64::EPSILON;
-
-/// A method at work on a body and its laws.
-#[derive(Clone, Debug)]
-pub(crate) enum Engine {
-    Splitting(Splitting),
-    Classical(Classical),
-    RungeKutta(RungeKutta),
-    Midpoint(Midpoint),
-    MoserVeselov(MoserVeselov),
-    /// The closed form, looked at in steps.
-    ClosedForm(Box<ClosedForm>),
-}
-
-impl Engine {
-    /// An error if the method is not fit.
-    pub fn new(
-        method: Method,
-        body: Gyrostat,
-        torques: &[Torque],
-        translation: Option<Translation>,
-        start: &Phase,
-    ) -> Result<Engine, SimulateError> {
-        let moving = "leaves the centre of mass to its closed form, which these forces have not; use auto, dop853 or rk4";
-        let moving = (translation.is_some() && !matches!(method, Method::Classical | Method::RungeKutta(_)))
-            .then_some(moving);
-        if let Some(reason) = method.unfit(&body, torques).or(moving) {
-            return Err(SimulateError::Unfit { method: method.name(), reason });
-        }
-        Ok(match method {
-            Method::Splitting(sequence) => {
-                Engine::Splitting(Splitting::new(body, torques.to_vec(), sequence, start))
-            }
-            Method::Classical => Engine::Classical(Classical::new(body, torques.to_vec(), translation)),
-            Method::RungeKutta(tableau) => {
-                Engine::RungeKutta(RungeKutta::new(body, torques.to_vec(), translation, tableau))
-            }
-            Method::Midpoint => Engine::Midpoint(Midpoint::new(body, torques.to_vec(), start)),
-            Method::MoserVeselov => Engine::MoserVeselov(MoserVeselov::new(body, torques.to_vec(), start)),
-        })
-    }
-
-    /// One step of length `h`, and an estimate of its error where the method has one, relative to the angular velocity
-    /// `fastest` in rad/s, else 0.
-    pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
-        let mut to = *from;
-        match self {
-            Engine::Splitting(splitting) => splitting.carry(&mut to.phase, &mut to.lost, h)?,
-            Engine::Classical(classical) => to = classical.step(from, h)?,
-            Engine::RungeKutta(runge_kutta) => return runge_kutta.step(from, h, fastest),
-            Engine::ClosedForm(motion) => to = motion.at(from.phase.time + h),
-            Engine::Midpoint(midpoint) => midpoint.step(&mut to.phase, h)?,
-            Engine::MoserVeselov(moser_veselov) => moser_veselov.step(&mut to.phase, h)?,
-        }
-        Ok((to, 0.0))
-    }
-
-    /// The typical rounding of one step, relative to the size of the components.
-    ///
-    /// A turn changes two components of the momentum and all of the rotor, each by a few roundings of ε/√12 of its
-    /// binade; their signs are random, so that a composition of s stages of three turns rounds as a walk of 3 s steps of
-    /// 0.12 ε. The exact free motion of an asymmetric body is rounded by some ulps.
-    pub fn rounding(&self) -> f64 {
-        let turns = match self {
-            Engine::Splitting(splitting) => splitting.turns_per_step(),
-            Engine::RungeKutta(_) => return ROUNDING_OF_RUNGE_KUTTA,
-            Engine::Classical(_) => 4.0,
-            Engine::Midpoint(_) | Engine::MoserVeselov(_) => 3.0,
-            Engine::ClosedForm(_) => 0.0,
-        };
-        0.12 * f64::EPSILON * turns.sqrt()
-    }
-
-    /// Whether steps carry the momentum in space, and not in the body.
-    pub fn is_in_space(&self) -> bool {
-        matches!(self, Engine::RungeKutta(_))
-    }
-
-    /// Evaluations of the torque in a step.
-    pub fn evaluations(&self) -> u64 {
-        match self {
-            Engine::Splitting(splitting) => splitting.evaluations(),
-            Engine::Classical(_) => 4,
-            Engine::RungeKutta(runge_kutta) => runge_kutta.tableau().rows.len() as u64,
-            Engine::ClosedForm(_) => 0,
-            // One in each iteration, of which there are about as many.
-            Engine::Midpoint(_) => 5,
-            Engine::MoserVeselov(_) => 2,
-        }
-    }
-}
 
 /// The rate of the fastest turn, in rad/s, a scale for steps: what the momentum and the energy allow, and the swing in
 /// the torque.

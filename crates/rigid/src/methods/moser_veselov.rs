@@ -30,7 +30,7 @@ use polhode_ga::Bivector;
 /// Newton's method converges in four or five iterations, near the longest step in a few times as many.
 const MOST_ITERATIONS: u32 = 40;
 
-/// A body without a wheel, and what kicks it.
+/// The method for a body without a wheel, and its torques.
 #[derive(Clone, Debug)]
 pub struct MoserVeselov {
     moments: [f64; 3],
@@ -78,8 +78,8 @@ impl MoserVeselov {
     fn too_long(&self, state: &Phase, h: f64) -> SimulateError {
         let omega = Bivector([0, 1, 2].map(|k| state.momentum.0[k] / self.moments[k])).norm();
         let message = format!(
-            "the discrete Moser-Veselov equation has no solution for a step of {h:e} s, which turns the body by {:.2} rad: \
-             it needs about 1 rad or less; use a shorter step",
+            "the discrete Moser-Veselov equation has no solution for a step of {h:e} s, which turns the body by {:.2} rad; \
+             use steps of at most about 1 rad",
             (h * omega).abs()
         );
         SimulateError::Torque { time: state.time, message }
@@ -97,7 +97,7 @@ impl MoserVeselov {
     }
 }
 
-/// P with `F(P) = 0` where there is one, by Newton's method.
+/// P with `F(P) = 0`, by Newton's method; none if it does not converge.
 fn half_turn(moments: [f64; 3], m: Bivector, h: f64) -> Option<Bivector> {
     if !moments.iter().all(|i| *i > 0.0) {
         return None;

@@ -1,39 +1,37 @@
-//! The lengths of steps that keep to a tolerance, and where they stop: for single bodies and for those side by side.
+//! StepController: lengths of adaptive steps, stops and limits, for single bodies and lanes.
 
 use crate::error::SimulateError;
 
-/// The steps of a pass after which its number of steps is foreseen: these, and every doubling.
+/// Number of steps after which the total is predicted, and again at every doubling.
 const FIRST_FORECAST: u64 = 20_000;
 
-/// A forecast is believed where it exceeds the limit by this over the steps taken, and by a factor of 2: a body may slow
-/// down.
+/// A prediction counts if it exceeds the limit by this over the steps taken, and by a factor of 2: a body may slow down.
 const DOUBT: f64 = 2e7;
 
-/// Below this turn, in rad, of the fastest rate in a step of many, the steps are as short as stability asks: the law is
-/// stiff.
+/// Steps that turn the body by less than this, in rad, are limited by stability: the laws are stiff.
 const STIFF_TURN: f64 = 0.02;
 
-/// Fewer steps than so many are taken, stiff or not.
+/// Runs of fewer steps than this are completed even if stiff.
 const MANY: f64 = 1e5;
 
-/// How long the next of the steps that keep to a tolerance is.
+/// Chooses the lengths of adaptive steps.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stride {
-    /// In s, if nothing is in its way.
+pub(crate) struct StepController {
+    /// The length without stops, in s.
     next: f64,
-    /// That of the step under way, in s.
+    /// The length of the current step, in s.
     cut: f64,
-    /// The longest that is allowed, in s.
+    /// The longest allowed, in s.
     longest: f64,
-    /// Whether the step before was too long.
+    /// Whether the previous step was rejected.
     refused: bool,
 }
 
-impl Stride {
+impl StepController {
     /// With a guess of the first step and the longest allowed, in s.
-    pub fn new(first: f64, longest: f64) -> Stride {
+    pub fn new(first: f64, longest: f64) -> StepController {
         let first = first.min(longest);
-        Stride { next: first, cut: first, longest, refused: false }
+        StepController { next: first, cut: first, longest, refused: false }
     }
 
     /// Where a step ends on the way from one time to another.
@@ -42,7 +40,7 @@ impl Stride {
         // Two steps of half the way avoid a tiny last one.
         let cut = if self.next >= rest { rest } else { self.next.min(0.5 * rest.max(self.next)) };
         let to = if cut >= rest { time } else { from + (time - from).signum() * cut };
-        // Output times may be as close as numbers are.
+        // Output times may be adjacent floats.
         if to == from || self.refused && cut < 1e-14 * from.abs() {
             return Err(SimulateError::StepTooSmall { time: from, step: cut });
         }
@@ -61,7 +59,7 @@ impl Stride {
             return false;
         }
         let growth = (0.9 * error.powf(-0.125)).clamp(0.3, if self.refused { 1.0 } else { 6.0 });
-        // A step cut short by an output time says little of how long it might be.
+        // A step cut short by a stop says little about the possible length.
         self.next = if self.cut < self.next { self.next.max(h * growth) } else { h * growth };
         self.next = self.next.min(self.longest);
         self.refused = false;
@@ -69,7 +67,7 @@ impl Stride {
     }
 }
 
-/// How many steps a pass may take.
+/// The limit of the steps of a sweep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limit {
     pub steps: f64,
@@ -78,8 +76,8 @@ pub(crate) struct Limit {
 }
 
 impl Limit {
-    /// An error where a pass has taken too many steps, or is foreseen to: after a step of length h that turned the body
-    /// by so much, at a fraction of the way.
+    /// An error if a sweep has taken too many steps, or is predicted to, after a step of length h that turned the body by
+    /// `turn`, at a fraction of the run.
     pub fn check(
         &self,
         taken: u64,
@@ -95,18 +93,18 @@ impl Limit {
         if !(taken.is_multiple_of(FIRST_FORECAST) && (taken / FIRST_FORECAST).is_power_of_two()) {
             return Ok(());
         }
-        let foreseen = steps / fraction().max(f64::MIN_POSITIVE);
-        if self.reports_stiffness && turn.abs() < STIFF_TURN && foreseen > MANY {
-            return Err(SimulateError::Stiff { steps: foreseen });
+        let predicted = steps / fraction().max(f64::MIN_POSITIVE);
+        if self.reports_stiffness && turn.abs() < STIFF_TURN && predicted > MANY {
+            return Err(SimulateError::Stiff { steps: predicted });
         }
-        if foreseen > self.steps * (DOUBT / steps).max(2.0) {
-            return Err(SimulateError::TooManySteps { steps: foreseen, step, limit: self.steps });
+        if predicted > self.steps * (DOUBT / steps).max(2.0) {
+            return Err(SimulateError::TooManySteps { steps: predicted, step, limit: self.steps });
         }
         Ok(())
     }
 }
 
-/// Where to stop next on the way from one time to another: there, or where a law is not smooth.
+/// The next stop from one time to another: the latter, or where a law is not smooth.
 pub(crate) fn next_stop(breaks: &[f64], from: f64, time: f64) -> f64 {
     let between = if time > from {
         breaks.get(breaks.partition_point(|&b| b <= from)).filter(|&&b| b < time)

@@ -93,7 +93,7 @@ pub(crate) fn mean(mut g: f64) -> f64 {
 }
 
 /// `M = AGM(1, k')` and `Σ Q_n`, of which `K = π/2M` and `Π(n) − K = (K/2) (n/(1 − n)) Σ Q_n`, for positive
-/// k', `p² = 1 − n >= 1`, in twice the precision.
+/// k', `p² = 1 − n >= 1`, in double-double precision.
 ///
 /// With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
 /// `p_{j+1} = (p_j² + a_j g_j) / 2p_j`, `Q_{j+1} = ½ Q_j (p_j² − a_j g_j) / (p_j² + a_j g_j)`.

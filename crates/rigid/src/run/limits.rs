@@ -1,4 +1,4 @@
-//! What bounds the steps of a run: where they end, how long they are, how many there may be.
+//! StepBounds: where steps end, their largest length and number.
 
 use super::stops::{Sampled, sampled};
 use super::{MAX_STEPS, Options};
@@ -7,18 +7,18 @@ use crate::laws::torque::Torque;
 use crate::methods::step_control::Limit;
 use crate::state::phase::{Gyrostat, Phase};
 
-/// What bounds the steps of a run.
+/// Bounds of the steps of a run.
 #[derive(Clone, Debug)]
-pub(crate) struct Course {
-    /// Times at which steps end, rising: there the laws are not smooth, or change fast.
+pub(crate) struct StepBounds {
+    /// Ascending times at which steps end: the laws are not smooth there, or change fast.
     pub breaks: Vec<f64>,
-    /// Whether no law changes so fast that sampling it found stops.
+    /// Whether sampling the laws found no stops.
     pub is_smooth: bool,
     /// The longest step, in s.
     pub longest: f64,
     pub limit: Limit,
-    /// The rate in rad/s at which the torques make the largest moment swing: angular velocities count as no smaller, for
-    /// an error of the attitude makes one of the rate that is as large times this.
+    /// The rate in rad/s of the swing of the largest moment under the torques, a lower bound of the scale of angular
+    /// velocities: an error of the attitude causes an error of the rate that is larger by this factor.
     pub least_rate: f64,
 }
 
@@ -27,17 +27,17 @@ pub(crate) fn span(times: &[f64], start: f64) -> [f64; 2] {
     [times.first().map_or(start, |t| t.min(start)), times.last().map_or(start, |t| t.max(start))]
 }
 
-impl Default for Course {
-    fn default() -> Course {
+impl Default for StepBounds {
+    fn default() -> StepBounds {
         let limit = Limit { steps: MAX_STEPS, reports_stiffness: false };
-        Course { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0 }
+        StepBounds { breaks: Vec::new(), is_smooth: true, longest: f64::INFINITY, limit, least_rate: 0.0 }
     }
 }
 
-/// Laws along time, on both sides of the start.
+/// Samples of laws in time, on both sides of the start.
 pub(crate) type Samples = Vec<[Sampled; 2]>;
 
-/// Laws along these output times, where a tolerance rules the steps; steps of one's own are left as they are.
+/// Samples the laws over the output times, if a tolerance determines the steps; given steps need no samples.
 pub(crate) fn samples(
     torques: &[Torque],
     body: &Gyrostat,
@@ -55,7 +55,7 @@ pub(crate) fn samples(
     torques.iter().map(both).collect()
 }
 
-impl Course {
+impl StepBounds {
     /// For laws in principal axes, with their samples.
     pub fn new(
         torques: &[Torque],
@@ -63,7 +63,7 @@ impl Course {
         body: &Gyrostat,
         start: &Phase,
         options: &Options,
-    ) -> Course {
+    ) -> StepBounds {
         let mut breaks: Vec<f64> = torques.iter().flat_map(|law| law.breaks()).copied().collect();
         breaks.extend(&options.breaks);
         breaks.extend(samples.iter().flatten().flat_map(|sampled| &sampled.stops));
@@ -75,7 +75,7 @@ impl Course {
         };
         let torque: f64 = torques.iter().enumerate().map(size).sum();
         let largest = body.moments.iter().fold(0.0, |m: f64, x| m.max(*x));
-        Course {
+        StepBounds {
             breaks,
             is_smooth: samples.iter().flatten().all(|sampled| sampled.stops.is_empty()),
             longest: options.max_step.unwrap_or(f64::INFINITY),

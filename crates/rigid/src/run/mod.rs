@@ -1,40 +1,43 @@
-//! Motion at given times: exact where there is a closed form, else by steps to a tolerance, with a certificate of
-//! what was conserved.
+//! Simulation of one body: in closed form if there is one, else by integration, with a certificate.
 
 pub mod certificate;
+pub(crate) mod closed_form;
+pub(crate) mod engine;
 pub(crate) mod limits;
 mod motion;
 pub(crate) mod noise;
 mod options;
+pub(crate) mod output;
 pub(crate) mod refine;
 pub(crate) mod stops;
 pub(crate) mod sweep;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
-use crate::exact::closed_form::{ClosedForm, Fall, check_kept};
 use crate::laws::conserved::energy;
 use crate::laws::event::Event;
 use crate::laws::force::{Force, Translation};
 use crate::laws::torque::{Torque, wheel};
 use crate::methods::step_control::Limit;
-use crate::methods::{Engine, Method, fastest_rate};
+use crate::methods::{Method, fastest_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons_from, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
 use certificate::{Certificate, Watch, off_unit};
-use limits::{Course, samples, span};
+use closed_form::{ClosedForm, Fall, check_kept};
+use engine::Engine;
+use limits::{StepBounds, samples, span};
 use polhode_ga::{Bivector, Rotor, Vector};
-use refine::{Aim, Convergence, Order, Scales};
-use stops::{aliasing, is_aliased};
+use refine::{Accuracy, Convergence, Scales, SweepPlan};
+use stops::{aliasing_warning, is_aliased};
 pub use sweep::Progress;
-use sweep::{Pace, Pass, Walker, is_finite};
+use sweep::{Integrator, StepRule, Sweep, is_finite};
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
 
-/// What to solve: a body and its state at the start, time 0 unless another is given. Kept in principal axes.
+/// A body with its start, time 0 unless another is given, torques and forces. Stored in principal axes.
 #[derive(Clone, Debug)]
 pub struct Problem {
     frame: Rotor,
@@ -45,16 +48,15 @@ pub struct Problem {
     omega: Bivector,
     torques: Vec<Torque>,
     center: Center,
-    /// NaN where nobody said it.
+    /// NaN where unknown.
     mass: f64,
     translation: Option<Translation>,
 }
 
-pub(crate) const NO_CLOSED_FORM: &str = "is for motions in closed form, without a step: free bodies, symmetric ones under heavy along \
-                              their axis, damping alone, spheres under larmor, and constant forces; leave the method \
-                              out for others";
+pub(crate) const NO_CLOSED_FORM: &str = "needs a motion in closed form and no step: free bodies, symmetric ones under heavy along their \
+                              axis, damping alone, spheres under larmor, and constant forces; omit the method for others";
 
-/// The start must have a time.
+/// The start time must be finite.
 pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
     if value.is_finite() {
         Ok(())
@@ -63,7 +65,7 @@ pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
     }
 }
 
-/// A body, its angular velocity and what turns it must be usable.
+/// A body, its angular velocity and its torques must be valid.
 pub(crate) fn check_body(body: &Gyrostat, omega: Bivector, torques: &[Torque]) -> Result<(), SimulateError> {
     check_moments(body.moments)?;
     if let Some(&value) = omega.0.iter().find(|x| !x.is_finite()) {
@@ -102,15 +104,14 @@ impl Problem {
         }
     }
 
-    /// The same from another start time, in s. Laws that depend on time, output times and events count from time 0
-    /// all the same.
+    /// The same with another start time, in s. Laws that depend on time, output times and events still count from time 0.
     pub fn starting_at(mut self, time: f64) -> Problem {
         self.time = time;
         self
     }
 
-    /// The same with the centre of mass at a place in space, and forces, with body components in body axes, on a mass
-    /// in kg, which is NaN where nobody knows it.
+    /// The same with a centre of mass in space, and forces, with body components in body axes, on a mass in kg, NaN if
+    /// unknown.
     pub fn with_center(mut self, center: Center, mass: f64, forces: &[Force]) -> Problem {
         let forces: Vec<Force> = forces.iter().map(|f| f.clone().in_axes(self.frame)).collect();
         self.center = center;
@@ -121,9 +122,8 @@ impl Problem {
 
     /// The motion at `times` (s, not decreasing); those before the start are reached backwards.
     ///
-    /// Exact where there is a closed form, if nothing else is asked for. With no fixed step, runs with ever shorter steps
-    /// until two of them agree within the tolerance in the rotor (of size 1) and in the angular velocity relative to its
-    /// largest size.
+    /// In closed form by default if there is one. Without a fixed step, steps are refined until two sweeps agree within the
+    /// tolerance in the rotor (of norm 1) and in the angular velocity relative to its maximum.
     pub fn simulate(
         &self,
         times: &[f64],
@@ -133,20 +133,19 @@ impl Problem {
         self.check(times, &options)?;
         let start = self.start().phase;
         let samples = samples(&self.torques, &self.body, &start, times, &options)?;
-        let mut course = Course::new(&self.torques, &samples, &self.body, &start, &options);
-        course.limit.reports_stiffness &= self.translation.is_none();
-        let limit = course.limit;
-        match self.run(times, &options, course.clone(), progress) {
+        let mut bounds = StepBounds::new(&self.torques, &samples, &self.body, &start, &options);
+        bounds.limit.reports_stiffness &= self.translation.is_none();
+        let limit = bounds.limit;
+        match self.run(times, &options, bounds.clone(), progress) {
             Err(SimulateError::Stiff { steps }) => {
-                // Steps of the implicit rule are cheaper and need not be as short. Where it fails or takes as many, stiff
-                // steps have to do.
+                // Implicit steps are cheaper and may be longer. If they fail or need as many steps, explicit steps are used.
                 let implicit = Options { method: Some(Method::Midpoint), ..options.clone() };
-                course.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
-                match self.run(times, &implicit, course.clone(), progress) {
+                bounds.limit = Limit { steps: steps.min(limit.steps), reports_stiffness: false };
+                match self.run(times, &implicit, bounds.clone(), progress) {
                     Err(SimulateError::Interrupted) => Err(SimulateError::Interrupted),
                     Err(_) => {
-                        course.limit = Limit { reports_stiffness: false, ..limit };
-                        self.run(times, &options, course, progress)
+                        bounds.limit = Limit { reports_stiffness: false, ..limit };
+                        self.run(times, &options, bounds, progress)
                     }
                     found => found,
                 }
@@ -160,7 +159,7 @@ impl Problem {
         &self,
         times: &[f64],
         options: &Options,
-        course: Course,
+        bounds: StepBounds,
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Motion, SimulateError> {
         let closed = self.closed_form().filter(|_| options.method.is_none() && options.step.is_none());
@@ -186,25 +185,29 @@ impl Problem {
         let rate = self.rate();
         let longest = times.iter().fold(0.0, |m: f64, t| m.max((t - self.time).abs()));
         let long = |turn: f64| {
-            Pace::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(course.longest))
+            StepRule::equal((if rate > 0.0 { turn / rate } else { longest.max(1.0) }).min(bounds.longest))
         };
         let events: Vec<Event> =
             options.events.iter().map(|event| event.clone().in_axes(self.frame)).collect();
-        let (pace, pass, error) = match (&engine, options.step) {
+        let (rule, sweep, error) = match (&engine, options.step) {
             (Engine::ClosedForm(closed), _) if events.is_empty() => {
                 (long(1.0), self.sampled(closed, times)?, neglected)
             }
             (Engine::ClosedForm(_), _) => {
-                let pace = long(1.0);
-                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, neglected)
+                let rule = long(1.0);
+                (
+                    rule,
+                    self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?,
+                    neglected,
+                )
             }
             (_, Some(step)) => {
-                let pace = Pace::equal(step.min(course.longest));
-                (pace, self.pass(&engine, times, (Order::only(pace), &course), &events, progress)?, None)
+                let rule = StepRule::equal(step.min(bounds.longest));
+                (rule, self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?, None)
             }
             (_, None) => {
-                let aim = Aim::new(method.order(), options.rtol);
-                let first = if method.adapts() { aim.tolerance() } else { long(method.first_turn()) };
+                let accuracy = Accuracy::new(method.order(), options.rtol);
+                let first = if method.adapts() { accuracy.tolerance() } else { long(method.first_turn()) };
                 let follow = |from: &Carried, time: f64| {
                     let mut to = engine.step(from, time - from.phase.time, 0.0).map_or(*from, |(to, _)| to);
                     fall.iter().for_each(|fall| to.center = fall.at(time));
@@ -214,90 +217,90 @@ impl Problem {
                     body: self.body,
                     rounding: engine.rounding(),
                     in_space: engine.is_in_space(),
-                    is_smooth: course.is_smooth,
+                    is_smooth: bounds.is_smooth,
                 };
-                let mut passes = Convergence::new(first, aim, scales);
+                let mut sweeps = Convergence::new(first, accuracy, scales);
                 let found = loop {
-                    let pass = self.pass(&engine, times, (passes.next(), &course), &events, progress)?;
-                    if let Some(found) = passes.take(pass, &follow)? {
+                    let sweep = self.sweep(&engine, times, (sweeps.next(), &bounds), &events, progress)?;
+                    if let Some(found) = sweeps.take(sweep, &follow)? {
                         break found;
                     }
                 };
-                (found.pace, found.pass, Some(found.error))
+                (found.rule, found.sweep, Some(found.error))
             }
         };
-        if let Some(state) = pass.states.iter().find(|s| !is_finite(s)) {
+        if let Some(state) = sweep.states.iter().find(|s| !is_finite(s)) {
             return Err(SimulateError::Diverged { time: state.phase.time });
         }
         let exact = name == "exact";
         let certificate = Certificate {
             method: name,
-            step: if exact { 0.0 } else { pass.longest },
-            steps: if exact { 0 } else { pass.steps },
-            evaluations: pass.evaluations,
+            step: if exact { 0.0 } else { sweep.longest },
+            steps: if exact { 0 } else { sweep.steps },
+            evaluations: sweep.evaluations,
             error_estimate: error,
-            drifts: pass.drifts,
-            norm_drift: pass.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
+            drifts: sweep.drifts,
+            norm_drift: sweep.states.iter().map(|s| off_unit(s.phase.rotor)).fold(0.0, f64::max),
             warnings: options.step.map_or(Vec::new(), |step| self.aliased(times, step)),
         };
         Ok(Motion {
             problem: self.clone(),
             engine,
-            pace,
-            course,
-            states: pass.states,
-            events: pass.events,
+            rule,
+            bounds,
+            states: sweep.states,
+            events: sweep.events,
             certificate,
         })
     }
 
-    /// Which laws change too fast for fixed steps.
+    /// Warnings for laws that change too fast for fixed steps.
     fn aliased(&self, times: &[f64], step: f64) -> Vec<String> {
         let start = self.start().phase;
         let span = span(times, start.time);
         let is_aliased = |law: &&Torque| is_aliased(law, &self.body, &start, span, step);
-        self.torques.iter().filter(is_aliased).map(|law| aliasing(law, step)).collect()
+        self.torques.iter().filter(is_aliased).map(|law| aliasing_warning(law, step)).collect()
     }
 
-    /// The best method of steps.
+    /// The best stepping method.
     pub(crate) fn best(&self) -> Method {
         Method::best(&self.body, &self.torques, self.fall().is_none(), &self.start().phase)
     }
 
-    /// One pass over the times.
-    fn pass(
+    /// One sweep over the times.
+    fn sweep(
         &self,
         engine: &Engine,
         times: &[f64],
-        order: (Order, &Course),
+        order: (SweepPlan, &StepBounds),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Pass, SimulateError> {
-        self.pass_from(self.start(), engine, times, order, events, progress)
+    ) -> Result<Sweep, SimulateError> {
+        self.sweep_from(self.start(), engine, times, order, events, progress)
     }
 
-    fn pass_from(
+    fn sweep_from(
         &self,
         start: Carried,
         engine: &Engine,
         times: &[f64],
-        (Order { pace, number, known_rate, noise }, course): (Order, &Course),
+        (SweepPlan { rule, number, known_rate, noise }, bounds): (SweepPlan, &StepBounds),
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Pass, SimulateError> {
+    ) -> Result<Sweep, SimulateError> {
         let watch = Watch::new(self.body, &self.torques, self.start().phase);
         let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
-        let walker = Walker {
+        let integrator = Integrator {
             body: self.body,
             engine,
             watch,
-            pace,
+            rule,
             first,
-            least_rate: course.least_rate.max(known_rate),
+            least_rate: bounds.least_rate.max(known_rate),
             noise,
-            longest: course.longest,
-            limit: course.limit,
-            breaks: &course.breaks,
+            longest: bounds.longest,
+            limit: bounds.limit,
+            breaks: &bounds.breaks,
             events,
             fall: self.fall(),
             origin: self.time,
@@ -305,24 +308,24 @@ impl Problem {
             number,
             progress,
         };
-        walker.pass(start, times)
+        integrator.sweep(start, times)
     }
 
-    /// The closed form at all times, as a pass without steps. An error if it does not keep what the motion conserves.
-    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Pass, SimulateError> {
+    /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
+    fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
         let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
         let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
         states.iter().for_each(|state| watch.look(&state.phase));
         let drifts = watch.finish();
         check_kept(&drifts)?;
-        Ok(Pass { states, drifts, ..Pass::default() })
+        Ok(Sweep { states, drifts, ..Sweep::default() })
     }
 
     fn closed_form(&self) -> Option<ClosedForm> {
         ClosedForm::of(self.body, self.rotor, self.omega, &self.torques, self.fall()?)
     }
 
-    /// The rate of the fastest turn and of the fastest change of way, in 1/s: a scale for steps.
+    /// The largest rate of rotation and of translation, in 1/s: a scale for steps.
     fn rate(&self) -> f64 {
         let translation = self.translation.as_ref().map_or(0.0, |t| t.rate(&self.center));
         fastest_rate(&self.body, &self.torques, &self.start().phase).max(translation)

@@ -1,32 +1,32 @@
-//! A motion that was solved: its states at and between its output times.
+//! Motion: the solution of a problem, at and between its output times.
 
 use super::certificate::{Certificate, Watch};
-use super::limits::Course;
-use super::refine::Order;
-use super::sweep::Pace;
+use super::engine::Engine;
+use super::limits::StepBounds;
+use super::output::BodyOutput;
+use super::refine::SweepPlan;
+use super::sweep::StepRule;
 use super::{Problem, Progress};
-use crate::ensemble::Own;
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
 use crate::laws::event::Happened;
-use crate::methods::Engine;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::check_horizons_from;
 use polhode_ga::{Bivector, Rotor};
 
-/// A motion at its output times, which may be asked for any other between them.
+/// A solved motion, which can be evaluated at and between its output times.
 #[derive(Clone, Debug)]
 pub struct Motion {
     pub(super) problem: Problem,
     pub(super) engine: Engine,
-    pub(super) pace: Pace,
-    pub(super) course: Course,
+    pub(super) rule: StepRule,
+    pub(super) bounds: StepBounds,
     /// In principal axes, at the output times, fewer if an event ended the motion.
     pub(super) states: Vec<Carried>,
-    /// The events, in the order in which they were met.
+    /// The events, in the order of integration.
     pub events: Vec<Happened>,
-    /// What was conserved.
+    /// Drift of conserved quantities and other data of the run.
     pub certificate: Certificate,
 }
 
@@ -49,7 +49,7 @@ pub struct States {
 
 impl Motion {
     /// Writes the points at the output times.
-    pub(crate) fn write(&self, own: &mut Own) {
+    pub(crate) fn write(&self, own: &mut BodyOutput) {
         let Problem { frame, body, torques, .. } = &self.problem;
         for (index, state) in self.states.iter().enumerate() {
             own.write(index, (*frame, body, torques), &state.phase, &state.center);
@@ -81,7 +81,7 @@ impl Motion {
         times: &[f64],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<States, SimulateError> {
-        // A motion that an event ends is known up to there.
+        // A motion ended by an event extends to the event.
         let known = self.states.iter().chain(self.events.iter().map(|happened| &happened.at));
         let (first, last) = known.fold((self.problem.time, self.problem.time), |(a, b): (f64, f64), s| {
             (a.min(s.phase.time), b.max(s.phase.time))
@@ -96,18 +96,18 @@ impl Motion {
         order.sort_by(|&i, &j| times[i].total_cmp(&times[j]));
         let rate = |state: &Carried| self.problem.body.omega(state.phase.momentum).norm();
         let known_rate = self.states.iter().map(rate).fold(0.0, f64::max);
-        let rules = (Order { known_rate, ..Order::only(self.pace) }, &self.course);
+        let rules = (SweepPlan { known_rate, ..SweepPlan::only(self.rule) }, &self.bounds);
         let mut found = vec![self.problem.start(); times.len()];
         for group in order.chunk_by(|&i, &j| self.nearest(times[i]) == self.nearest(times[j])) {
             let from = self.nearest(times[group[0]]).map_or(self.problem.start(), |k| self.states[k]);
             let wanted: Vec<f64> = group.iter().map(|&i| times[i]).collect();
-            let pass = self.problem.pass_from(from, &self.engine, &wanted, rules, &[], progress)?;
-            group.iter().zip(pass.states).for_each(|(&i, state)| found[i] = state);
+            let sweep = self.problem.sweep_from(from, &self.engine, &wanted, rules, &[], progress)?;
+            group.iter().zip(sweep.states).for_each(|(&i, state)| found[i] = state);
         }
         Ok(self.problem.states(&found))
     }
 
-    /// How far from the start, in s, an exact motion is known backwards and forwards; none for one that was stepped.
+    /// How far from the start, in s, a motion in closed form is known backwards and forwards; none for others.
     pub fn horizons(&self) -> Option<[f64; 2]> {
         match &self.engine {
             Engine::ClosedForm(closed) => Some(closed.horizons()),
@@ -115,7 +115,7 @@ impl Motion {
         }
     }
 
-    /// An exact motion at any times within its horizons; none for one that was stepped.
+    /// A motion in closed form at any times within its horizons; none for others.
     pub fn exactly(&self, times: &[f64]) -> Option<Result<States, SimulateError>> {
         let Engine::ClosedForm(closed) = &self.engine else { return None };
         let known = check_horizons_from(self.problem.time, times, closed.horizons());

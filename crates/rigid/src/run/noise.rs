@@ -1,31 +1,30 @@
-//! Rounding along a motion, measured: a pass whose steps are shaken far above rounding.
+//! Measures the amplification of rounding by a sweep with noise far above rounding.
 //!
-//! Every step rounds, and the motion magnifies what the steps before it rounded: by a little where it is regular,
-//! exponentially where it is chaotic. Passes with other steps do not reliably show by how much, for they round alike. So
-//! a pass is run once more with the same steps, each of which ends in a point whose components are multiplied by
-//! `1 ± s`, signs at random. While the response is linear, with the tangent flow Φ and units ξ_k of random sign,
+//! Every step rounds, and the motion amplifies the rounding of earlier steps: slightly where it is regular, exponentially
+//! where it is chaotic. Sweeps with other steps do not measure this reliably, because they round alike. So a sweep is
+//! repeated with the same steps, and the components of each point are multiplied by `1 ± s` with random signs. While the response is linear, with the tangent flow Φ and units ξ_k of random sign,
 //!
 //! ```text
 //! difference = s |Σ_k Φ(t, t_k) ξ_k|,      rounding error = ρ |Σ_k Φ(t, t_k) ξ'_k|,
 //! ```
 //!
-//! where ρ is the relative rounding of one step ([`crate::methods::Engine::rounding`]). The two sums are of one
+//! where ρ is the relative rounding of one step ([`super::engine::Engine::rounding`]). The two sums are of one
 //! distribution, so that `difference ρ/s` estimates the rounding error; over n' steps instead of n it is √(n'/n) times
-//! as large. A component that is zero stays zero, as in rounding: what is exact by symmetry is not called uncertain.
+//! as large. A component that is zero stays zero, as in rounding: what is exact by symmetry stays certain.
 
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Phase;
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// The size of the noise of the first shaken pass: far above rounding, and small enough for a linear response where
-/// the motion magnifies it less than 1e10 times.
+/// The first size of the noise: far above rounding, and small enough for a linear response where the amplification is
+/// below 1e10.
 pub(crate) const FIRST_SIZE: f64 = 1e-12;
 
 /// A larger difference is not linear in the noise.
 pub(crate) const LINEAR: f64 = 0.03;
 
-/// How many times the estimate of one shaken pass is taken, for the sum of the rounding may be the larger one.
+/// Safety factor of the estimate: the response to rounding may exceed that to the noise.
 const SAFETY: f64 = 3.0;
 
 /// Random relative changes of size s of all components of a point.
@@ -45,7 +44,7 @@ impl Noise {
         Noise { size, in_space, state: seed }
     }
 
-    /// The point shaken.
+    /// The point with noise added.
     pub fn shake(&mut self, at: &Carried) -> Carried {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.state;
@@ -76,27 +75,27 @@ impl Noise {
     }
 }
 
-/// What shaken passes have shown of a motion.
+/// The measured amplification of rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Magnification {
-    /// How many times the difference of two points is the noise of one step, times √n of n steps.
+    /// Ratio of the difference of two points to the noise of one step, per √n of n steps.
     per_step: f64,
     /// The relative rounding of one step.
     rounding: f64,
 }
 
 impl Magnification {
-    /// From the difference that noise of a size made over so many steps.
+    /// From the difference caused by noise of a size over a number of steps.
     pub fn new(difference: f64, size: f64, steps: u64, rounding: f64) -> Magnification {
         Magnification { per_step: difference / (size * (steps.max(1) as f64).sqrt()), rounding }
     }
 
-    /// The rounding error of so many steps, with a margin.
+    /// The rounding error of a number of steps, with a margin.
     pub fn rounding_error(&self, steps: u64) -> f64 {
         SAFETY * self.rounding * (self.per_step * (steps as f64).sqrt()).max(1.0)
     }
 
-    /// How many times the sum of the errors of so many steps, each of one size, the error of the motion may be.
+    /// Bound of the ratio of the motion's error to the sum of the errors of its steps.
     pub fn of_sums(&self) -> f64 {
         SAFETY * self.per_step.max(1.0)
     }

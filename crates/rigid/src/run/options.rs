@@ -1,46 +1,45 @@
-//! How a motion is to be solved.
+//! Options of a run: method, step, tolerances and limits.
 
 use crate::error::SimulateError;
 use crate::laws::event::Event;
 use crate::methods::Method;
 
-/// How to solve it.
+/// Options of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// `None` is the closed form where there is one and no step is given, and else the best method for the laws.
+    /// `None` selects the closed form if there is one and no step is given, else the best method for the laws.
     pub method: Option<Method>,
-    /// A fixed step in s; `None` lets the tolerance choose it.
+    /// A fixed step in s; `None` lets the tolerance determine it.
     pub step: Option<f64>,
-    /// The relative error to reach where it chooses the step; `None` aims at 1e-10 and takes what rounding
-    /// leaves of it.
+    /// The relative tolerance without a step; `None` is 1e-10, or what rounding allows.
     pub rtol: Option<f64>,
-    /// Whether nothing but the closed form will do.
+    /// Whether to require the closed form.
     pub exact: bool,
     /// The longest step in s.
     pub max_step: Option<f64>,
-    /// How many steps a pass may take; `None` is [`MAX_STEPS`], or a hundred times that where a step is given.
+    /// Maximum number of steps of a sweep; `None` is [`MAX_STEPS`], or a hundred times that with a step.
     pub max_steps: Option<f64>,
-    /// Times at which steps end, in any order: where the laws are not smooth, or push shortly.
+    /// Times at which steps end, in any order: where the laws are not smooth, or have short pulses.
     pub breaks: Vec<f64>,
-    /// What to look for on the way, with body components in body axes.
+    /// Events to detect, with body components in body axes.
     pub events: Vec<Event>,
 }
 
-/// The default limit of the steps in a pass: minutes of work.
+/// The default maximum number of steps of a sweep: minutes of work.
 pub const MAX_STEPS: f64 = 1e8;
 
 impl Options {
-    /// How many steps a pass may take.
+    /// The maximum number of steps of a sweep.
     pub(crate) fn most_steps(&self) -> f64 {
         self.max_steps.unwrap_or(if self.step.is_some() { 100.0 * MAX_STEPS } else { MAX_STEPS })
     }
 
-    /// Whether another method may take over where the laws are stiff: none is asked for, nor how long steps are.
+    /// Whether another method may take over for stiff laws: neither method nor steps are given.
     pub(crate) fn may_change_method(&self) -> bool {
         self.method.is_none() && self.step.is_none() && self.max_step.is_none()
     }
 
-    /// What is wrong with them, or with the times, for any body.
+    /// Checks the options and the times.
     pub(crate) fn check(&self, times: &[f64]) -> Result<(), SimulateError> {
         for (index, &time) in times.iter().enumerate() {
             if !time.is_finite() || index > 0 && time < times[index - 1] {

@@ -1,90 +1,92 @@
-//! Passes with ever shorter steps, until two of them agree.
+//! Convergence: sweeps with ever shorter steps until two of them agree.
 //!
-//! The error of a pass has two parts, and both are measured. *Truncation* falls with the step: with steps h and h/s the
-//! passes differ by `e (s^q − 1)`, where `e` is the truncation of the second. *Rounding* does not; what the motion makes
-//! of it is found once by shaken passes ([`super::noise`]), as soon as two passes are near each other. A motion that
-//! magnifies rounding beyond what is asked is refused then, and not after passes that could not succeed.
+//! The error of a sweep has two parts, and both are measured. *Truncation* falls with the step: with steps h and h/s the
+//! sweeps differ by `e (s^q − 1)`, where `e` is the truncation of the second. *Rounding* does not; its amplification by
+//! the motion is measured once by sweeps with noise ([`super::noise`]), as soon as two sweeps are close. A motion that
+//! amplifies rounding beyond the tolerance is rejected then, before further sweeps.
 
 use super::noise::{FIRST_SIZE, LINEAR, Magnification, Noise};
-use super::sweep::{Pace, Pass};
+use super::sweep::{StepRule, Sweep};
 use crate::error::SimulateError;
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
 
-/// The relative error aimed at when no tolerance is asked for.
+/// The default relative tolerance.
 pub(crate) const DEFAULT_RTOL: f64 = 1e-10;
 
-/// The largest relative error that is returned when no tolerance is asked for and rounding allows no smaller one: a
-/// motion along a separatrix magnifies it a thousandfold and more. The certificate has the estimate.
-pub(crate) const WORST_UNASKED: f64 = 1e-6;
+/// The largest relative error accepted by default where rounding allows no less: a motion along a separatrix amplifies
+/// it a thousandfold and more. The certificate has the estimate.
+pub(crate) const WORST_BY_DEFAULT: f64 = 1e-6;
 
-/// How many times shorter the steps of the second pass are.
+/// Refinement factor of the second sweep.
 const SECOND: f64 = 1.6;
 
-/// Passes whose numbers of steps differ by less show nothing of each other's truncation.
+/// Sweeps whose numbers of steps differ by less do not reveal the truncation.
 const COMPARABLE: f64 = 1.1;
 
-/// Two passes that differ by less follow the same motion.
+/// Two sweeps that differ by less resolve the same motion.
 const RESOLVED: f64 = 0.05;
 
-/// The part of the method's order by which truncation is taken to fall, until passes have shown how it falls; and the
-/// part of the order shown that is relied on.
+/// The fraction of the method's order assumed for truncation until it has been observed, and the fraction of the
+/// observed order that is relied on.
 const ASSUMED: f64 = 0.5;
 const TRUSTED: f64 = 0.75;
 
-/// How many times shorter the steps of the next pass are at most.
+/// Maximum refinement factor of the next sweep.
 const LEAP: f64 = 6.0;
 
-/// A difference that falls faster than by this multiple of the order is small by chance.
+/// A difference that falls faster than this multiple of the order is small by chance.
 const FASTEST_FALL: f64 = 1.25;
 
-/// An estimate of the error of a step is rounding below this.
+/// Below this, the error estimate of a step is rounding.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-16;
 
-/// Maximum number of passes of different steps.
-const MOST_PASSES: u32 = 30;
+/// Maximum number of sweeps with different steps.
+const MOST_SWEEPS: u32 = 30;
 
-/// After so many passes that differ altogether, shaken passes show whether that is rounding.
-const FEW_PASSES: u32 = 5;
+/// After this many sweeps without agreement, sweeps with noise show whether rounding is the cause.
+const FEW_SWEEPS: u32 = 5;
 
-impl Pace {
-    /// Steps that are so many times shorter. A local error goes as the eighth power of the step.
-    fn refined(self, by: f64) -> Pace {
+impl StepRule {
+    /// Steps shorter by a factor. A local error scales as the eighth power of the step.
+    fn refined(self, by: f64) -> StepRule {
         match self {
-            Pace::Step(steps) => Pace::Step(steps.refined(by)),
-            Pace::Tolerance(tolerance) => Pace::Tolerance((tolerance / by.powi(8)).max(LEAST_TOLERANCE)),
+            StepRule::Step(steps) => StepRule::Step(steps.refined(by)),
+            StepRule::Tolerance(tolerance) => {
+                StepRule::Tolerance((tolerance / by.powi(8)).max(LEAST_TOLERANCE))
+            }
         }
     }
 }
 
-/// What is to be reached, and how.
+/// The accuracy to reach.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim {
+pub(crate) struct Accuracy {
     /// Of the method.
     pub order: i32,
     pub goal: f64,
-    /// The largest error that is returned, where rounding allows no smaller one.
+    /// The largest accepted error, where rounding allows no less.
     pub acceptable: f64,
 }
 
-impl Aim {
-    /// The relative error to be reached by a method of this order, where one is asked for.
-    pub fn new(order: i32, rtol: Option<f64>) -> Aim {
-        Aim { order, goal: rtol.unwrap_or(DEFAULT_RTOL), acceptable: rtol.unwrap_or(WORST_UNASKED) }
+impl Accuracy {
+    /// The accuracy of a method of this order for a relative tolerance, or by default.
+    pub fn new(order: i32, rtol: Option<f64>) -> Accuracy {
+        Accuracy { order, goal: rtol.unwrap_or(DEFAULT_RTOL), acceptable: rtol.unwrap_or(WORST_BY_DEFAULT) }
     }
 
-    /// The first pace of steps that keep to a tolerance: the errors of all of them add up.
-    pub fn tolerance(&self) -> Pace {
-        Pace::Tolerance((0.1 * self.goal).max(1e3 * LEAST_TOLERANCE))
+    /// The first tolerance of adaptive steps, whose errors add up.
+    pub fn tolerance(&self) -> StepRule {
+        StepRule::Tolerance((0.1 * self.goal).max(1e3 * LEAST_TOLERANCE))
     }
 
-    /// The error to reach where rounding leaves this much: where no tolerance is asked for, no less than twice that.
+    /// The error to reach given this rounding: by default, at least twice the rounding.
     fn reachable(&self, rounding: f64) -> f64 {
         self.goal.max(2.0 * rounding).min(self.acceptable)
     }
 }
 
-/// What of a problem the comparison of passes needs.
+/// Data of a problem for the comparison of sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scales {
     pub body: Gyrostat,
@@ -92,104 +94,103 @@ pub(crate) struct Scales {
     pub rounding: f64,
     /// Whether steps carry the momentum in space.
     pub in_space: bool,
-    /// Whether the laws change slowly at the scale of steps. Under others a difference need not fall as the order says,
-    /// and is the error itself.
+    /// Whether the laws change slowly at the scale of steps. Otherwise a difference need not scale with the order and is
+    /// taken as the error itself.
     pub is_smooth: bool,
 }
 
-/// The next pass to run.
+/// The next sweep to run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Order {
-    pub pace: Pace,
-    /// Passes count from 1.
+pub(crate) struct SweepPlan {
+    pub rule: StepRule,
+    /// Number of the sweep, from 1.
     pub number: u32,
-    /// The largest angular velocity that the pass before met, in rad/s: errors are relative to it from the start on. A
-    /// body that rests until it is pushed would else have to keep to a tolerance relative to nearly nothing.
+    /// The largest angular velocity of the previous sweep, in rad/s: the scale of errors from the start on. Otherwise a
+    /// body at rest until it is pushed would need a tolerance relative to nearly zero.
     pub known_rate: f64,
     pub noise: Option<Noise>,
 }
 
-impl Order {
-    /// A run of one pass.
-    pub fn only(pace: Pace) -> Order {
-        Order { pace, number: 1, known_rate: 0.0, noise: None }
+impl SweepPlan {
+    /// The plan of a single sweep.
+    pub fn only(rule: StepRule) -> SweepPlan {
+        SweepPlan { rule, number: 1, known_rate: 0.0, noise: None }
     }
 }
 
-/// A pass that is good enough.
+/// The final sweep.
 pub(crate) struct Converged {
-    pub pace: Pace,
-    /// With the steps and evaluations of all passes.
-    pub pass: Pass,
-    /// A cautious estimate of its error.
+    pub rule: StepRule,
+    /// With the steps and evaluations of all sweeps.
+    pub sweep: Sweep,
+    /// A conservative estimate of its error.
     pub error: f64,
 }
 
-/// Two passes that are compared once shaken passes have shown what rounding does.
+/// Two sweeps to be compared once sweeps with noise have measured the rounding.
 struct Pair {
-    coarse: Pass,
-    /// Of the coarse one.
-    pace: Pace,
+    coarse: Sweep,
+    /// Of the coarse sweep.
+    rule: StepRule,
     known_rate: f64,
-    fine: Pass,
+    fine: Sweep,
     difference: f64,
-    /// Of the noise under way, its number, and the largest difference that noise of this size made so far.
+    /// Size and number of the current noise, and the largest difference that noise of this size has caused.
     size: f64,
     shaken: u32,
     response: f64,
 }
 
-/// Passes until two agree: gives the pace of the next, and takes its result.
+/// Controls the sweeps until two agree: plans the next and takes its result.
 ///
-/// Of the order q half is taken for granted; once two differences have shown an order, three quarters of that. So is
-/// the next step foretold, and few passes are needed.
+/// Half of the order q is assumed at first; once two differences have shown an order, three quarters of it. This predicts
+/// the next step, so that few sweeps are needed.
 ///
-/// Steps that keep to a tolerance are bounded by the output times too, and may hardly change with it. Of them s is the
-/// ratio of their numbers; where that is nearly 1 the passes show nothing, and the sum of the estimates of all steps has
-/// to be small.
+/// Adaptive steps are also bounded by the output times, and may hardly change with the tolerance. For them s is the ratio
+/// of the numbers of steps; where it is nearly 1, the sum of the error estimates of all steps must be small instead.
 pub(crate) struct Convergence {
-    aim: Aim,
+    accuracy: Accuracy,
     scales: Scales,
-    /// Of the next pass that is not shaken, and its number among those.
-    pace: Pace,
+    /// Of the next sweep without noise, and its number among those.
+    rule: StepRule,
     number: u32,
     known_rate: f64,
-    /// The pass before, with its pace and the rate that was known to it.
-    coarse: Option<(Pass, Pace, f64)>,
+    /// The previous sweep, with its step rule and known rate.
+    coarse: Option<(Sweep, StepRule, f64)>,
     pair: Option<Pair>,
     magnification: Option<Magnification>,
-    /// The number of the pass from which on unresolved passes are shaken.
+    /// The number of the sweep from which unresolved sweeps are repeated with noise.
     look_at: u32,
-    /// Of all passes.
-    passes: u32,
+    /// Of all sweeps.
+    sweeps: u32,
     steps: u64,
     evaluations: u64,
-    /// How many times shorter the steps of the next pass are.
+    /// Refinement factor of the next sweep.
     by: f64,
-    /// The last difference, and how many times shorter its steps were.
+    /// The last difference and its refinement factor.
     last: Option<(f64, f64)>,
-    /// The least error so far, and whether the pass before lowered it.
+    /// The least error so far, and whether the previous sweep lowered it.
     previous: f64,
     before: bool,
-    /// The error of the last pass.
+    /// The error of the last sweep.
     reached: f64,
 }
 
 type Taken = Result<Option<Converged>, SimulateError>;
 
 impl Convergence {
-    pub fn new(first: Pace, aim: Aim, scales: Scales) -> Convergence {
+    pub fn new(first: StepRule, accuracy: Accuracy, scales: Scales) -> Convergence {
         Convergence {
-            aim,
+            accuracy,
             scales,
-            pace: first,
+            rule: first,
             number: 1,
             known_rate: 0.0,
             coarse: None,
             pair: None,
             magnification: None,
-            look_at: FEW_PASSES,
-            passes: 0,
+            look_at: FEW_SWEEPS,
+            sweeps: 0,
             steps: 0,
             evaluations: 0,
             by: SECOND,
@@ -200,44 +201,44 @@ impl Convergence {
         }
     }
 
-    /// The pass to run next.
-    pub fn next(&self) -> Order {
-        let number = self.passes + 1;
+    /// The sweep to run next.
+    pub fn next(&self) -> SweepPlan {
+        let number = self.sweeps + 1;
         match &self.pair {
             Some(pair) => {
                 let noise = Noise::new(pair.size, self.scales.in_space, u64::from(pair.shaken));
-                Order { pace: pair.pace, number, known_rate: pair.known_rate, noise: Some(noise) }
+                SweepPlan { rule: pair.rule, number, known_rate: pair.known_rate, noise: Some(noise) }
             }
-            None => Order { pace: self.pace, number, known_rate: self.known_rate, noise: None },
+            None => SweepPlan { rule: self.rule, number, known_rate: self.known_rate, noise: None },
         }
     }
 
-    /// Takes the pass that was run. Gives the last one, once it is good enough.
+    /// Takes the result of a sweep. Returns the final sweep once it is accurate enough.
     ///
-    /// At events, too, passes are compared at one time: `follow` leads a point a little way to another time.
-    pub fn take(&mut self, pass: Pass, follow: &dyn Fn(&Carried, f64) -> Carried) -> Taken {
-        self.passes += 1;
-        self.steps += pass.steps;
-        self.evaluations += pass.evaluations;
+    /// Events of two sweeps are compared at one time: `follow` advances a point to a nearby time.
+    pub fn take(&mut self, sweep: Sweep, follow: &dyn Fn(&Carried, f64) -> Carried) -> Taken {
+        self.sweeps += 1;
+        self.steps += sweep.steps;
+        self.evaluations += sweep.evaluations;
         if let Some(mut pair) = self.pair.take() {
-            let response = difference(&self.scales, &pair.coarse, &pass, follow);
+            let response = difference(&self.scales, &pair.coarse, &sweep, follow);
             pair.response = pair.response.max(response);
             return self.shaken(pair);
         }
-        let Some((coarse, pace, known_rate)) = self.coarse.take() else { return self.refine(pass) };
-        let difference = difference(&self.scales, &coarse, &pass, follow);
-        let resolved = difference <= RESOLVED.max(self.aim.goal);
-        let shorter_than_turns = pass.largest[0] * pass.longest < 1.0;
+        let Some((coarse, rule, known_rate)) = self.coarse.take() else { return self.refine(sweep) };
+        let difference = difference(&self.scales, &coarse, &sweep, follow);
+        let resolved = difference <= RESOLVED.max(self.accuracy.goal);
+        let shorter_than_turns = sweep.largest[0] * sweep.longest < 1.0;
         if self.magnification.is_none() && (resolved || self.number >= self.look_at && shorter_than_turns) {
             let (size, shaken, response) = (FIRST_SIZE, 0, 0.0);
             self.pair =
-                Some(Pair { coarse, pace, known_rate, fine: pass, difference, size, shaken, response });
+                Some(Pair { coarse, rule, known_rate, fine: sweep, difference, size, shaken, response });
             return Ok(None);
         }
-        self.compare(difference, &coarse, pass)
+        self.compare(difference, &coarse, sweep)
     }
 
-    /// Takes the response to the noise: less noise where it is not linear, a second shaken pass where rounding matters.
+    /// Takes the response to noise: reduces the noise if it is not linear, repeats it if rounding matters.
     fn shaken(&mut self, mut pair: Pair) -> Taken {
         let Scales { rounding, .. } = self.scales;
         if pair.response > LINEAR && pair.size > rounding {
@@ -247,14 +248,14 @@ impl Convergence {
             return Ok(None);
         }
         let found = Magnification::new(pair.response, pair.size, pair.coarse.steps, rounding);
-        // The sum of one noise may be a hundred times smaller than that of another, but hardly more.
-        let matters = 100.0 * found.rounding_error(pair.fine.steps) > self.aim.goal;
+        // The response to one noise may be a hundred times smaller than to another, but hardly more.
+        let matters = 100.0 * found.rounding_error(pair.fine.steps) > self.accuracy.goal;
         if matters && pair.shaken.is_multiple_of(2) {
             pair.shaken += 1;
             self.pair = Some(pair);
             return Ok(None);
         }
-        let resolved = pair.difference <= RESOLVED.max(self.aim.goal);
+        let resolved = pair.difference <= RESOLVED.max(self.accuracy.goal);
         if resolved || pair.response > LINEAR {
             self.magnification = Some(found);
         }
@@ -262,24 +263,28 @@ impl Convergence {
         self.compare(pair.difference, &pair.coarse, pair.fine)
     }
 
-    /// Compares two passes: the finer one, if it is good enough.
-    fn compare(&mut self, difference: f64, coarse: &Pass, fine: Pass) -> Taken {
+    /// Compares two sweeps. Returns the finer one if it is accurate enough.
+    fn compare(&mut self, difference: f64, coarse: &Sweep, fine: Sweep) -> Taken {
         let rounding = self.magnification.map_or(0.0, |known| known.rounding_error(fine.steps));
         let (truncation, shorter) = self.truncation(difference, coarse, &fine);
         let error = (truncation + rounding).max(f64::EPSILON * (fine.steps as f64).sqrt());
-        let goal = self.aim.reachable(rounding);
+        let goal = self.accuracy.reachable(rounding);
         if error <= goal && self.magnification.is_some() {
             return Ok(Some(self.converged(fine, error)));
         }
-        // One pass may be lucky. Passes with long steps may gain nothing yet.
+        // One sweep may agree by chance. Sweeps with long steps may gain nothing yet.
         let gained = error <= 0.5 * self.previous || self.previous >= 1e-2;
-        let stuck = !gained && !self.before || self.number > MOST_PASSES;
-        if stuck || rounding > self.aim.acceptable {
-            if error <= self.aim.acceptable && self.magnification.is_some() {
+        let stuck = !gained && !self.before || self.number > MOST_SWEEPS;
+        if stuck || rounding > self.accuracy.acceptable {
+            if error <= self.accuracy.acceptable && self.magnification.is_some() {
                 return Ok(Some(self.converged(fine, error)));
             }
             let reached = error.max(if rounding > LINEAR { 1.0 } else { 0.0 });
-            return Err(SimulateError::NotConverged { rtol: self.aim.goal, reached, step: fine.longest });
+            return Err(SimulateError::NotConverged {
+                rtol: self.accuracy.goal,
+                reached,
+                step: fine.longest,
+            });
         }
         self.last = shorter.map(|by| (difference, by));
         (self.before, self.reached, self.previous) = (gained, error, error.min(self.previous));
@@ -287,7 +292,7 @@ impl Convergence {
             None => 2.0,
             Some(_) if difference >= 0.1 => 2.0,
             Some(_) => {
-                let order = f64::from(self.aim.order);
+                let order = f64::from(self.accuracy.order);
                 let likely = difference * self.by.powf(-0.9 * order);
                 let wanted = (goal - rounding).max(0.3 * goal);
                 (1.1 * (likely / wanted).powf(1.0 / (TRUSTED * order))).clamp(1.3, LEAP)
@@ -296,14 +301,14 @@ impl Convergence {
         self.refine(fine)
     }
 
-    /// The truncation of the finer of two passes, and how many times shorter its steps are, if they are.
-    fn truncation(&self, difference: f64, coarse: &Pass, fine: &Pass) -> (f64, Option<f64>) {
+    /// The truncation of the finer of two sweeps, and its refinement factor if its steps are shorter.
+    fn truncation(&self, difference: f64, coarse: &Sweep, fine: &Sweep) -> (f64, Option<f64>) {
         let mut shorter = self.by;
-        if let Pace::Tolerance(tolerance) = self.pace {
+        if let StepRule::Tolerance(tolerance) = self.rule {
             shorter = fine.steps as f64 / coarse.steps.max(1) as f64;
             if shorter < COMPARABLE {
                 let sum = fine.errors * self.magnification.map_or(1.0, |known| known.of_sums());
-                // Steps cannot keep to less; there the difference has to do.
+                // Steps cannot meet a smaller tolerance; the difference is used.
                 let sum = if tolerance == LEAST_TOLERANCE { 0.0 } else { sum };
                 return (difference.max(sum), None);
             }
@@ -311,7 +316,7 @@ impl Convergence {
         if !self.scales.is_smooth {
             return (difference, Some(shorter));
         }
-        let order = f64::from(self.aim.order);
+        let order = f64::from(self.accuracy.order);
         let last = self.last.filter(|&(before, _)| before <= RESOLVED);
         let lucky = last.map_or(0.0, |(before, _)| before * shorter.powf(-FASTEST_FALL * order));
         let difference = difference.max(lucky);
@@ -321,35 +326,40 @@ impl Convergence {
         (difference / (shorter.powf(exponent) - 1.0).max(1.0), Some(shorter))
     }
 
-    fn converged(&self, pass: Pass, error: f64) -> Converged {
+    fn converged(&self, sweep: Sweep, error: f64) -> Converged {
         let (steps, evaluations) = (self.steps, self.evaluations);
-        Converged { pace: self.pace, pass: Pass { steps, evaluations, ..pass }, error }
+        Converged { rule: self.rule, sweep: Sweep { steps, evaluations, ..sweep }, error }
     }
 
-    /// Goes on to shorter steps. Where there are none, the last pass has to do.
-    fn refine(&mut self, coarse: Pass) -> Taken {
-        let finer = self.pace.refined(self.by);
-        if finer == self.pace {
-            if self.reached <= self.aim.acceptable && self.magnification.is_some() {
+    /// Continues with shorter steps. If there are none, the last sweep is final.
+    fn refine(&mut self, coarse: Sweep) -> Taken {
+        let finer = self.rule.refined(self.by);
+        if finer == self.rule {
+            if self.reached <= self.accuracy.acceptable && self.magnification.is_some() {
                 return Ok(Some(self.converged(coarse, self.reached)));
             }
-            let (rtol, reached) = (self.aim.goal, self.previous);
+            let (rtol, reached) = (self.accuracy.goal, self.previous);
             return Err(SimulateError::NotConverged { rtol, reached, step: coarse.longest });
         }
-        // Steps that keep to no tolerance may have met a wrong one.
-        let adapts = matches!(self.pace, Pace::Tolerance(_));
+        // Fixed steps may have met a wrong rate.
+        let adapts = matches!(self.rule, StepRule::Tolerance(_));
         let known_rate = if adapts { coarse.largest[0] } else { 0.0 };
-        self.coarse = Some((coarse, self.pace, self.known_rate));
+        self.coarse = Some((coarse, self.rule, self.known_rate));
         self.known_rate = known_rate;
-        self.pace = finer;
+        self.rule = finer;
         self.number += 1;
         Ok(None)
     }
 }
 
-/// Largest difference of two passes at the output times and at events: in the rotor, and in angular velocity, place and
-/// velocity relative to the largest on the way.
-fn difference(scales: &Scales, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carried, f64) -> Carried) -> f64 {
+/// Largest difference of two sweeps at the output times and events: in the rotor, and in angular velocity, position and
+/// velocity relative to their largest magnitudes.
+fn difference(
+    scales: &Scales,
+    coarse: &Sweep,
+    fine: &Sweep,
+    follow: &dyn Fn(&Carried, f64) -> Carried,
+) -> f64 {
     // An event ended one of them and not the other.
     if coarse.ends != fine.ends {
         return 1.0;
@@ -366,7 +376,7 @@ fn difference(scales: &Scales, coarse: &Pass, fine: &Pass, follow: &dyn Fn(&Carr
         turn.max(spin).max(place).max(velocity)
     };
     let outputs = coarse.states.iter().zip(&fine.states).map(|(a, b)| apart(a, b));
-    // An event that is barely one may be none in the other.
+    // A grazing event may be missing in one of them.
     let same = coarse.events.len() == fine.events.len();
     let events = coarse.events.iter().zip(&fine.events).filter(|(a, b)| same && a.event == b.event);
     let events = events.map(|(a, b)| apart(&follow(&a.at, b.at.phase.time), &b.at));

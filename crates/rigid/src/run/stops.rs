@@ -1,37 +1,36 @@
-//! Times at which steps stop, found by sampling laws that depend on time.
+//! Stops of the steps, found by sampling laws that depend on time.
 //!
-//! A step looks at a law a dozen times. A short push that falls between the looks of a long step would be stepped over,
-//! and the estimate of the error, which comes of the same looks, would not show it. So a law is sampled beforehand, and
-//! an interval in which coarse samples do not foretell the others is halved, and its parts again: around a push the
-//! steps are as short as the push, elsewhere they are free.
+//! A step evaluates a law a dozen times. A short pulse between the evaluations of a long step would be missed, also by
+//! the error estimate, which uses the same values. So a law is sampled first, and intervals in which coarse samples do
+//! not predict the others are bisected: around a pulse the steps are as short as the pulse, elsewhere they are free.
 
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
 
-/// Intervals between samples on each side of the start: a power of 2. A push that is shorter than one may be missed.
+/// Intervals between samples on each side of the start: a power of 2. A pulse shorter than one may be missed.
 const SAMPLES: usize = 4096;
 
-/// An interval of so few is not halved.
+/// An interval of this many samples is not bisected.
 const FINEST: usize = 4;
 
-/// Coarse intervals of each interval.
+/// Number of coarse intervals in an interval.
 const COARSE: usize = 8;
 
 /// The deviation from the coarse samples, relative to the largest torque, that counts.
 const DEVIATION: f64 = 1e-3;
 
-/// A law along time.
+/// Samples of a law in time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sampled {
-    /// Where steps stop, rising.
+    /// Ascending times at which steps stop.
     pub stops: Vec<f64>,
     /// When the torque is largest, if it depends on time.
     pub peak: Option<f64>,
 }
 
-/// A law between two times. Laws that are not smooth at known times have stops of their own.
+/// Samples a law between two times. Laws that are not smooth at known times have stops of their own.
 ///
 /// `start` is where functions are evaluated, which may be defined for such states only; formulas and orbits are evaluated
 /// in general position, so that the stops depend on the law alone.
@@ -58,7 +57,7 @@ pub(crate) fn sampled(
     for k in 0..=SAMPLES {
         match law.value(body, &Phase { time: time(k), ..state }) {
             Ok(value) => values.push(value),
-            // What a caller's function raises is the caller's; a formula may have no value at this state alone.
+            // An error of a user's function is reported; a formula may fail at this state only.
             Err(error) if matches!(law, Torque::Function(_)) => {
                 return Err(SimulateError::Torque { time: time(k), message: error.0 });
             }
@@ -71,23 +70,23 @@ pub(crate) fn sampled(
         .enumerate()
         .fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
     let mut found = Vec::new();
-    halve(&values, 0..SAMPLES, DEVIATION * largest, &mut found);
+    bisect(&values, 0..SAMPLES, DEVIATION * largest, &mut found);
     Ok(Sampled { stops: found.into_iter().map(time).collect(), peak: Some(time(peak)) })
 }
 
-/// Halves an interval of samples where the coarse ones do not foretell the others: gives the ends of the halves.
-fn halve(values: &[Bivector], part: std::ops::Range<usize>, allowed: f64, found: &mut Vec<usize>) {
-    if part.len() <= FINEST || is_foretold(&values[part.start..=part.end], allowed) {
+/// Bisects intervals of samples in which the coarse ones do not predict the others; collects the midpoints.
+fn bisect(values: &[Bivector], part: std::ops::Range<usize>, allowed: f64, found: &mut Vec<usize>) {
+    if part.len() <= FINEST || is_predicted(&values[part.start..=part.end], allowed) {
         return;
     }
     let middle = (part.start + part.end) / 2;
-    halve(values, part.start..middle, allowed, found);
+    bisect(values, part.start..middle, allowed, found);
     found.push(middle);
-    halve(values, middle..part.end, allowed, found);
+    bisect(values, middle..part.end, allowed, found);
 }
 
-/// Whether cubics through coarse samples come near the others.
-fn is_foretold(values: &[Bivector], allowed: f64) -> bool {
+/// Whether cubics through coarse samples approximate the others.
+fn is_predicted(values: &[Bivector], allowed: f64) -> bool {
     let count = values.len() - 1;
     let stride = count / COARSE.min(count / 2);
     (0..count).all(|k| {
@@ -101,36 +100,34 @@ fn is_foretold(values: &[Bivector], allowed: f64) -> bool {
             -x * (x - 1.0) * (x - 3.0) / 2.0,
             x * (x - 1.0) * (x - 2.0) / 6.0,
         ];
-        let foretold =
+        let predicted =
             nodes.iter().zip(weights).fold(Bivector::default(), |sum, (&j, w)| sum + values[j] * w);
-        (foretold - values[k]).norm() <= allowed
+        (predicted - values[k]).norm() <= allowed
     })
 }
 
-/// Steps that are looked into, and samples in each.
+/// Number of steps checked for aliasing, and samples in each.
 const LOOKED_AT: usize = 256;
 const INSIDE: usize = 12;
 
-/// Whether a law depends on time in a way that only samples show; tables have their own stops.
+/// Whether a law depends on time in an unknown way; tables have their own stops.
 fn is_to_be_sampled(law: &Torque) -> bool {
     !law.is_autonomous() && !matches!(law, Torque::Tabulated(_))
 }
 
-/// The warning of a law that is aliased.
-pub(crate) fn aliasing(law: &Torque, step: f64) -> String {
+/// The warning for an aliased law.
+pub(crate) fn aliasing_warning(law: &Torque, step: f64) -> String {
     let what = match law {
         Torque::Formula(formula) => format!("the torque `{}`", formula.text()),
         Torque::Registered(law) => format!("the torque {}", law.name),
         Torque::Function(_) => "the torque of a function".to_owned(),
         _ => "a torque".to_owned(),
     };
-    format!(
-        "{what} changes too fast for step = {step} s, which misses part of it; use a shorter step, or leave it out"
-    )
+    format!("{what} changes too fast for step = {step} s; use a shorter step, or omit step")
 }
 
-/// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time: what it gives in them by
-/// Simpson's rule, as a method sees it, is compared with the mean of finer samples.
+/// Whether fixed steps miss more than a tenth of the impulse of a law that depends on time: compares Simpson's rule,
+/// which a method's evaluations amount to, with the mean of finer samples.
 pub(crate) fn is_aliased(
     law: &Torque,
     body: &Gyrostat,
@@ -169,7 +166,7 @@ mod tests {
         let value = |k: usize| Bivector([0.0, 0.0, law(k as f64 / SAMPLES as f64)]);
         let values: Vec<Bivector> = (0..=SAMPLES).map(value).collect();
         let mut found = Vec::new();
-        halve(&values, 0..SAMPLES, DEVIATION, &mut found);
+        bisect(&values, 0..SAMPLES, DEVIATION, &mut found);
         found
     }
 

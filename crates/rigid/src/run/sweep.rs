@@ -1,97 +1,97 @@
-//! One pass over the output times, by fixed steps or by steps that keep to a tolerance.
+//! Integrator: one sweep over the output times, by fixed or adaptive steps, with events.
 
 use super::certificate::Watch;
+use super::closed_form::Fall;
+use super::engine::Engine;
 use super::noise::Noise;
 use crate::error::SimulateError;
 use crate::error::TorqueError;
-use crate::exact::closed_form::Fall;
 use crate::laws::conserved::Conserved;
 use crate::laws::event::{Event, Happened, crossing, dip, root};
-use crate::methods::Engine;
-use crate::methods::step_control::{Limit, Stride, next_stop};
+use crate::methods::step_control::{Limit, StepController, next_stop};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::Gyrostat;
 use crate::state::point::Point;
 
-/// The fraction of the work done at some time.
+/// The fraction of the work done at a time.
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 
-/// How far the body, or the way of its centre of mass, may turn in rad between looks for events.
+/// Largest turn of the body, or of the path of its centre of mass, between evaluations of events, in rad.
 const LOOK: f64 = 0.2;
 
-/// An event that comes sooner after the start, relative to the time to the next look, is one at the start.
+/// An event this close to the start, relative to the time to the next evaluation, is at the start.
 const ROUNDING_OF_START: f64 = 1e-12;
 
-/// How often, in steps, a run asks whether to go on.
+/// Steps between calls of `progress`.
 const STEPS_BETWEEN_CALLS: u64 = 256;
 
-/// Where a run stands: which pass, and the fraction of it done.
+/// Progress of a run: the sweep, and the fraction of it done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Passes count from 1.
+    /// Number of the sweep, from 1.
     pub pass: u32,
     /// From 0 to 1.
     pub fraction: f64,
 }
 
-/// What rules the steps.
+/// How step sizes are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Pace {
+pub(crate) enum StepRule {
     /// Equal steps of at most this length in s between stops.
     Step(EqualSteps),
-    /// Steps whose estimated error is at most this.
+    /// Steps with an estimated error of at most this.
     Tolerance(f64),
 }
 
-/// Equal steps, and what they were in the first pass.
+/// Equal steps, with those of the first sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EqualSteps {
     /// The longest, in s.
     pub step: f64,
-    /// That of the first pass.
+    /// That of the first sweep.
     first: f64,
-    /// Into how many parts a step between close stops is divided since then.
+    /// Number of parts into which a step between close stops is divided since then.
     parts: f64,
 }
 
-/// A stretch of fewer steps than this in the first pass is refined by whole parts of them: by fractions it might have as
-/// many steps as before, and passes that take the same steps show nothing.
+/// A segment of fewer steps than this in the first sweep is refined by whole divisors: with fractions it might keep its
+/// steps, and sweeps with the same steps do not reveal the error.
 const FEW: f64 = 4.0;
 
 impl EqualSteps {
-    /// Steps that are so many times shorter.
+    /// Steps shorter by a factor.
     pub fn refined(self, by: f64) -> EqualSteps {
         EqualSteps { step: self.step / by, parts: (self.parts * by).ceil(), ..self }
     }
 
-    /// How many steps there are between stops so far apart, in s.
+    /// Number of steps between stops a distance `span` apart, in s.
     fn count(&self, span: f64) -> f64 {
         let first = (span / self.first).ceil().max(1.0);
         if first < FEW { first * self.parts } else { (span / self.step).ceil() }
     }
 }
 
-impl Pace {
+impl StepRule {
     /// Equal steps of at most this length in s.
-    pub fn equal(step: f64) -> Pace {
-        Pace::Step(EqualSteps { step, first: step, parts: 1.0 })
+    pub fn equal(step: f64) -> StepRule {
+        StepRule::Step(EqualSteps { step, first: step, parts: 1.0 })
     }
 }
 
-/// What a pass found.
+/// The result of one integration over all output times.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Pass {
+pub(crate) struct Sweep {
     pub states: Vec<Carried>,
-    /// The events, in the order in which they were met.
+    /// The events, in the order of integration.
     pub events: Vec<Happened>,
-    /// On how many sides of the start an event ended the motion.
+    /// Number of sides of the start on which an event ended the motion.
     pub ends: u32,
     /// Each conserved quantity with its value at the start and its largest relative change.
     pub drifts: Vec<(Conserved, f64, f64)>,
-    /// The largest angular velocity (rad/s), the least that counts included, distance (m) and velocity (m/s) on the way.
+    /// The largest angular velocity (rad/s), at least its scale, distance (m) and velocity (m/s).
     pub largest: [f64; 3],
-    /// The sum of the estimated errors of all steps, of methods that have estimates.
+    /// The sum of the error estimates of all steps, for methods with estimates.
     pub errors: f64,
     /// The longest step.
     pub longest: f64,
@@ -99,63 +99,63 @@ pub(crate) struct Pass {
     pub evaluations: u64,
 }
 
-impl Pass {
-    /// Takes note of the sizes at a point of the motion.
+impl Sweep {
+    /// Updates the largest magnitudes with a point of the motion.
     pub fn meet(&mut self, omega: f64, center: &Center) {
         let sizes = [omega, center.position.norm(), center.velocity.norm()];
         self.largest = [0, 1, 2].map(|k| self.largest[k].max(sizes[k]));
     }
 }
 
-/// A pass under way.
-pub(crate) struct Walker<'a> {
+/// Integrates one body over one sweep.
+pub(crate) struct Integrator<'a> {
     pub body: Gyrostat,
     pub engine: &'a Engine,
     pub watch: Watch<'a>,
-    pub pace: Pace,
+    pub rule: StepRule,
     /// A guess of the first step, in s.
     pub first: f64,
-    /// Errors of the angular velocity are relative to the largest, and to no less than this, in rad/s.
+    /// Lower bound of the scale of angular velocities, in rad/s.
     pub least_rate: f64,
-    /// What shakes the points after each step.
+    /// Noise added to the points after each step.
     pub noise: Option<Noise>,
     /// The longest step, in s.
     pub longest: f64,
     pub limit: Limit,
-    /// Times at which steps end, rising: there the laws are not smooth, or change fast.
+    /// Ascending times at which steps end: the laws are not smooth there, or change fast.
     pub breaks: &'a [f64],
     pub events: &'a [Event],
     /// The motion of the centre of mass, where its acceleration is constant.
     pub fall: Option<Fall>,
     /// The start of the motion, in s.
     pub origin: f64,
-    /// In kg; NaN where nobody said it.
+    /// In kg; NaN where unknown.
     pub mass: f64,
     pub number: u32,
     pub progress: &'a mut dyn FnMut(Progress) -> bool,
 }
 
-/// Where a walk in one direction of time stands.
-struct Walk {
+/// The state of integration in one direction of time.
+struct Cursor {
     at: Carried,
-    stride: Stride,
+    controller: StepController,
     /// The largest angular velocity so far, in rad/s.
     fastest: f64,
-    /// What passes zero at events, here.
+    /// The quantities of the events at this point.
     values: Vec<f64>,
     /// Whether an event has ended the motion.
     ended: bool,
 }
 
-impl Walker<'_> {
-    /// The states at all times, which do not fall. Times on either side of the
-    /// start are walked to from there; those beyond an event that ends the motion are left out.
-    pub fn pass(mut self, start: Carried, times: &[f64]) -> Result<Pass, SimulateError> {
+impl Integrator<'_> {
+    /// The states at all times, which must not decrease. Times on either side of the start are reached from there; those
+    /// beyond an event that ends the motion are left out.
+    pub fn sweep(mut self, start: Carried, times: &[f64]) -> Result<Sweep, SimulateError> {
         let origin = start.phase.time;
         let begin = times.first().map_or(origin, |t| t.min(origin));
         let end = times.last().map_or(origin, |t| t.max(origin));
         let total = end - begin;
-        if let Pace::Step(EqualSteps { step, parts, .. }) = self.pace {
+        if let StepRule::Step(EqualSteps { step, parts, .. }) = self.rule {
             let stops = (times.len() + self.breaks.len()) as f64;
             let steps = total / step + parts * stops;
             let limit = self.limit.steps;
@@ -163,16 +163,16 @@ impl Walker<'_> {
                 return Err(SimulateError::TooManySteps { steps, step, limit });
             }
         }
-        let mut pass = Pass::default();
+        let mut sweep = Sweep::default();
         let (early, late) = times.split_at(times.partition_point(|&t| t < origin));
         let part = |time: f64| (time - origin).abs() / total.max(f64::MIN_POSITIVE);
-        let mut states = self.side(start, early.iter().rev(), &mut pass, &mut |time| part(time))?;
+        let mut states = self.side(start, early.iter().rev(), &mut sweep, &mut |time| part(time))?;
         states.reverse();
         let before = part(begin);
-        states.extend(self.side(start, late.iter(), &mut pass, &mut |time| before + part(time))?);
-        pass.states = states;
-        pass.drifts = self.watch.finish();
-        Ok(pass)
+        states.extend(self.side(start, late.iter(), &mut sweep, &mut |time| before + part(time))?);
+        sweep.states = states;
+        sweep.drifts = self.watch.finish();
+        Ok(sweep)
     }
 
     /// The states at times on one side of the start.
@@ -180,41 +180,52 @@ impl Walker<'_> {
         &mut self,
         start: Carried,
         times: impl Iterator<Item = &'t f64>,
-        pass: &mut Pass,
+        sweep: &mut Sweep,
         done: Done,
     ) -> Result<Vec<Carried>, SimulateError> {
         let fastest = self.body.omega(start.phase.momentum).norm().max(self.least_rate);
-        pass.meet(fastest, &start.center);
+        sweep.meet(fastest, &start.center);
         let mut times = times.peekable();
         if times.peek().is_none() {
             return Ok(Vec::new());
         }
         let values = self.values(&start)?;
-        let mut walk =
-            Walk { at: start, stride: Stride::new(self.first, self.longest), fastest, values, ended: false };
+        let mut cursor = Cursor {
+            at: start,
+            controller: StepController::new(self.first, self.longest),
+            fastest,
+            values,
+            ended: false,
+        };
         let mut states = Vec::new();
         for &time in times {
-            self.walk(&mut walk, time, pass, done)?;
-            if !walk.ended || walk.at.phase.time == time {
-                states.push(walk.at);
+            self.advance_to(&mut cursor, time, sweep, done)?;
+            if !cursor.ended || cursor.at.phase.time == time {
+                states.push(cursor.at);
             }
-            if walk.ended {
-                pass.ends += 1;
+            if cursor.ended {
+                sweep.ends += 1;
                 break;
             }
         }
         Ok(states)
     }
 
-    /// Walks to a time, stopping wherever a law is not smooth.
-    fn walk(&mut self, walk: &mut Walk, time: f64, pass: &mut Pass, done: Done) -> Result<(), SimulateError> {
+    /// Integrates to a time, with a stop wherever a law is not smooth.
+    fn advance_to(
+        &mut self,
+        cursor: &mut Cursor,
+        time: f64,
+        sweep: &mut Sweep,
+        done: Done,
+    ) -> Result<(), SimulateError> {
         loop {
-            let to = next_stop(self.breaks, walk.at.phase.time, time);
-            match self.pace {
-                Pace::Step(steps) => self.equal_steps(walk, to, steps, pass, done)?,
-                Pace::Tolerance(tolerance) => self.adapted_steps(walk, to, tolerance, pass, done)?,
+            let to = next_stop(self.breaks, cursor.at.phase.time, time);
+            match self.rule {
+                StepRule::Step(steps) => self.equal_steps(cursor, to, steps, sweep, done)?,
+                StepRule::Tolerance(tolerance) => self.adapted_steps(cursor, to, tolerance, sweep, done)?,
             }
-            if to == time || walk.ended {
+            if to == time || cursor.ended {
                 return Ok(());
             }
         }
@@ -222,25 +233,25 @@ impl Walker<'_> {
 
     fn equal_steps(
         &mut self,
-        walk: &mut Walk,
+        cursor: &mut Cursor,
         time: f64,
         steps: EqualSteps,
-        pass: &mut Pass,
+        sweep: &mut Sweep,
         done: Done,
     ) -> Result<(), SimulateError> {
-        let (from, span) = (walk.at.phase.time, time - walk.at.phase.time);
+        let (from, span) = (cursor.at.phase.time, time - cursor.at.phase.time);
         let count = steps.count(span.abs());
         if span == 0.0 {
             return Ok(());
         }
-        pass.longest = pass.longest.max(span.abs() / count);
+        sweep.longest = sweep.longest.max(span.abs() / count);
         for i in 0..count as u64 {
             let last = i + 1 == count as u64;
             let to = if last { time } else { from + span * ((i + 1) as f64 / count) };
-            // The difference of the rounded times, so that the steps add up to the time.
-            let (next, _) = self.step(&walk.at, to, walk.fastest, pass)?;
-            self.arrive(walk, next, pass, done)?;
-            if walk.ended {
+            // Differences of rounded times add up to the time.
+            let (next, _) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
+            self.arrive(cursor, next, sweep, done)?;
+            if cursor.ended {
                 break;
             }
         }
@@ -249,22 +260,22 @@ impl Walker<'_> {
 
     fn adapted_steps(
         &mut self,
-        walk: &mut Walk,
+        cursor: &mut Cursor,
         time: f64,
         tolerance: f64,
-        pass: &mut Pass,
+        sweep: &mut Sweep,
         done: Done,
     ) -> Result<(), SimulateError> {
-        while walk.at.phase.time != time && !walk.ended {
-            let from = walk.at.phase.time;
-            let to = walk.stride.end(from, time)?;
-            let (next, error) = self.step(&walk.at, to, walk.fastest, pass)?;
-            if walk.stride.judge(to - from, error / tolerance) {
-                pass.longest = pass.longest.max((to - from).abs());
-                pass.errors += error;
-                self.arrive(walk, next, pass, done)?;
+        while cursor.at.phase.time != time && !cursor.ended {
+            let from = cursor.at.phase.time;
+            let to = cursor.controller.end(from, time)?;
+            let (next, error) = self.step(&cursor.at, to, cursor.fastest, sweep)?;
+            if cursor.controller.judge(to - from, error / tolerance) {
+                sweep.longest = sweep.longest.max((to - from).abs());
+                sweep.errors += error;
+                self.arrive(cursor, next, sweep, done)?;
                 let turn = self.body.omega(next.phase.momentum).norm() * (to - from);
-                self.limit.check(pass.steps, to - from, turn, || done(to))?;
+                self.limit.check(sweep.steps, to - from, turn, || done(to))?;
             }
         }
         Ok(())
@@ -276,9 +287,9 @@ impl Walker<'_> {
         at: &Carried,
         time: f64,
         fastest: f64,
-        pass: &mut Pass,
+        sweep: &mut Sweep,
     ) -> Result<(Carried, f64), SimulateError> {
-        pass.evaluations += self.engine.evaluations();
+        sweep.evaluations += self.engine.evaluations();
         let (mut next, error) = self.engine.step(at, time - at.phase.time, fastest)?;
         next.phase.time = time;
         if let Some(fall) = &self.fall {
@@ -287,30 +298,30 @@ impl Walker<'_> {
         Ok((next, error))
     }
 
-    /// Takes a step, up to an event that ends the motion.
+    /// Completes an accepted step, up to an event that ends the motion.
     fn arrive(
         &mut self,
-        walk: &mut Walk,
+        cursor: &mut Cursor,
         mut next: Carried,
-        pass: &mut Pass,
+        sweep: &mut Sweep,
         done: Done,
     ) -> Result<(), SimulateError> {
-        pass.steps += 1;
+        sweep.steps += 1;
         let time = next.phase.time;
         if !is_finite(&next) {
             return Err(SimulateError::Diverged { time });
         }
         if !self.events.is_empty() {
-            next = self.look_for_events(walk, next, pass)?;
+            next = self.look_for_events(cursor, next, sweep)?;
         }
         self.watch.look(&next.phase);
-        walk.fastest = walk.fastest.max(self.body.omega(next.phase.momentum).norm());
-        walk.at = match &mut self.noise {
+        cursor.fastest = cursor.fastest.max(self.body.omega(next.phase.momentum).norm());
+        cursor.at = match &mut self.noise {
             Some(noise) => noise.shake(&next),
             None => next,
         };
-        pass.meet(walk.fastest, &walk.at.center);
-        if pass.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
+        sweep.meet(cursor.fastest, &cursor.at.center);
+        if sweep.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
             let fraction = done(time).min(1.0);
             if !(self.progress)(Progress { pass: self.number, fraction }) {
                 return Err(SimulateError::Interrupted);
@@ -319,53 +330,53 @@ impl Walker<'_> {
         Ok(())
     }
 
-    /// The events between the point of the walk and the next, and where it ends: there, or at an event.
+    /// Finds the events within a step. Returns its end, or the event that ends the motion.
     ///
-    /// A point within a step is a shorter step from its start. A step may be a good part of a turn long: it is looked at
-    /// in pairs of pieces of less than [`LOOK`] rad, and where three values in a row hint at a dip to zero, there too.
+    /// A point within a step is computed by a shorter step. A step may be a good part of a turn: events are evaluated at
+    /// pairs of pieces of less than [`LOOK`] rad, and at a minimum suggested by three values in a row.
     fn look_for_events(
         &self,
-        walk: &mut Walk,
+        cursor: &mut Cursor,
         next: Carried,
-        pass: &mut Pass,
+        sweep: &mut Sweep,
     ) -> Result<Carried, SimulateError> {
-        let start = walk.at;
+        let start = cursor.at;
         let (from, h) = (start.phase.time, next.phase.time - start.phase.time);
-        let halves = 2 * self.pairs(walk, &next);
-        let mut before = (from, std::mem::take(&mut walk.values));
+        let halves = 2 * self.pairs(cursor, &next);
+        let mut before = (from, std::mem::take(&mut cursor.values));
         for half in (2..=halves).step_by(2) {
             let [middle, after] = [half - 1, half].map(|k| from + h * (k as f64 / halves as f64));
-            let middle = (middle, self.values(&self.within(&start, middle, walk, pass)?)?);
+            let middle = (middle, self.values(&self.within(&start, middle, cursor, sweep)?)?);
             let after = if half == halves {
                 (next.phase.time, self.values(&next)?)
             } else {
-                (after, self.values(&self.within(&start, after, walk, pass)?)?)
+                (after, self.values(&self.within(&start, after, cursor, sweep)?)?)
             };
             let mut found = Vec::new();
             for k in 0..self.events.len() {
                 let looks = [&before, &middle, &after].map(|(time, values)| (*time, values[k]));
-                self.crossings(k, looks, walk, pass, &mut found)?;
+                self.crossings(k, looks, cursor, sweep, &mut found)?;
             }
             found.sort_by(|a, b| (a.at.phase.time * h.signum()).total_cmp(&(b.at.phase.time * h.signum())));
             for happened in found {
-                pass.events.push(happened);
+                sweep.events.push(happened);
                 if self.events[happened.event].terminal {
-                    walk.ended = true;
+                    cursor.ended = true;
                     return Ok(happened.at);
                 }
             }
             before = after;
         }
-        walk.values = before.1;
+        cursor.values = before.1;
         Ok(next)
     }
 
-    /// How many pairs of pieces a step is looked at in.
-    fn pairs(&self, walk: &Walk, next: &Carried) -> u64 {
-        let h = next.phase.time - walk.at.phase.time;
-        let turn = self.body.omega(next.phase.momentum).norm().max(walk.fastest) * h.abs();
-        // By how much the velocity turns, and how far the way leaves the tangent. A parabola shows in three looks.
-        let (a, b) = (walk.at.center, next.center);
+    /// Number of pairs of pieces into which a step is divided for events.
+    fn pairs(&self, cursor: &Cursor, next: &Carried) -> u64 {
+        let h = next.phase.time - cursor.at.phase.time;
+        let turn = self.body.omega(next.phase.momentum).norm().max(cursor.fastest) * h.abs();
+        // How far the velocity turns, and the path leaves its tangent. Three values resolve a parabola.
+        let (a, b) = (cursor.at.center, next.center);
         let speed = a.velocity.norm().max(b.velocity.norm());
         let bend = if self.fall.is_some() || speed == 0.0 {
             0.0
@@ -376,17 +387,17 @@ impl Walker<'_> {
         (turn.max(bend) / (2.0 * LOOK)).ceil().clamp(1.0, 1e4) as u64
     }
 
-    /// Where an event happens between three looks, its times with its values there.
+    /// Finds the zeros of an event between three evaluations, pairs of time and value.
     fn crossings(
         &self,
         event: usize,
         looks: [(f64, f64); 3],
-        walk: &Walk,
-        pass: &mut Pass,
+        cursor: &Cursor,
+        sweep: &mut Sweep,
         found: &mut Vec<Happened>,
     ) -> Result<(), SimulateError> {
         let wanted = self.events[event].direction;
-        let mut value = |time: f64| self.value(event, &self.within(&walk.at, time, walk, pass)?);
+        let mut value = |time: f64| self.value(event, &self.within(&cursor.at, time, cursor, sweep)?);
         let mut looks = looks.to_vec();
         if let Some(lowest) = dip([looks[0], looks[1], looks[2]], &mut value)? {
             let between = if (lowest.0 - looks[1].0) * (looks[2].0 - looks[1].0) > 0.0 { 2 } else { 1 };
@@ -401,15 +412,15 @@ impl Walker<'_> {
             }
             let least = 2.0 * f64::EPSILON * low.abs().max(high.abs());
             let time = root((low, high), (at_low, at_high), least, &mut value)?;
-            // A zero at the start that rounding has moved off it.
+            // Skip a zero at the start that rounding has shifted.
             let since = (time - self.origin).abs();
             let rounding = ROUNDING_OF_START * (high - low).abs() + 4.0 * f64::EPSILON * self.origin.abs();
-            if walk.at.phase.time != self.origin || since > rounding {
+            if cursor.at.phase.time != self.origin || since > rounding {
                 times.push((direction, time));
             }
         }
         for (direction, time) in times {
-            found.push(Happened { event, direction, at: self.within(&walk.at, time, walk, pass)? });
+            found.push(Happened { event, direction, at: self.within(&cursor.at, time, cursor, sweep)? });
         }
         Ok(())
     }
@@ -419,10 +430,14 @@ impl Walker<'_> {
         &self,
         start: &Carried,
         time: f64,
-        walk: &Walk,
-        pass: &mut Pass,
+        cursor: &Cursor,
+        sweep: &mut Sweep,
     ) -> Result<Carried, SimulateError> {
-        if time == start.phase.time { Ok(*start) } else { Ok(self.step(start, time, walk.fastest, pass)?.0) }
+        if time == start.phase.time {
+            Ok(*start)
+        } else {
+            Ok(self.step(start, time, cursor.fastest, sweep)?.0)
+        }
     }
 
     fn values(&self, at: &Carried) -> Result<Vec<f64>, SimulateError> {

@@ -1,10 +1,10 @@
-//! A point of a motion as steps carry it on.
+//! Carried: a point of a motion with the state that steps carry.
 
 use super::center::Center;
 use super::phase::Phase;
 use polhode_ga::Bivector;
 
-/// A point of the motion as the steps carry it.
+/// A point of the motion with the data that steps carry.
 #[derive(Clone, Copy, Debug)]
 pub struct Carried {
     /// The point.
@@ -13,7 +13,7 @@ pub struct Carried {
     pub momentum_space: Bivector,
     /// The centre of mass, where forces move it.
     pub center: Center,
-    /// What rounding has left out of the momentum, a sum over all steps: that of the body or in space, as steps carry it.
+    /// Accumulated rounding of the momentum (Kahan), of the body or in space, as steps carry it.
     pub lost: Bivector,
 }
 

@@ -2,7 +2,7 @@
 
 use polhode_ga::Vector;
 
-/// The centre of mass in space: m and m/s.
+/// Position and velocity of the centre of mass in space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Center {
     /// In m.

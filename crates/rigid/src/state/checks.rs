@@ -1,8 +1,8 @@
-//! Checks that motions of every kind make.
+//! Checks of inertia, times and horizons.
 
 use crate::error::SimulateError;
 
-/// Times must not lie beyond the horizons, backwards and forwards, of an exact motion that starts at time 0.
+/// Checks times against the horizons, backwards and forwards, of an exact motion that starts at time 0.
 pub fn check_horizons(times: &[f64], horizons: [f64; 2]) -> Result<(), SimulateError> {
     check_horizons_from(0.0, times, horizons)
 }
@@ -23,7 +23,7 @@ pub(crate) fn check_horizons_from(
     }
 }
 
-/// Moments must be positive to turn momentum into rate.
+/// Checks that the moments are positive, so that the momentum determines the rate.
 pub(crate) fn check_moments(moments: [f64; 3]) -> Result<(), SimulateError> {
     if moments.iter().all(|i| *i > 0.0 && i.is_finite()) {
         return Ok(());

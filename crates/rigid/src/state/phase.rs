@@ -1,10 +1,10 @@
-//! A body in its principal axes, and a point of its motion.
+//! Gyrostat and Phase: a body in principal axes, and its rotational state.
 
 use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 
 /// A body in its principal axes, with a wheel inside whose momentum relative to the body is constant (a gyrostat;
-/// no wheel is a wheel of no momentum). Its angular momentum is `m = I(Ω) + h`.
+/// zero without a wheel). Its angular momentum is `m = I(Ω) + h`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyrostat {
     /// Principal moments, wheel included, in kg m²; positive.
@@ -25,7 +25,7 @@ pub struct Phase {
 }
 
 impl Phase {
-    /// `γ = ~R e3 R`: what is vertical in space, seen from the body.
+    /// `γ = ~R e3 R`: the vertical of space in body axes.
     #[inline]
     pub fn vertical(&self) -> Vector {
         Vector(One::alone(vertical(&One::each(self.rotor.components()))))
@@ -53,7 +53,7 @@ impl Gyrostat {
         Bivector([0, 1, 2].map(|k| (momentum.0[k] - self.wheel.0[k]) / self.moments[k]))
     }
 
-    /// `½ Ω·I(Ω)`, in J; of the wheel only what turns with the body.
+    /// `½ Ω·I(Ω)`, in J; without the wheel's relative rotation.
     pub fn kinetic(&self, momentum: Bivector) -> f64 {
         let term = |k: usize| {
             let carried = momentum.0[k] - self.wheel.0[k];
@@ -75,7 +75,7 @@ impl Gyrostat {
     }
 }
 
-/// `γ = ~R e3 R`: what is vertical in space, seen from the body.
+/// `γ = ~R e3 R`: the vertical of space in body axes.
 #[inline(always)]
 pub(crate) fn vertical<const W: usize, const F: bool>([s, x, y, z]: &[Lanes<W, F>; 4]) -> [Lanes<W, F>; 3] {
     let (along, across) = (s.times_plus(*s, *z * *z), x.times_plus(*x, *y * *y));

@@ -1,4 +1,4 @@
-//! A point of a motion, as formulas, functions, forces and events see it.
+//! Point: the arguments of formulas, functions, forces and events.
 
 use super::center::Center;
 use super::phase::{Gyrostat, Phase};
@@ -7,12 +7,12 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use std::fmt;
 use std::sync::Arc;
 
-/// A body somewhere on its way, in principal axes.
+/// A point of a motion, in principal axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<'a> {
     /// The body.
     pub body: &'a Gyrostat,
-    /// Its mass in kg; NaN where nobody said it.
+    /// Its mass in kg; NaN where unknown.
     pub mass: f64,
     /// Attitude, momentum and time.
     pub phase: &'a Phase,
@@ -36,7 +36,7 @@ pub struct Seen {
 }
 
 impl Point<'_> {
-    /// The point for a user to whose axes `frame` leads from the principal ones.
+    /// The point in the user's axes, to which `frame` leads from the principal axes.
     pub fn seen(&self, frame: Rotor) -> Seen {
         Seen {
             time: self.phase.time,
@@ -50,7 +50,7 @@ impl Point<'_> {
 
 type Call<T> = dyn Fn(&Seen) -> Result<T, TorqueError> + Send + Sync;
 
-/// A quantity that only its caller knows: a force in space, or a number.
+/// A quantity given by a user's function: a force in space, or a number.
 #[derive(Clone)]
 pub struct Function<T> {
     call: Arc<Call<T>>,
@@ -59,7 +59,7 @@ pub struct Function<T> {
 }
 
 impl<T> Function<T> {
-    /// A function of what it sees in body axes and in space.
+    /// From a function of the point in body axes and in space.
     pub fn new(call: impl Fn(&Seen) -> Result<T, TorqueError> + Send + Sync + 'static) -> Function<T> {
         Function { call: Arc::new(call), frame: Rotor::IDENTITY }
     }

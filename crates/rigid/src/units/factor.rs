@@ -69,7 +69,7 @@ fn split_unit(text: &str) -> Result<(Unit, &str), Problem> {
         ("", None) => Err(Problem::Syntax("a unit is missing at the end".to_owned())),
         ("", Some(',')) => Err(Problem::Syntax("unexpected `,` (a decimal point is written `.`)".to_owned())),
         ("", Some('(' | ')')) => {
-            Err(Problem::Syntax("parentheses are not read (write `/` before each divisor)".to_owned()))
+            Err(Problem::Syntax("parentheses are not supported (write `/` before each divisor)".to_owned()))
         }
         ("", Some(c @ '0'..='9')) => {
             Err(Problem::Syntax(format!("unexpected `{c}` (a power is written `^{c}`)")))
@@ -103,7 +103,7 @@ pub fn split_power(text: &str) -> Result<(i32, &str), Problem> {
 fn power_of(digits: &str) -> Result<i32, Problem> {
     match digits.parse() {
         Ok(power @ 1..=9) => Ok(power),
-        _ => Err(Problem::Syntax("a power is a whole number from -9 to 9, not 0,".to_owned())),
+        _ => Err(Problem::Syntax("a power must be a whole number from -9 to 9 and not 0".to_owned())),
     }
 }
 

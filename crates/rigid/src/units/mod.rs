@@ -1,10 +1,10 @@
-//! Quantities as people write them: `5 rev/s`, `12 deg`, `7.85 g/cm^3`, `3 kg·m²`.
+//! Quantities with units: `5 rev/s`, `12 deg`, `7.85 g/cm^3`, `3 kg·m²`.
 //!
 //! A quantity is a number and unit factors, joined by a space, `*`, `·` or `/`; `/` divides by the one
 //! factor after it; a factor may carry a power: `s^-2`, `s**2`, `s²`. The value comes out in SI units.
 //!
-//! Angle is no SI dimension, since a radian is 1. Here it is kept as a dimension beside length, mass, time
-//! and current, because a rate of `5 1/s` may mean 5 rad/s or 5 turns per second: we ask.
+//! In SI a radian is 1. Here angle is a dimension like length, mass, time and current, because a rate of `5 1/s`
+//! may mean 5 rad/s or 5 turns per second, and is an error.
 //!
 //! Powers of ten (prefixes, grams, centimetres) never touch floating point: they move the decimal
 //! exponent of the number's text, so that `7.85 g/cm^3` is exactly the `7850.0` of a source file.
@@ -93,7 +93,7 @@ impl Quantity {
         Quantity::Pressure,
     ];
 
-    /// Its unit in SI, which a bare number has; one value as a person might write it; its powers of metre,
+    /// Its unit in SI, which a bare number has; an example of a value; its powers of metre,
     /// kilogram, second, radian and ampere; and its name with the article.
     fn row(self) -> (&'static str, &'static str, [i32; 5], &'static str) {
         match self {
@@ -135,12 +135,12 @@ impl Quantity {
         self.row().0
     }
 
-    /// One such value as a person might write it.
+    /// An example of a value.
     pub fn example(self) -> &'static str {
         self.row().1
     }
 
-    /// Whether a value of this dimension is one: what is per angle may be so in words, `N m/rad`, or not.
+    /// Whether a dimension is that of the quantity; `/rad` is optional where the quantity is per angle.
     fn measures(self, dimension: Dimension) -> bool {
         let own = self.row().2;
         let [.., angle, _] = dimension.0;
@@ -161,7 +161,7 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Why a text is no such quantity. The text is the whole of what was written.
+/// Why a text is not a quantity. `text` is the complete text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum UnitError {
@@ -169,11 +169,11 @@ pub enum UnitError {
     NoNumber { text: String, expected: Quantity },
     /// A number alone.
     NoUnit { text: String, expected: Quantity },
-    /// A name that is no unit, and the unit it may stand for.
+    /// An unknown unit, and a similar one.
     UnknownUnit { text: String, unit: String, near: Option<&'static str>, expected: Quantity },
-    /// It measures something else, `found` with its article.
+    /// Another quantity; `found` has an article.
     WrongQuantity { text: String, found: &'static str, expected: Quantity },
-    /// The units are not written as units are.
+    /// A syntax error in the units.
     Syntax { text: String, problem: String },
     /// The value is beyond the range of floating point.
     Overflow { text: String },
@@ -240,12 +240,12 @@ pub fn parse_unit(unit: &str, expected: Quantity) -> Result<f64, UnitError> {
     value(unit, &Number { mantissa: "1".to_owned(), exponent: 0 }, factor(unit, unit.trim(), expected)?)
 }
 
-/// The unit that a word is, `deg`, or that it may stand for, as `degrees` does.
+/// The unit of a word, such as `deg`, or a similar unit, as for `degrees`.
 pub fn near(word: &str) -> Option<String> {
     find_unit(word).map_or_else(|| near_unit(word).map(str::to_owned), |_| Some(word.to_owned()))
 }
 
-/// The unit that stands in `text`, if it measures what is expected.
+/// The factor of the unit in `text`, if it has the expected dimension.
 fn factor(text: &str, unit: &str, expected: Quantity) -> Result<Factor, UnitError> {
     let text = text.to_owned();
     match Factor::parse(unit) {

@@ -1,4 +1,4 @@
-//! The units: their names, their dimensions and what they are in SI.
+//! Table of units: names, dimensions and SI factors.
 
 use polhode_ga::diagnostic::nearest;
 use std::f64::consts::{PI, TAU};

@@ -163,11 +163,11 @@ fn units_that_are_not_written_as_units_are() {
         ("5 m/", "a unit is missing at the end in `5 m/`"),
         ("5 m*/s", "unexpected `/` in `5 m*/s`"),
         ("5 m2", "unexpected `2` (a power is written `^2`) in `5 m2`"),
-        ("5 m^", "a power is a whole number from -9 to 9, not 0, in `5 m^`"),
-        ("5 m^0", "a power is a whole number from -9 to 9, not 0, in `5 m^0`"),
-        ("5 m^99999999999", "a power is a whole number from -9 to 9, not 0, in `5 m^99999999999`"),
-        ("5 m⁻", "a power is a whole number from -9 to 9, not 0, in `5 m⁻`"),
-        ("5 J/(kg m)", "parentheses are not read (write `/` before each divisor) in `5 J/(kg m)`"),
+        ("5 m^", "a power must be a whole number from -9 to 9 and not 0 in `5 m^`"),
+        ("5 m^0", "a power must be a whole number from -9 to 9 and not 0 in `5 m^0`"),
+        ("5 m^99999999999", "a power must be a whole number from -9 to 9 and not 0 in `5 m^99999999999`"),
+        ("5 m⁻", "a power must be a whole number from -9 to 9 and not 0 in `5 m⁻`"),
+        ("5 J/(kg m)", "parentheses are not supported (write `/` before each divisor) in `5 J/(kg m)`"),
         ("5 m 6", "unexpected `6` (a power is written `^6`) in `5 m 6`"),
     ];
     for (text, message) in table {
@@ -286,7 +286,7 @@ fn what_has_two_readings_within_a_formula_is_refused() {
         ("1/2 rev", "`/` before a quantity has two readings; put brackets around `2 rev`"),
         ("2e1 kg", "`2e1` has two readings; write `2e+1` for the number, `2 e1` for the product"),
         (" -2e1 ", "`2e1` has two readings; write `2e+1` for the number, `2 e1` for the product"),
-        ("5 kg^10", "a power is a whole number from -9 to 9, not 0, after the unit `kg`"),
+        ("5 kg^10", "a power must be a whole number from -9 to 9 and not 0 after the unit `kg`"),
         ("1e400 kg", "`1e400 kg` is beyond the range of floating point, about 1.8e308"),
     ];
     for (text, message) in table {

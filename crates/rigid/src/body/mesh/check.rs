@@ -1,4 +1,4 @@
-//! What a mesh must be to enclose a volume.
+//! Checks that a mesh encloses a volume.
 //!
 //! Its boundary must vanish: along every edge as many triangles run one way as the other. Two triangles
 //! at each edge, in opposite directions, is the usual case; two bodies that touch along an edge have
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 /// Extents in this range keep fifth powers of lengths, down to 1e-10 of the extent, in range.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
 
-/// Finite vertices, not too many, and indices that have one.
+/// Checks the number of vertices, that they are finite, and the indices.
 pub(super) fn numbers(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), MeshProblem> {
     let count = vertices.len().max(faces.len());
     if u32::try_from(count).is_err() {
@@ -46,7 +46,7 @@ pub(super) fn middle(mesh: &TriangleMesh) -> Vector {
     bounds(mesh).map_or(Vector::default(), |(least, greatest)| least * 0.5 + greatest * 0.5)
 }
 
-/// Some triangles, of a size that can be computed with.
+/// Checks that there are triangles, of a supported extent.
 pub(super) fn size(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     let (least, greatest) = bounds(mesh).ok_or(MeshProblem::NoTriangles)?;
     let extent = (greatest - least).norm();
@@ -54,7 +54,7 @@ pub(super) fn size(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     if extent == 0.0 || EXTENTS.contains(&extent) { Ok(()) } else { Err(MeshProblem::Extent(extent)) }
 }
 
-/// No triangle without area.
+/// Checks that every triangle has an area.
 pub(super) fn triangles(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     let corners = |face: &[u32; 3]| face.map(|i| mesh.vertices[i as usize]);
     let mut flat = mesh.faces.iter().map(corners).enumerate().filter(|(_, c)| is_flat(*c));
@@ -77,7 +77,7 @@ fn is_flat([a, b, c]: [Vector; 3]) -> bool {
     })
 }
 
-/// No triangle twice, with the same corners in the same sense. (The walls of two bodies that touch have the
+/// Checks that no triangle is repeated, with the same corners in the same sense. (The walls of two bodies that touch have the
 /// same corners in opposite senses.)
 pub(super) fn repetitions(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     let mut welder = Welder::default();
@@ -112,7 +112,7 @@ struct Side {
     upward: bool,
 }
 
-/// How many edges have one fault, and the first.
+/// Number of edges with a fault, and the first.
 struct Fault<T> {
     count: usize,
     first: Option<(u32, T)>,
@@ -129,7 +129,7 @@ impl<T> Fault<T> {
     }
 }
 
-/// Every edge runs as often one way as the other.
+/// Checks that every edge is traversed equally often in both directions.
 pub(super) fn edges(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     let (sides, welder) = sides(mesh);
     let (mut open, mut winding, mut tangle) = (Fault::NONE, Fault::NONE, Fault::NONE);
@@ -176,7 +176,7 @@ fn sides(mesh: &TriangleMesh) -> (Vec<Side>, Welder) {
     (sides, welder)
 }
 
-/// A volume, and on the inside.
+/// Checks that the volume is positive.
 pub(super) fn volume(integrals: &Integrals) -> Result<(), MeshProblem> {
     let volume = integrals.volume;
     if volume.abs() <= integrals.rounding {

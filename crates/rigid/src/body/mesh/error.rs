@@ -1,19 +1,19 @@
-//! What can be wrong with a mesh or its file.
+//! Errors of meshes and mesh files.
 
 use crate::error::BodyError;
 use polhode_ga::Vector;
 use std::fmt;
 
-/// What is wrong with which mesh.
+/// An error of a mesh, with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshError {
     /// The file's path, or "mesh".
     pub name: String,
-    /// What is wrong with it.
+    /// The error.
     pub problem: MeshProblem,
 }
 
-/// Where in a file.
+/// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A line of a text file, from 1.
@@ -22,118 +22,51 @@ pub enum Place {
     Byte(usize),
 }
 
-/// What is wrong with a mesh or its file. Triangles and vertices are counted from 0.
+/// Errors of a mesh or its file. Triangles and vertices are counted from 0.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
 pub enum MeshProblem {
-    /// The file cannot be read; the system's reason.
+    /// The file cannot be read, with the reason given by the system.
     Unreadable(String),
     /// The file has no bytes.
     Empty,
-    /// The extension names no format that is read.
+    /// The extension of an unsupported format.
     UnknownExtension(String),
-    /// Something else than the format asks for.
-    Corrupt {
-        /// Where.
-        place: Place,
-        /// What is there and what should be.
-        what: String,
-    },
+    /// A violation of the format.
+    Corrupt { place: Place, what: String },
     /// The file ends too early.
-    Truncated {
-        /// The end.
-        place: Place,
-        /// What is missing.
-        what: String,
-    },
-    /// No triangle to enclose anything.
+    Truncated { place: Place, what: String },
+    /// No triangles.
     NoTriangles,
     /// A coordinate that is NaN or infinite.
-    NotFinite {
-        /// Which vertex of the file, from 0.
-        vertex: usize,
-        /// Its coordinates.
-        position: Vector,
-        /// Where it is in the file, if it is from one.
-        place: Option<Place>,
-    },
-    /// More vertices or triangles than can be numbered.
-    TooMany {
-        /// How many there are of the one of which there are more.
-        count: usize,
-    },
-    /// A triangle refers to a vertex that is not there.
-    NoSuchVertex {
-        /// Which triangle, from 0.
-        triangle: usize,
-        /// The index it has.
-        index: u32,
-        /// How many vertices there are.
-        vertices: usize,
-    },
+    NotFinite { vertex: usize, position: Vector, place: Option<Place> },
+    /// More vertices or triangles than an index can count.
+    TooMany { count: usize },
+    /// A triangle refers to a vertex that does not exist.
+    NoSuchVertex { triangle: usize, index: u32, vertices: usize },
     /// A scale factor that is zero, negative or not finite.
     Factor(f64),
-    /// An extent with which the integrals would leave the range of floating point.
+    /// An extent for which the integrals exceed the range of floating point.
     Extent(f64),
-    /// Triangles with two corners at the same place, or all in a line.
-    Degenerate {
-        /// How many.
-        count: usize,
-        /// The first of them.
-        triangle: usize,
-        /// Its corners.
-        corners: [Vector; 3],
-    },
-    /// Triangles that are there twice: the body would count twice.
-    Repeated {
-        /// How many.
-        count: usize,
-        /// The first of them.
-        triangle: usize,
-        /// The one that it repeats.
-        original: usize,
-    },
-    /// Edges with a triangle on one side only.
-    Open {
-        /// How many.
-        count: usize,
-        /// The first in the order of the triangles.
-        edge: Edge,
-    },
-    /// Edges that two triangles run along in the same direction.
-    Winding {
-        /// How many.
-        count: usize,
-        /// The first in the order of the triangles.
-        edge: Edge,
-        /// The other triangle.
-        other: usize,
-    },
-    /// Edges of three or more triangles that run unequally often in the two directions.
-    NonManifold {
-        /// How many.
-        count: usize,
-        /// The first in the order of the triangles.
-        edge: Edge,
-        /// How many triangles run along it in its direction.
-        along: usize,
-        /// How many run against it.
-        against: usize,
-    },
+    /// Triangles with coincident or collinear corners.
+    Degenerate { count: usize, triangle: usize, corners: [Vector; 3] },
+    /// Duplicate triangles, which the integrals would count twice.
+    Repeated { count: usize, triangle: usize, original: usize },
+    /// Edges of one triangle only.
+    Open { count: usize, edge: Edge },
+    /// Edges that two triangles traverse in the same direction.
+    Winding { count: usize, edge: Edge, other: usize },
+    /// Edges of three or more triangles, traversed unequally often in the two directions.
+    NonManifold { count: usize, edge: Edge, along: usize, against: usize },
     /// The enclosed volume is zero to rounding.
-    NoVolume {
-        /// What comes out.
-        volume: f64,
-    },
+    NoVolume { volume: f64 },
     /// The faces are wound inwards.
-    InsideOut {
-        /// The negative volume.
-        volume: f64,
-    },
-    /// The mass or the moments are impossible.
+    InsideOut { volume: f64 },
+    /// The mass or the moments are invalid.
     Body(BodyError),
 }
 
-/// An edge of a triangle, in the direction in which the triangle runs along it.
+/// An edge of a triangle, in the direction in which the triangle traverses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// Where it starts.
@@ -150,7 +83,7 @@ impl From<BodyError> for MeshProblem {
     }
 }
 
-/// A position as a person reads it.
+/// A position in messages.
 struct Point(Vector);
 
 impl fmt::Display for Point {
@@ -192,18 +125,17 @@ impl fmt::Display for MeshProblem {
         match self {
             MeshProblem::Unreadable(reason) => write!(f, "cannot be read: {reason}; check the path"),
             MeshProblem::Empty => write!(f, "the file is empty; export the mesh again"),
-            MeshProblem::UnknownExtension(extension) => write!(
-                f,
-                "the extension '{extension}' is none of stl, obj, ply; convert the mesh to one of these"
-            ),
+            MeshProblem::UnknownExtension(extension) => {
+                write!(f, "unknown extension '{extension}', expected stl, obj or ply; convert the mesh")
+            }
             MeshProblem::Corrupt { place, what } => {
                 write!(f, "{place}: {what}; correct it or export the mesh again")
             }
             MeshProblem::Truncated { place, what } => {
-                write!(f, "{place}: the file ends early, {what}; copy or export it again")
+                write!(f, "{place}: the file is truncated, {what}; copy or export it again")
             }
             MeshProblem::NoTriangles => {
-                write!(f, "there are no triangles; a body needs a closed surface of them")
+                write!(f, "the mesh has no triangles; a body needs a closed surface")
             }
             MeshProblem::NotFinite { vertex, position, place } => {
                 if let Some(place) = place {
@@ -215,20 +147,19 @@ impl fmt::Display for MeshProblem {
                     "vertex {vertex} (counted from 0) at {position} is not finite; correct its coordinates"
                 )
             }
-            MeshProblem::TooMany { count } => write!(
-                f,
-                "{count} vertices or triangles are more than the 4294967295 that can be numbered; simplify the mesh"
-            ),
+            MeshProblem::TooMany { count } => {
+                write!(f, "{count} vertices or triangles exceed the limit of 4294967295; simplify the mesh")
+            }
             MeshProblem::NoSuchVertex { triangle, index, vertices } => write!(
                 f,
-                "triangle {triangle} (counted from 0) has the vertex {index}, but there are only {vertices}, counted from 0; correct the index"
+                "triangle {triangle} (counted from 0) refers to vertex {index}, but there are {vertices} vertices, counted from 0; correct the index"
             ),
             MeshProblem::Factor(factor) => {
-                write!(f, "a scale factor of {factor:?} is impossible; give a positive, finite one")
+                write!(f, "scale must be positive and finite, got {factor:?}")
             }
             MeshProblem::Extent(extent) => write!(
                 f,
-                "the mesh is {extent:?} m across, beyond the range of the integrals (1e-50 to 1e50); check the unit"
+                "the mesh extends over {extent:?} m, outside the supported range of 1e-50 to 1e50 m; check the unit"
             ),
             MeshProblem::Degenerate { count, triangle, corners: [a, b, c] } => write!(
                 f,
@@ -241,12 +172,12 @@ impl fmt::Display for MeshProblem {
             ),
             MeshProblem::Repeated { count, triangle, original } => write!(
                 f,
-                "{count} repeated {}, the first is triangle {triangle} (counted from 0), which is triangle {original} again; remove the copies",
+                "{count} repeated {}, the first is triangle {triangle} (counted from 0), a copy of triangle {original}; remove the copies",
                 if *count == 1 { "triangle" } else { "triangles" },
             ),
             MeshProblem::Open { count, edge } => write!(
                 f,
-                "the mesh is open: {} with a triangle on one side only, the first {edge}; close the holes",
+                "the mesh is open: {} of one triangle only, the first {edge}; close the holes",
                 edges(*count)
             ),
             MeshProblem::Winding { count, edge, other } => write!(
@@ -256,12 +187,12 @@ impl fmt::Display for MeshProblem {
             ),
             MeshProblem::NonManifold { count, edge, along, against } => write!(
                 f,
-                "the mesh is not a closed surface: {} of three or more triangles traversed unequally often in the two directions, the first {edge}, {along} times this way and {against} times back; remove the extra faces or reorient them",
+                "the mesh is not a closed surface: {} of three or more triangles traversed unequally often in the two directions, the first {edge}, {along} times in this direction and {against} times in the other; remove the extra faces or reorient them",
                 edges(*count)
             ),
             MeshProblem::NoVolume { volume } => write!(
                 f,
-                "the enclosed volume is zero to rounding ({volume:e} m³); give the surface an inside"
+                "the enclosed volume is zero to rounding ({volume:e} m³); the mesh must enclose a volume"
             ),
             MeshProblem::InsideOut { volume } => write!(
                 f,
@@ -272,7 +203,7 @@ impl fmt::Display for MeshProblem {
                 | BodyError::NegativeMoment { moments: [a, b, c], .. },
             ) => write!(
                 f,
-                "the moments come out as {a:?}, {b:?}, {c:?} kg m², which no body has: a part is inside-out or parts overlap; reverse the faces of that part or unite the parts"
+                "no body has the moments {a:?}, {b:?}, {c:?} kg m²: a part is inside-out or parts overlap; reverse the faces of that part or merge the parts"
             ),
             MeshProblem::Body(e) => write!(f, "{e}"),
         }

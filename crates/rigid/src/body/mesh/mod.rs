@@ -1,9 +1,9 @@
-//! Triangle meshes: the surface of a body, from a file to its mass, centre of mass and inertia.
+//! Triangle meshes: reading, checks, and mass, centre of mass and inertia.
 //!
 //! The faces go counterclockwise seen from outside. An integral over the body is then a sum over the
 //! tetrahedra that the triangles make with any one point, those facing it from behind counting negative;
-//! cavities, wound the other way, take themselves out. What does not enclose a volume in this sense has
-//! no mass, so [`TriangleMesh::body`] checks that first and says what is wrong and where.
+//! cavities, wound the other way, take themselves out. [`TriangleMesh::body`] checks first that
+//! the mesh encloses a volume in this sense, and reports what is wrong and where.
 //!
 //! Files: STL, OBJ, PLY ([`MeshFormat`]).
 
@@ -25,7 +25,7 @@ use polhode_ga::Vector;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The file formats that are read.
+/// Supported file formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFormat {
     /// STL, text or binary.
@@ -49,8 +49,8 @@ impl MeshFormat {
 }
 
 /// Vertices and the triangles between them, counterclockwise seen from outside. The vertices are finite
-/// and every triangle refers to vertices that exist; whether the surface is closed is asked by
-/// [`TriangleMesh::body`].
+/// and every triangle refers to vertices that exist; [`TriangleMesh::body`] checks that the
+/// surface is closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleMesh {
     name: String,
@@ -135,13 +135,13 @@ impl TriangleMesh {
         self
     }
 
-    /// The enclosed volume, negative where the faces are wound inwards. Only of a closed mesh, which this
-    /// does not check, is it a volume.
+    /// The enclosed volume, negative where the faces are wound inwards. Meaningful for a
+    /// closed mesh only, which is not checked.
     pub fn volume(&self) -> f64 {
         integrals(self, check::middle(self)).volume
     }
 
-    /// The uniform body inside the mesh, or why there is none.
+    /// The uniform body inside the mesh; an error if the mesh is not valid.
     pub fn body(&self, amount: Amount) -> Result<Body, MeshError> {
         self.checked_body(amount).map_err(|problem| self.error(problem))
     }
@@ -172,7 +172,7 @@ impl TriangleMesh {
 /// What a file holds: positions, and triangles between them.
 type Parsed = (Vec<Vector>, Vec<[u32; 3]>);
 
-/// Gives vertices at the same coordinates the same number: seams close. `−0 = 0`.
+/// Merges vertices with equal coordinates, which closes seams. `−0 = 0`.
 #[derive(Default)]
 struct Welder {
     numbers: HashMap<[u64; 3], u32>,

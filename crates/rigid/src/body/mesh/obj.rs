@@ -56,7 +56,7 @@ impl File {
         let numbers = coordinates.iter().map(|word| number(word, place));
         let numbers = numbers.collect::<Result<Vec<f64>, MeshProblem>>()?;
         let &[x, y, z, ..] = numbers.as_slice() else {
-            return Err(corrupt(place, format!("a vertex with {} of 3 coordinates", numbers.len())));
+            return Err(corrupt(place, format!("a vertex needs 3 coordinates, got {}", numbers.len())));
         };
         self.vertices.push(finite([x, y, z], self.vertices.len(), place)?);
         Ok(())
@@ -64,7 +64,7 @@ impl File {
 
     fn face(&mut self, corners: &[&[u8]], line: usize) -> Result<(), MeshProblem> {
         if corners.len() < 3 {
-            let what = format!("a face with {} of at least 3 corners", corners.len());
+            let what = format!("a face needs at least 3 corners, got {}", corners.len());
             return Err(corrupt(Place::Line(line), what));
         }
         let corners = corners.iter().map(|word| self.index(word, line));
@@ -82,8 +82,7 @@ impl File {
         let vertex = parts.next().and_then(integer);
         let others = parts.clone().count() <= 2 && parts.all(|p| p.is_empty() || integer(p).is_some());
         let Some(vertex) = vertex.filter(|_| others) else {
-            let what =
-                format!("{} is no corner of a face, which is like 7, 7/1, 7//1 or 7/1/1", quoted(word));
+            let what = format!("{} is not a corner of a face, such as 7, 7/1, 7//1 or 7/1/1", quoted(word));
             return Err(corrupt(place, what));
         };
         let index = match vertex {
@@ -107,6 +106,6 @@ impl File {
 }
 
 fn no_vertex(index: i64, vertices: usize, line: usize) -> MeshProblem {
-    let what = format!("there is no vertex {index}: vertices are numbered from 1, and there are {vertices}");
+    let what = format!("vertex {index} does not exist: there are {vertices} vertices, numbered from 1");
     corrupt(Place::Line(line), what)
 }

@@ -29,7 +29,7 @@ fn parse_binary(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
     let count = u32::from_le_bytes([a, b, c, d]);
     let expected = HEADER as u64 + RECORD as u64 * u64::from(count);
     if bytes[..HEADER].iter().all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace()) {
-        let what = "this text is no STL, which begins with 'solid', nor a binary one";
+        let what = "not an STL file: a text STL begins with 'solid', a binary one has zero bytes";
         return Err(corrupt(Place::Byte(0), what));
     }
     let what = format!("{count} triangles need {expected} bytes, but there are {}", bytes.len());
@@ -37,7 +37,7 @@ fn parse_binary(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
         return Err(MeshProblem::Truncated { place: end, what });
     }
     if bytes.len() as u64 > expected {
-        return Err(corrupt(Place::Byte(HEADER - 4), format!("the count is wrong: {what}")));
+        return Err(corrupt(Place::Byte(HEADER - 4), format!("wrong number of triangles: {what}")));
     }
     let mut welder = Welder::default();
     let mut faces = Vec::new();
@@ -144,10 +144,10 @@ impl<'a> Words<'a> {
     }
 
     fn unexpected(&self, word: &[u8], wanted: &str) -> MeshProblem {
-        corrupt(self.place(), format!("{} stands where {wanted} should", quoted(word)))
+        corrupt(self.place(), format!("expected {wanted}, got {}", quoted(word)))
     }
 
     fn truncated(&self, wanted: &str) -> MeshProblem {
-        MeshProblem::Truncated { place: self.place(), what: format!("{wanted} should follow") }
+        MeshProblem::Truncated { place: self.place(), what: format!("expected {wanted}") }
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn quoted(word: &[u8]) -> String {
 /// A word read as a number; infinities and NaN are numbers here.
 pub(super) fn number(word: &[u8], place: Place) -> Result<f64, MeshProblem> {
     let value = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
-    value.ok_or_else(|| corrupt(place, format!("{} is no number", quoted(word))))
+    value.ok_or_else(|| corrupt(place, format!("{} is not a number", quoted(word))))
 }
 
 /// The position of the file's given vertex, if it is finite.

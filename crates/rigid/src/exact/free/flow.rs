@@ -1,6 +1,6 @@
-//! States at any time: phases, series, and the frames between which they stand.
+//! States of a free motion at any time: phases, series and frames.
 //!
-//! A flow has coefficients of one motion, for any times in the lanes, or of `C` motions side by side, each for
+//! A flow has coefficients of one motion, for any times in the lanes, or of `C` motions in lanes, each for
 //! its own lane. The formulas are the same, and every number is that of the motion alone, to the last bit.
 
 use super::series::{Circular, Hyperbolic, Series, State};

@@ -1,4 +1,4 @@
-//! Free motions of many bodies, side by side in the lanes.
+//! Free motions of many bodies in SIMD lanes.
 //!
 //! One formula serves all bodies of a form, whatever their regime: steady rotation and symmetric tops are
 //! circular, the separatrix and what is near it hyperbolic. So the bodies are held in tiles, and of a tile those
@@ -42,7 +42,7 @@ pub struct Tile {
 #[derive(Clone, Debug)]
 struct Block<S> {
     flows: Flow<S, TOGETHER>,
-    /// Their places in the tile, rising.
+    /// Their places in the tile, ascending.
     places: [u16; TOGETHER],
     /// There may be fewer than lanes.
     count: usize,

@@ -1,4 +1,4 @@
-//! The torque-free top, exact at any time.
+//! Torque-free motion in closed form, exact at any time.
 //!
 //! In principal axes `E = ½ Σ i_k ω_k²` and `G² = Σ i_k² ω_k²` are constant, so the angular velocity
 //! runs along the intersection of two ellipsoids, the polhode. Name `c` the axis it encircles: that of
@@ -12,14 +12,14 @@
 //! λ² = (c−b)Q / (abc),  k² = (b−a)P / ((c−b)Q),  k'² = (c−a)D / ((c−b)Q)
 //! ```
 //!
-//! are formed in twice the precision, so that k' is known at the separatrix too. Then with `u = u0 + λt`
+//! are formed in double-double precision, so that k' is known at the separatrix too. Then with `u = u0 + λt`
 //!
 //! ```text
 //! ω = (A_a cn u, τ A_b sn u, σ A_c dn u),   A_a² = P/(a(c−a)),  A_b² = P/(b(c−b)),  A_c² = Q/(c(c−a)),
 //! ```
 //!
 //! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the axes' order (a, b, c). (On the
-//! separatrix cn is positive for ever; there A_a and τ take the sign of ω_a.)
+//! separatrix cn is positive always; there A_a and τ take the sign of ω_a.)
 //!
 //! **The rotor.** In the frame of `e1 = e_a`, `d = σ e_c` and `e2 = d x e1`, the momentum is
 //! `m = (a A_a cn, s b A_b sn, c A_c dn)`. Let the rotor `W(t)` carry m to `G d`, which stands for the fixed L:
@@ -68,7 +68,7 @@
 //! circular functions of γ times hyperbolic ones of x; the exponential joins the precession. On the separatrix
 //! itself one term is left, and ν is G/b.
 //!
-//! **Digits.** v and νt/2 are reduced in twice the precision, so that the error does not grow with time. All
+//! **Digits.** v and νt/2 are reduced in double-double precision, so that the error does not grow with time. All
 //! series are factors (sin v, sinh x, …) times sums of terms that fall fast, so that each component of ω keeps its
 //! own digits, as a needle needs; no angle turns fast as the wobble P vanishes, for none is computed. Limits need no
 //! care: equal moments give q = 0, and steady rotation is β = 0.

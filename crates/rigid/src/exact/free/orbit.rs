@@ -1,4 +1,4 @@
-//! What is known of a free motion at the start: invariants, periods and phases.
+//! Orbit of a free motion: invariants, periods and phases.
 
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::{first_kind, mean_and_sum, r_f};
@@ -43,7 +43,7 @@ impl Orbit {
     }
 }
 
-/// Moments and invariants in twice the precision, differences and all else positive. A needle's invariants, or those
+/// Moments and invariants in double-double precision, differences and all else positive. A needle's invariants, or those
 /// of a rotation that is all but steady, are beyond the range of floats.
 struct Invariants {
     a: Wide,

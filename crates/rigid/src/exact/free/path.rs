@@ -1,4 +1,4 @@
-//! The curves that the angular velocity draws: the polhode in the body, the herpolhode in space.
+//! Curves of the angular velocity: polhode in the body, herpolhode in space.
 
 use super::FreeMotion;
 use crate::error::SimulateError;

@@ -1,4 +1,4 @@
-//! How the angular velocity of a free motion changes with what it starts from.
+//! Derivatives of the angular velocity of a free motion by its start.
 //!
 //! Everything is a linear form in the six numbers (δω, δi), of the start and of the principal moments.
 //!

@@ -1,4 +1,4 @@
-//! States of a heavy top at any time: phases, series, and the frames between which they stand.
+//! States of a heavy top at any time: phases, series and frames.
 
 use super::series::{Series, State};
 use crate::numerics::lanes::{Phase, sin_cos_turns};

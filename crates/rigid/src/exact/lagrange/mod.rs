@@ -54,7 +54,7 @@
 //! **Digits.** The start is taken to twice the precision. Roots come in pairs on either side of a known number,
 //! r1 and r2 of u(0), r2 and r3 of 1: the product of the two distances and their difference are known, so that the sum
 //! cancels nothing (`orbit`). So k', r2 − r1 and the distances of all roots from ±1 keep their digits. All
-//! phases are reduced in twice the precision: the error does not grow with time.
+//! phases are reduced in double-double precision: the error does not grow with time.
 //!
 //! Klein & Sommerfeld, *Theorie des Kreisels* (1897–1910), ch. VI; Whittaker, *Analytical Dynamics* §72.
 

@@ -1,4 +1,4 @@
-//! What is known of a heavy top at the start: roots, periods, rates and phases.
+//! Orbit of a heavy top: roots, periods, rates and phases.
 //!
 //! Beside the vertical the roots differ from ±1, and from each other, by squares of the tilt: [`Wide`] numbers hold
 //! them, and no distance is formed as a difference of larger ones.
@@ -94,7 +94,7 @@ fn sign(x: Wide) -> f64 {
 }
 
 impl Orbit {
-    /// None if the roots could not be told from each other.
+    /// None if the roots are not resolved.
     pub fn new(start: &Start) -> Option<Orbit> {
         let Start { gravity, spin, below: w0, above: z0, g, w, .. } = *start;
         let two = Wide::from(2.0);

@@ -1,4 +1,4 @@
-//! What a heavy symmetric top starts with: its axes, and its state in twice the precision.
+//! Start of a heavy top: its axes, and its state in double-double precision.
 
 use crate::body::inertia::Inertia;
 use crate::body::inertia::{apart, equal};
@@ -153,7 +153,7 @@ impl Start {
         })
     }
 
-    /// Whether no torque acts and the axis of rotation is that of the top, for ever.
+    /// Whether no torque acts and the axis of rotation is that of the top, always.
     pub fn is_steady(&self) -> bool {
         let zero = |z: Complex| z[0].is_zero() && z[1].is_zero();
         zero(self.w) && (zero(self.g) || self.gravity.is_zero())

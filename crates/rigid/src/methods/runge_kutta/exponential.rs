@@ -1,4 +1,4 @@
-//! The exponential of a step's turn and the inverse of its differential.
+//! Exponential of a step's rotation and inverse of its differential.
 
 use polhode_ga::simd::lanes::Lanes;
 

@@ -47,7 +47,7 @@ type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     tableau: &Tableau,
     bodies: &Bodies<W, F>,
-    exert: &mut E,
+    forcing: &mut E,
     from: &Points<W, F>,
     h: Lanes<W, F>,
     fastest: Lanes<W, F>,
@@ -64,7 +64,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
             return (*from, nothing);
         }
         let dt = Lanes::all(tableau.nodes[stage]) * h;
-        slopes[stage] = slope(bodies, exert, from, &change, square, dt);
+        slopes[stage] = slope(bodies, forcing, from, &change, square, dt);
     }
     let change = combined(tableau.weights, &slopes, h);
     let mut to = moved(from, &change, h);
@@ -111,7 +111,7 @@ fn any_within<const W: usize, const F: bool>(square: &Lanes<W, F>) -> bool {
 #[inline(always)]
 fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     bodies: &Bodies<W, F>,
-    exert: &mut E,
+    forcing: &mut E,
     from: &Points<W, F>,
     change: &Change<N, W, F>,
     square: Lanes<W, F>,
@@ -134,7 +134,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
         slope[k] = cotangent.times_plus(second[k], straight);
     }
     if E::ACTS {
-        let mut torque = exert.torque(&place);
+        let mut torque = forcing.torque(&place);
         for k in 0..3 {
             let carried = momentum[k] - bodies.wheel[k];
             torque[k] = bodies.damping.times_from(carried, torque[k]);
@@ -144,7 +144,7 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     if N == 12 {
         // The place beside that of the uniform motion from the start of the step.
         slope[6..9].copy_from_slice(&part(change, 9));
-        slope[9..12].copy_from_slice(&exert.acceleration(&place, &at.center));
+        slope[9..12].copy_from_slice(&forcing.acceleration(&place, &at.center));
     }
     slope
 }

@@ -1,4 +1,4 @@
-//! Points of motions side by side.
+//! Points of motions in SIMD lanes.
 
 use crate::methods::classical::Bodies;
 use crate::state::carried::Carried;

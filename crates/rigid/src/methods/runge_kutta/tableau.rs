@@ -6,7 +6,7 @@ type Sparse = &'static [(usize, f64)];
 /// An explicit Runge–Kutta method.
 #[derive(Debug, PartialEq)]
 pub struct Tableau {
-    /// The name it is asked for by.
+    /// Its name.
     pub name: &'static str,
     /// Its order of convergence.
     pub order: i32,

@@ -1,4 +1,4 @@
-//! Structure-preserving steps for a rigid body: products of exact turns.
+//! Splitting methods: structure-preserving products of exact rotations.
 //!
 //! In principal axes the kinetic energy `½ Σ m_k²/i_k` of the angular momentum `m` splits, with `p` the
 //! middle axis, into
@@ -23,7 +23,7 @@
 //! Runge–Kutta–Nyström splittings ([`Nystrom`]) need the free motion whole between kicks: one turn for a symmetric
 //! body, the exact solution of [`FreeMotion`] for any other.
 //!
-//! Without a torque L is constant in space. Rounding would let `R m ~R` wander from it, so after each
+//! Without a torque L is constant in space. Rounding would make `R m ~R` drift, so after each
 //! step |m| is scaled back and R is turned by the tiny angle that carries `R m ~R` to L. The direction
 //! of m is left alone: on an unstable axis a component that is zero stays zero.
 

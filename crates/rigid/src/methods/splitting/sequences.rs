@@ -3,7 +3,7 @@
 /// A symmetric composition `S(γ_1 h) … S(γ_s h)` of the second-order step.
 #[derive(Debug, PartialEq)]
 pub struct Composition {
-    /// The name it is asked for by.
+    /// Its name.
     pub name: &'static str,
     /// Its order of convergence.
     pub order: i32,
@@ -15,7 +15,7 @@ pub struct Composition {
 /// kinetic energy is quadratic in the momentum, so that the commutator `[V, [V, [V, T]]]` is zero (Runge, Kutta, Nyström).
 #[derive(Debug, PartialEq)]
 pub struct Nystrom {
-    /// The name it is asked for by.
+    /// Its name.
     pub name: &'static str,
     /// Its order of convergence.
     pub order: i32,
@@ -25,7 +25,7 @@ pub struct Nystrom {
     drifts: &'static [f64],
 }
 
-/// Every composition, by rising order.
+/// Every composition, in ascending order.
 ///
 /// Coefficients: H. Yoshida, Phys. Lett. A 150 (1990) 262 (of order 6 his solution A); W. Kahan & R.-C. Li, Math.
 /// Comp. 66 (1997) 1089, as printed in Hairer, Lubich & Wanner, *Geometric Numerical Integration*, V.3.

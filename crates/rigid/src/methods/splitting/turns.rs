@@ -1,4 +1,4 @@
-//! The turns and kicks of a splitting, over bodies side by side; a single body is lanes of one.
+//! Rotations and kicks of a splitting, for bodies in lanes; a single body is one lane.
 
 use crate::laws::forcing::{Forcing, Place};
 use crate::methods::classical::renormalize;
@@ -142,7 +142,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
     pub fn step<E: Forcing<W, F>>(
         &self,
         (stages, last): (&[(f64, f64)], f64),
-        exert: &mut E,
+        forcing: &mut E,
         spin: &mut Spin<W, F>,
         time: f64,
         h: f64,
@@ -155,7 +155,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         for k in 0..=stages.len() {
             let (kick, drift) = if k < stages.len() { stages[k] } else { (last, 0.0) };
             if self.fixed.is_none() {
-                self.kick(exert, spin, now, kick * h);
+                self.kick(forcing, spin, now, kick * h);
             }
             if k < stages.len() {
                 if self.fixed.is_none() {
@@ -181,23 +181,23 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         for k in 0..3 {
             m[k] = m[k].times_plus(missing, m[k]);
         }
-        let wandered = mapped(&matrix(&spin.rotor), m);
+        let drifted = mapped(&matrix(&spin.rotor), m);
         // exp(−½ a∧b/|a||b|) turns the axial vector a into b; of so small a turn the first term is the whole.
-        let [x, y, z] = cross(&fixed.momentum, &wandered);
+        let [x, y, z] = cross(&fixed.momentum, &drifted);
         let turn = [Lanes::all(1.0), x * half, y * half, z * half];
         spin.rotor = composed(&turn, &spin.rotor);
     }
 
     /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
     #[inline(always)]
-    pub fn kick<E: Forcing<W, F>>(&self, exert: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
+    pub fn kick<E: Forcing<W, F>>(&self, forcing: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
         let m = &mut spin.momentum;
         let (wheel, inverse) = (&self.wheel, &self.inverse);
         let mut omega = *m;
         for k in 0..3 {
             omega[k] = (m[k] - wheel[k]) * inverse[k];
         }
-        let torque = exert.torque(&Place { rotor: spin.rotor, omega, time: Lanes::all(time) });
+        let torque = forcing.torque(&Place { rotor: spin.rotor, omega, time: Lanes::all(time) });
         let mut impulse = Lanes::all(h);
         if self.damped {
             let lost;

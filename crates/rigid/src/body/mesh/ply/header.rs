@@ -97,7 +97,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, MeshProblem> {
         match statement.as_slice() {
             [b"ply"] if line == 1 => {}
             _ if line == 1 => {
-                return Err(corrupt(place, format!("{} stands where 'ply' should", quoted(text))));
+                return Err(corrupt(place, format!("expected 'ply', got {}", quoted(text))));
             }
             [] | [b"comment" | b"obj_info", ..] => {}
             [b"format", name, ..] => encoding = Some(encoding_named(name, place)?),
@@ -115,7 +115,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, MeshProblem> {
                 check_columns(&elements, place)?;
                 return Ok(Header { encoding, elements, lines: line, bytes: read });
             }
-            _ => return Err(corrupt(place, format!("{} is no header line", quoted(text)))),
+            _ => return Err(corrupt(place, format!("{} is not a header line", quoted(text)))),
         }
     }
     let what = "the header's 'end_header' is missing".into();
@@ -129,31 +129,31 @@ fn encoding_named(name: &[u8], place: Place) -> Result<Encoding, MeshProblem> {
         b"binary_big_endian" => Ok(Encoding::BigEndian),
         _ => {
             let formats = "ascii, binary_little_endian, binary_big_endian";
-            Err(corrupt(place, format!("the format {} is none of {formats}", quoted(name))))
+            Err(corrupt(place, format!("unknown format {}, expected one of {formats}", quoted(name))))
         }
     }
 }
 
 fn rows_of(count: &[u8], place: Place) -> Result<u64, MeshProblem> {
     let parsed = std::str::from_utf8(count).ok().and_then(|text| text.parse::<u32>().ok());
-    let what = || format!("{} is no number of rows (0 to 4294967295)", quoted(count));
+    let what = || format!("{} is not a number of rows (0 to 4294967295)", quoted(count));
     parsed.map(u64::from).ok_or_else(|| corrupt(place, what()))
 }
 
 fn property_of(words: &[&[u8]], place: Place) -> Result<Property, MeshProblem> {
     let scalar = |word: &[u8]| {
-        Scalar::named(word).ok_or_else(|| corrupt(place, format!("{} is no type of number", quoted(word))))
+        Scalar::named(word).ok_or_else(|| corrupt(place, format!("{} is not a number type", quoted(word))))
     };
     match words {
         [b"list", count, value, name] => {
             let kind = scalar(count)?;
             if matches!(kind, Scalar::F32 | Scalar::F64) {
-                return Err(corrupt(place, format!("{} cannot count a list", quoted(count))));
+                return Err(corrupt(place, format!("a list cannot be counted by {}", quoted(count))));
             }
             Ok(Property { name: name.to_vec(), count: Some(kind), value: scalar(value)? })
         }
         [value, name] => Ok(Property { name: name.to_vec(), count: None, value: scalar(value)? }),
-        _ => Err(corrupt(place, "a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'")),
+        _ => Err(corrupt(place, "expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'")),
     }
 }
 
@@ -175,12 +175,12 @@ fn check_columns(elements: &[Element], place: Place) -> Result<(), MeshProblem> 
             b"vertex" => {
                 for name in ["x", "y", "z"] {
                     if coordinate(element, name.as_bytes()).is_none() {
-                        return Err(corrupt(place, format!("the vertices have no number '{name}'")));
+                        return Err(corrupt(place, format!("the vertices have no property '{name}'")));
                     }
                 }
             }
             b"face" if corners(element).is_none() => {
-                return Err(corrupt(place, "the faces have no list 'vertex_indices'"));
+                return Err(corrupt(place, "the faces have no list property 'vertex_indices'"));
             }
             _ => {}
         }

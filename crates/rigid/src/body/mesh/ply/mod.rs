@@ -39,15 +39,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
 /// The corners of a face, each one of the vertices.
 fn polygon(corners: &[f64], vertices: u64, place: Place) -> Result<Vec<u32>, MeshProblem> {
     if corners.len() < 3 {
-        return Err(corrupt(place, format!("a face with {} of at least 3 corners", corners.len())));
+        return Err(corrupt(place, format!("a face needs at least 3 corners, got {}", corners.len())));
     }
     let index = |&x: &f64| {
         // The cast saturates; what it changes is no index.
         let i = x as u32;
         let exists = f64::from(i) == x && u64::from(i) < vertices;
         exists.then_some(i).ok_or_else(|| {
-            let what =
-                format!("there is no vertex {x:?}: they are numbered from 0, and there are {vertices}");
+            let what = format!("vertex {x:?} does not exist: there are {vertices} vertices, numbered from 0");
             corrupt(place, what)
         })
     };

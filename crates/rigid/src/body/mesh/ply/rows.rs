@@ -64,10 +64,7 @@ impl<'a> Rows<'a> {
             row.ends.clear();
             let missing = || {
                 let name = String::from_utf8_lossy(&element.name);
-                format!(
-                    "row {index} (counted from 0) of {} of the element '{name}' should follow",
-                    element.rows
-                )
+                format!("row {index} (counted from 0) of {} of the element '{name}' is missing", element.rows)
             };
             let place = self.row(&element.properties, &mut row, missing)?;
             take(&row, place)?;
@@ -108,7 +105,7 @@ fn text_row(text: &[u8], place: Place, properties: &[Property], row: &mut Row) -
     let mut words = words(text);
     let mut next = || match words.next() {
         Some(word) => number(word, place),
-        None => Err(corrupt(place, "the row has fewer numbers than its element's properties")),
+        None => Err(corrupt(place, "the row has fewer numbers than the element has properties")),
     };
     for property in properties {
         let length = match property.count {
@@ -121,7 +118,7 @@ fn text_row(text: &[u8], place: Place, properties: &[Property], row: &mut Row) -
         row.ends.push(row.numbers.len());
     }
     match words.next() {
-        Some(_) => Err(corrupt(place, "the row has more numbers than its element's properties")),
+        Some(_) => Err(corrupt(place, "the row has more numbers than the element has properties")),
         None => Ok(place),
     }
 }
@@ -158,7 +155,7 @@ fn length(count: f64, place: Place) -> Result<u32, MeshProblem> {
     if f64::from(length) == count {
         Ok(length)
     } else {
-        Err(corrupt(place, format!("a list of {count:?} numbers")))
+        Err(corrupt(place, format!("invalid list length {count:?}")))
     }
 }
 

@@ -1,11 +1,11 @@
-//! Motions that are known at any time without steps.
+//! ClosedForm: finds and evaluates the closed form of a motion.
 
-use super::damped::DampedTop;
-use super::free::FreeMotion;
-use super::lagrange::LagrangeTop;
-use super::larmor::LarmorSphere;
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
+use crate::exact::damped::DampedTop;
+use crate::exact::free::FreeMotion;
+use crate::exact::lagrange::LagrangeTop;
+use crate::exact::larmor::LarmorSphere;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
 use crate::methods::runge_kutta::{DOP853, RungeKutta};
@@ -59,15 +59,14 @@ impl ClosedForm {
         }
     }
 
-    /// What the closed form neglects, moments that differ by rounding, as an error at these times; none where it
-    /// neglects nothing.
+    /// The error at these times of treating moments that differ by rounding as equal; none without such an error.
     pub fn neglected(&self, times: &[f64]) -> Option<f64> {
         let at = |time: f64| match &self.rotation {
             Rotation::Free(_) | Rotation::Damped(_) => 0.0,
             Rotation::Lagrange(motion) => motion.neglected(self.since.elapsed(time).hi),
             Rotation::Larmor(motion) => motion.neglected(self.since.elapsed(time).hi),
         };
-        // A motion that is altogether another one is off by no more than that.
+        // A completely different motion has no larger error.
         Some(times.iter().map(|&time| at(time)).fold(0.0, f64::max).min(1.0)).filter(|&error| error > 0.0)
     }
 
@@ -86,7 +85,7 @@ impl ClosedForm {
     }
 }
 
-/// The rotation of a body under these laws, if it is known.
+/// The closed form of the rotation under these laws, if there is one.
 fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]) -> Option<Rotation> {
     let Some(first) = torques.first() else {
         return Some(Rotation::Free(Box::new(FreeMotion::in_principal_axes(moments, rotor, omega))));
@@ -113,8 +112,8 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
     }
 }
 
-/// The time since the start of a motion in closed form, whose laws do not depend on time. A difference of two times is
-/// rounded, and what rounding takes of it is followed by a step.
+/// The time since the start of a motion in closed form, whose laws do not depend on time. The difference of two times is
+/// rounded, and a step makes up for the remainder.
 #[derive(Clone, Debug)]
 pub(crate) struct Since {
     start: f64,
@@ -128,12 +127,12 @@ impl Since {
         Since { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None, &DOP853) }
     }
 
-    /// The time since the start, rounded, and what rounding took of it.
+    /// The rounded time since the start, and the remainder.
     pub fn elapsed(&self, time: f64) -> DoubleDouble {
         DoubleDouble::two_sum(time, -self.start)
     }
 
-    /// The point a remainder of time after another one, reported at the same time.
+    /// The point a remainder of time later, with the time unchanged.
     pub fn later(&self, phase: Phase, rest: f64) -> Phase {
         if rest == 0.0 {
             return phase;
@@ -148,9 +147,9 @@ impl Since {
     }
 }
 
-/// An error if a closed form did not keep what the motion conserves, by the changes of a certificate.
+/// An error if a closed form drifts in a conserved quantity.
 pub(crate) fn check_kept(drifts: &[(Conserved, f64, f64)]) -> Result<(), SimulateError> {
-    /// Far above what roundings change.
+    /// Far above rounding.
     const MOST: f64 = 1e-9;
     match drifts.iter().find(|(_, _, drift)| drift.is_nan() || *drift > MOST) {
         Some(&(quantity, _, drift)) => Err(SimulateError::Drifted { quantity: quantity.name(), drift }),
@@ -158,7 +157,7 @@ pub(crate) fn check_kept(drifts: &[(Conserved, f64, f64)]) -> Result<(), Simulat
     }
 }
 
-/// A centre of mass under a constant force.
+/// The motion of a centre of mass under a constant force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fall {
     /// The time of the start, in s.
@@ -170,7 +169,7 @@ pub(crate) struct Fall {
 }
 
 impl Fall {
-    /// Where it is at a time in s.
+    /// The centre of mass at a time in s.
     pub fn at(&self, time: f64) -> Center {
         let Fall { time: begin, start, acceleration } = *self;
         let time = time - begin;
@@ -193,7 +192,7 @@ mod tests {
             |energy: f64| [(Conserved::AngularMomentum, 3.0, 1e-15), (Conserved::Energy, 1.0, energy)];
         assert_eq!(check_kept(&drifts(1e-12)), Ok(()));
         let error = check_kept(&drifts(4e22)).unwrap_err();
-        assert!(error.to_string().starts_with("the energy of the closed form changes by 4.0e22 of its size"));
+        assert!(error.to_string().starts_with("the energy of the closed form drifts by 4.0e22"));
         assert!(check_kept(&drifts(f64::NAN)).is_err());
     }
 }

@@ -1,0 +1,73 @@
+//! Members of an ensemble: a body in lanes, how it is stepped, and its outcome.
+
+use crate::error::SimulateError;
+use crate::laws::torque::Torque;
+use crate::methods::Method;
+use crate::methods::runge_kutta::DOP853;
+use crate::methods::splitting::turns::Kind;
+use crate::run::certificate::Certificate;
+use crate::run::limits::StepBounds;
+use crate::run::output::BodyOutput;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::{Bivector, Rotor};
+
+/// Bodies in lanes: two registers of the widest machines, to hide latency.
+pub(super) const SIDE_BY_SIDE: usize = 16;
+
+/// The method of adaptive steps.
+pub(super) const METHOD: Method = Method::RungeKutta(&DOP853);
+
+/// A body integrated in lanes, in principal axes.
+#[derive(Debug)]
+pub(super) struct Member<'a> {
+    pub body: usize,
+    /// From principal axes to those of the body.
+    pub frame: Rotor,
+    pub gyrostat: Gyrostat,
+    pub torques: Vec<Torque>,
+    /// At the start, rad/s.
+    pub omega: Bivector,
+    pub start: Phase,
+    /// Bounds of its steps.
+    pub bounds: StepBounds,
+    pub own: BodyOutput<'a>,
+}
+
+/// How a body is solved without a given step.
+pub(super) enum Strategy {
+    /// In the lanes.
+    Lanes,
+    /// In closed form, for a free body.
+    Free,
+    /// As a single body.
+    Alone,
+}
+
+/// The outcome of a body.
+pub(super) struct Outcome {
+    pub body: usize,
+    pub certificate: Certificate,
+    pub failure: Option<(f64, SimulateError)>,
+}
+
+/// How bodies are integrated in lanes by equal steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plan {
+    /// In s.
+    pub start: f64,
+    /// In s.
+    pub step: f64,
+    pub method: Method,
+    /// The axes of rotation of a splitting.
+    pub kind: Option<Kind>,
+}
+
+impl Plan {
+    /// Evaluations of the torque in a step.
+    pub fn evaluations(&self) -> u64 {
+        match self.method {
+            Method::Splitting(sequence) => sequence.stages().0.len() as u64 + 1,
+            _ => 4,
+        }
+    }
+}

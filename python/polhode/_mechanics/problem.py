@@ -1,0 +1,47 @@
+"""Problem: the arguments of a simulation of one body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.state import State
+from polhode._support.arrays import Array
+from polhode.force import Force
+from polhode.torque import Torque
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """The motion of one body as `polhode.simulate` was asked for it.
+
+    Attributes
+    ----------
+    body
+        A `Body`, or the `Inertia` that rules its motion.
+    state
+        The single state at the start.
+    torque, force
+        What turns and moves it; None where nothing does.
+    times
+        Output times in s, (n,).
+    method, step, tolerance
+        As for `polhode.simulate`; the larger one of rtol and atol.
+    limits
+        `max_step`, `max_steps` and `breaks`.
+    """
+
+    body: Body | Inertia
+    state: State
+    torque: Torque | None
+    force: Force | None
+    times: Array
+    method: str = "auto"
+    step: float | None = None
+    tolerance: float | None = None
+    limits: tuple[float | None, float | None, list[float]] = (None, None, [])
+
+    @property
+    def held(self) -> bool:
+        """Whether the body is held at a fixed point, the origin of its axes."""
+        return self.torque is not None and self.torque.holds

@@ -1,0 +1,167 @@
+"""Methods that plot, show and save motions, joined to the classes of mechanics.
+
+Classes of `_mechanics` and `_scene` do not import figures, files and the viewer; this module imports both.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polhode._mechanics.closed_forms import ClosedForm, DampedTop, LagrangeTop, LarmorSphere
+from polhode._mechanics.free_motion import FreeMotion, SymmetricTop
+from polhode._mechanics.simulate import simulate as simulate
+from polhode._mechanics.simulate import simulate_blocks as simulate_blocks
+from polhode._mechanics.trajectory import Trajectory
+from polhode._scene.scene import Scene
+from polhode._viewer.notebook import view as view
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+    from polhode._viewer.widget import Viewer
+
+
+def to_xarray(self: Trajectory) -> xarray.Dataset:
+    """Return an `xarray.Dataset` with labelled dimensions, units and conventions.
+
+    For a batch, the dimension `body` counts the bodies in C order; the attribute `batch_shape` is the shape.
+    """
+    from polhode._report.netcdf import to_xarray
+
+    return to_xarray(self)
+
+
+def read(path: str | os.PathLike[str]) -> Trajectory:
+    """Read the motion of one body from a netCDF file written by `save` or ``polhode run -o``.
+
+    The numbers are those written, to the last bit; `at` cannot evaluate the motion between its times.
+
+    Raises
+    ------
+    ValueError
+        If the file holds a batch (use xarray), or was not written by Polhode.
+    OSError
+        If the file cannot be read.
+    """
+    from polhode._report.netcdf import read
+
+    return read(path)
+
+
+def save(self: Trajectory, path: str | os.PathLike[str]) -> None:
+    """Write a netCDF file atomically: an older file is replaced only when the new one is complete.
+
+    Raises
+    ------
+    ValueError
+        If the suffix of the path is not ``.nc``.
+    """
+    from polhode._report.netcdf import netcdf
+    from polhode._support.files import form_of, write_atomically
+
+    form_of(path, "a motion")
+    write_atomically({Path(path): netcdf(self)})
+
+
+def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
+    """Return a matplotlib figure for paper, of one body.
+
+    Parameters
+    ----------
+    kind
+        ``"motion"``, angular velocity, attitude and drift over time; ``"polhode"`` on its ellipsoid;
+        ``"herpolhode"`` in the invariable plane; ``"locus"``, the path of a top's axis; ``"drift"`` of
+        conserved quantities; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors,
+        captured from the viewer in a headless browser.
+    view
+        Azimuth and elevation to look from, in degrees, for kinds that have depth; None for the default.
+    time
+        Time of the scene in s; None for the last one.
+
+    Raises
+    ------
+    ValueError
+        For a batch, a kind that does not fit the motion, or too few output times.
+    ImportError
+        Without matplotlib, and for ``"scene"`` without Playwright: ``pip install 'polhode[film]'``.
+    OSError
+        For ``"scene"`` without a browser.
+    """
+    self._require_one("plot")
+    from polhode._figures.registry import figure
+
+    return figure(self, kind, view, time)
+
+
+def film(
+    self: Trajectory,
+    path: str | os.PathLike[str],
+    *,
+    seconds: float | None = None,
+    fps: float = 25.0,
+    size: tuple[int, int] | None = None,
+    view: Any = None,
+    progress: Callable[[float], object] | None = None,
+) -> None:
+    """Write a film of the motion of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
+
+    The frames are captured from the viewer in a headless browser, at equally spaced times from the first
+    output time on.
+
+    Parameters
+    ----------
+    seconds
+        Length of the film; None for true speed, a second of motion in a second of film.
+    fps
+        Frames per second.
+    size
+        Width and height in pixels; None for (1280, 720), of a GIF (640, 360).
+    view
+        As for `plot`; None for that of the viewer.
+    progress
+        Called after each frame with the fraction done.
+
+    Raises
+    ------
+    ValueError
+        For a batch, another suffix, fewer than 2 output times, fewer than 2 frames, or a motion too long
+        or too short for true speed.
+    ImportError
+        Without Playwright: ``pip install 'polhode[film]'``.
+    OSError
+        Without a browser or ffmpeg, or if the file cannot be written; an older file stays.
+
+    Warns
+    -----
+    UserWarning
+        If the body turns by more than a quarter turn between frames, so that it appears to turn at
+        another rate; with the speed up to which the film is faithful.
+    """
+    self._require_one("film")
+    from polhode._figures.film import write
+
+    write(self, Path(path), seconds, fps, size, view, progress)
+
+
+def view_of(self: Any, duration: float | None = None) -> Viewer:
+    """Show the motion of one body in a notebook, as `polhode.view` does.
+
+    Parameters
+    ----------
+    duration
+        In s, for solutions in closed form; None for 20 turns at the initial rate.
+    """
+    return view(self, duration=duration)
+
+
+for _method in (to_xarray, save, plot, film):
+    setattr(Trajectory, _method.__name__, _method)
+setattr(Trajectory, "read", staticmethod(read))  # noqa: B010, declared for type checkers only
+for _kind in (Trajectory, Scene, FreeMotion, ClosedForm):
+    setattr(_kind, "view", view_of)  # noqa: B010
+for _public in (Trajectory, Scene, FreeMotion, SymmetricTop, DampedTop, LagrangeTop, LarmorSphere):
+    _public.__module__ = "polhode"  # unpickling imports the class from there, with these methods

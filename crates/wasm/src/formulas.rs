@@ -6,7 +6,7 @@
 mod session;
 mod value;
 
-use crate::json::Json;
+use serde_json::{Value, json};
 use session::{Outcome, Session, Wrong};
 use value::valued;
 
@@ -14,45 +14,41 @@ use value::valued;
 pub fn evaluated(text: &str) -> String {
     let mut session = Session::default();
     let lines = text.split('\n').enumerate();
-    Json::List(lines.map(|(i, line)| answered(&mut session, i + 1, line)).collect()).to_string()
+    lines.map(|(i, line)| answered(&mut session, i + 1, line)).collect::<Value>().to_string()
 }
 
-fn answered(session: &mut Session, number: usize, line: &str) -> Json {
+fn answered(session: &mut Session, number: usize, line: &str) -> Value {
     let written = line.split('#').next().unwrap_or_default();
     let (outcome, problem) = match session.run(number, written) {
-        Ok(outcome) => (outcome, Json::Null),
+        Ok(outcome) => (outcome, Value::Null),
         Err((name, wrong)) => (Outcome { name, ..Outcome::default() }, problem(line, &wrong)),
     };
-    let equation = outcome.agreement.map(|found| {
-        Json::Object(vec![
-            ("holds", found.holds().into()),
-            ("residual", found.residual.into()),
-            ("size", found.size.into()),
-        ])
-    });
-    Json::Object(vec![
-        ("text", line.into()),
-        ("name", Json::or_null(outcome.name)),
-        ("shown", Json::or_null(outcome.shown)),
-        ("latex", Json::or_null(outcome.latex)),
-        ("value", outcome.value.map_or(Json::Null, |(value, ty)| valued(&value, ty))),
-        ("equation", equation.unwrap_or(Json::Null)),
-        ("problem", problem),
-    ])
+    let equation = outcome
+        .agreement
+        .map(|found| json!({ "holds": found.holds(), "residual": found.residual, "size": found.size }));
+    json!({
+        "text": line,
+        "name": outcome.name,
+        "shown": outcome.shown,
+        "latex": outcome.latex,
+        "value": outcome.value.map(|(value, ty)| valued(&value, ty)),
+        "equation": equation,
+        "problem": problem,
+    })
 }
 
-fn problem(line: &str, wrong: &Wrong) -> Json {
-    Json::Object(vec![
-        ("message", wrong.message.as_str().into()),
-        ("start", units_before(line, wrong.span.start).into()),
-        ("end", units_before(line, wrong.span.end.max(wrong.span.start)).into()),
-    ])
+fn problem(line: &str, wrong: &Wrong) -> Value {
+    json!({
+        "message": wrong.message,
+        "start": units_before(line, wrong.span.start),
+        "end": units_before(line, wrong.span.end.max(wrong.span.start)),
+    })
 }
 
-/// How many UTF-16 units stand before a place in bytes.
-fn units_before(line: &str, at: usize) -> f64 {
+/// The number of UTF-16 units before a place in bytes.
+fn units_before(line: &str, at: usize) -> usize {
     let before = line.char_indices().take_while(|(i, _)| *i < at);
-    before.map(|(_, c)| c.len_utf16()).sum::<usize>() as f64
+    before.map(|(_, c)| c.len_utf16()).sum()
 }
 
 #[cfg(test)]

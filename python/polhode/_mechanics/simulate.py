@@ -15,7 +15,6 @@ from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
-from polhode._mechanics.result import Certificate
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
 from polhode._scene.writer import Problem
@@ -121,9 +120,9 @@ def simulate(
     """
     limits = _limits(max_step, max_steps, breaks)
     given = _given(body, state, times, torque, force, method, rtol, atol, step, limits)
-    _check_progress(progress)
+    check_progress(progress)
     looked_for = _events(events)
-    count = _threads(threads)
+    count = checked_threads(threads)
     if given.shape:
         if looked_for:
             raise ValueError(
@@ -149,8 +148,6 @@ def simulate(
         [event.law for event in looked_for],
         progress,
     )
-    certificate = Certificate(**motion.certificate())
-    warn_of(certificate)
     bodies, law = settled(bodies_of(body), as_torque(torque))
     problem = Problem(
         bodies[()],
@@ -163,7 +160,9 @@ def simulate(
         given.rtol,
         given.limits,
     )
-    return Trajectory._of(motion, inertia, certificate, [event.name for event in looked_for], problem)
+    trajectory = Trajectory._of(motion, inertia, [event.name for event in looked_for], problem)
+    warn_of(trajectory.certificate)
+    return trajectory
 
 
 def simulate_blocks(
@@ -205,12 +204,12 @@ def simulate_blocks(
     """
     limits = _limits(max_step, max_steps, breaks)
     given = _given(body, state, times, torque, force, method, rtol, atol, step, limits)
-    _check_progress(progress)
+    check_progress(progress)
     if not given.shape:
         raise ValueError("simulate_blocks is for a batch of bodies, this is one; use simulate")
     if block is not None and as_count(block, "block") < 1:
         raise ValueError(f"block is {block}; it must be 1 or more")
-    _threads(threads)
+    checked_threads(threads)
     rows = given.shape[0]
     size = block or max(1, _BLOCK * rows // max(given.bytes, 1))
     return _blocks(given, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
@@ -222,7 +221,7 @@ def _blocks(
     threads: int | None,
     progress: Callable[[int, float], object] | None,
 ) -> Iterator[tuple[slice, Trajectory]]:
-    count = _threads(threads)
+    count = checked_threads(threads)
     for rows in blocks:
 
         def of_all(number: int, fraction: float, rows: slice = rows) -> None:
@@ -289,12 +288,12 @@ def _limits(max_step: Any, max_steps: Any, breaks: Any) -> StepLimits:
     )
 
 
-def _check_progress(progress: Any) -> None:
+def check_progress(progress: Any) -> None:
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be callable, got {type(progress).__name__}")
 
 
-def _threads(threads: Any) -> int | None:
+def checked_threads(threads: Any) -> int | None:
     if threads is not None and as_count(threads, "threads") < 1:
         raise ValueError(f"threads is {threads}; it must be 1 or more")
     return None if threads is None else min(as_count(threads, "threads"), 1024)

@@ -1,4 +1,4 @@
-"""What a simulation was asked for, and the scene that asks for the same."""
+"""Problem of a simulation, and the scene file that states it."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from polhode.torque import Torque
 
 
 class UnwritableError(ValueError):
-    """A motion that no scene can ask for; the message says what is in the way."""
+    """A problem that a scene file cannot state."""
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """The motion of one body as `polhode.simulate` was asked for it.
+    """The arguments of `polhode.simulate` for one body.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Problem:
     state
         The single state at the start.
     torque, force
-        What turns and moves it; None where nothing does.
+        Torque and force; None without.
     times
         Output times in s, (n,).
     method, step, tolerance
@@ -58,12 +58,16 @@ class Problem:
         return self.torque is not None and self.torque.holds
 
     def scene(self) -> str:
-        """Return the scene, in TOML, whose body, start and laws are these to the last bit.
+        """Return the scene in TOML; body, start and laws are exact to the last bit.
 
-        Its output times go from the start to the last one in equal intervals. Principal moments are found
-        from the same inertia matrix again, to its rounding, and rise where it is not diagonal. An
-        `UnwritableError` for Python functions, linear maps, a law that stands twice, and motions that do not
-        go beyond their start.
+        Its output times go from the start to the last one in equal intervals. Principal moments follow from
+        the inertia matrix, to rounding, and are in ascending order if it is not diagonal.
+
+        Raises
+        ------
+        UnwritableError
+            For Python functions, linear maps, a law that occurs twice, and motions without a time after the
+            start.
         """
         laws = self.torque.laws if self.torque else ()
         tables = {
@@ -109,13 +113,13 @@ class Problem:
         duration = float(np.max(self.times, initial=start)) - start
         if duration <= 0:
             raise UnwritableError(
-                f"a scene goes on from its start at {start:g} s, and this motion has no later time"
+                f"a scene needs an output time after its start at {start:g} s, and this motion has none"
             )
         return {"duration": duration, "samples": max(2, len(self.times))}
 
     def _method(self) -> dict[str, Any]:
         fields: dict[str, Any] = {}
-        # A scene is exact by itself where a closed form is known.
+        # Without a method, scenes use a closed form if there is one.
         if self.method not in ("auto", "exact"):
             fields["name"] = self.method
         if self.step is not None:
@@ -126,7 +130,7 @@ class Problem:
             fields["rtol"] = self.tolerance
         max_step, max_steps, breaks = self.limits
         if breaks:
-            raise UnwritableError("a scene has no breaks; give max_step instead")
+            raise UnwritableError("breaks cannot be written to a scene file; use max_step")
         given = {"max_step": max_step, "max_steps": max_steps}
         fields |= {name: value for name, value in given.items() if value is not None}
         return fields
@@ -151,7 +155,7 @@ def _rotor(components: Any) -> dict[str, Any]:
     return {"rotor": components}
 
 
-# What the field of a law is given, made of the law's arguments.
+# The value of a law's field, from the law's arguments.
 _Field = Callable[..., Any]
 
 _TORQUES: dict[str, _Field] = {
@@ -184,38 +188,40 @@ _FORCES: dict[str, _Field] = {
 
 
 def _fields(laws: Iterable[Any], known: dict[str, _Field], what: str) -> dict[str, Any]:
-    """Return the fields of a table whose laws add up, in their order."""
+    """Return the fields of laws in [torque] or [force]."""
     fields: dict[str, Any] = {}
     for law in laws:
         if law.name not in known:
-            raise UnwritableError(f"a scene has no {what} that is a {law.name} of Python's")
+            raise UnwritableError(f"{what}.{law.name} cannot be written to a scene file; use {what}.formula")
         name = f"torque_{law.arguments[1]}" if (what, law.name) == ("torque", "formula") else law.name
         if name in fields:
-            raise UnwritableError(f"a scene has but one {what} `{name}`, and this motion has two")
+            raise UnwritableError(
+                f"a scene file has at most one {what} `{name}`, and this motion has two; add them"
+            )
         fields[name] = known[law.name](*law.arguments)
     return fields
 
 
 def _definitions(formulas: Iterable[Any]) -> dict[str, Any]:
-    """Return what names in formulas stand for."""
+    """Return the values of names in formulas."""
     defined: dict[str, Any] = {}
     for law in formulas:
         for name, value in law.arguments[2]:
             text = _definition(name, value)
             if defined.setdefault(name, text) != text:
-                raise UnwritableError(f"`{name}` has two values in formulas, and in a scene but one")
+                raise UnwritableError(f"`{name}` has two values in formulas; a scene file has one for all")
     return defined
 
 
 def _definition(name: str, value: Any) -> float | str:
-    """Return a number as such, and the sum of components that a multivector is."""
+    """Return a number, or a multivector as a sum of components."""
     if isinstance(value, float):
         return value
     if not isinstance(value, Multivector):
-        raise UnwritableError(f"`{name}` is no multivector; a scene does not define a linear map")
+        raise UnwritableError(f"`{name}` is not a multivector; linear maps cannot be written to a scene file")
     names = value.algebra._names(value._mask)
     terms = (f"({float(x)!r}) {name}".strip() for x, name in zip(value.components, names, strict=True))
-    # In a formula an e may be a basis vector.
+    # In a formula, e may be a basis vector.
     return " + ".join(terms).replace("e+", "E+").replace("e-", "E-") or "0"
 
 
@@ -228,7 +234,7 @@ def _key(name: str) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, str):
-        # JSON's escapes are TOML's, which wants one more.
+        # TOML has the escapes of JSON and one more.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(name)} = {_value(x)}" for name, x in value.items()) + " }"

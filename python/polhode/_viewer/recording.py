@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 from typing import Any
 
 import numpy as np
@@ -16,11 +15,8 @@ from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.interpolation import slerp
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
-from polhode._mechanics.closed_forms import LagrangeTop
-from polhode._mechanics.free_motion import describe_free
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory, _Points
-from polhode._report.describe import kind_of, weight
 from polhode._scene.scene import Scene
 from polhode._scene.writer import Problem
 from polhode._support.arrays import Array
@@ -139,8 +135,6 @@ def _rows(points: _Points) -> Array:
 
 def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any]:
     proof, inertia = trajectory.certificate, trajectory.inertia
-    torque = None if origin is None else origin.torque
-    held = torque is not None and torque.holds
     start = None if origin is None else origin.state
     if start is not None and start.time != points.time[0]:
         # Read from a file that does not hold the start.
@@ -153,8 +147,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             "moments": inertia.principal_moments.tolist(),
             "frame": inertia.principal_frame.components.tolist(),
         },
-        "held": held,
-        "heavy": weight(torque).tolist() if held else None,
+        **_facts(trajectory, origin),
         "laws": _laws(origin),
         "start": {
             "rotor": (start.rotor if start else points.rotor[0]).components.tolist(),
@@ -173,10 +166,17 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             for name, value in proof.conserved.items()
         ],
         "norm_drift": proof.norm_drift,
-        "free": _free(trajectory, origin, points),
-        "top": _top(trajectory, origin),
         "ensemble": None,
     }
+
+
+def _facts(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any]:
+    """Return what is known from the start."""
+    if isinstance(origin, Scene):
+        return origin._core.facts()
+    if trajectory._motion is not None:
+        return trajectory._motion.facts()
+    return {"held": False, "heavy": None, "free": None, "top": None}
 
 
 def _body(origin: Scene | Problem | None) -> dict[str, Any]:
@@ -194,48 +194,9 @@ def _body(origin: Scene | Problem | None) -> dict[str, Any]:
     }
 
 
-def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
-    """Return each law by the name of its field in a scene, and its formula or its numbers."""
-    laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
-    formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
-    gravity = isinstance(origin, Scene) and "gravity" in tomllib.loads(origin.text)
-    told = []
-    for k, (law, formula) in enumerate(zip(laws, formulas, strict=True)):
-        arguments = law.arguments
-        if law.name == "formula":
-            told.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
-        elif law.name in ("tabulated", "function"):
-            told.append({"name": law.name, "text": ""})
-        else:
-            name = "gravity" if gravity and k == 0 else law.name
-            told.append({"name": name, "text": ", ".join(map(_number, arguments))})
-    return told
-
-
-def _number(argument: Any) -> str:
-    if isinstance(argument, tuple):
-        return f"({', '.join(map(_number, argument))})"
-    return repr(argument).removesuffix(".0")
-
-
-def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
-    """Return what the invariants of a free body tell."""
-    if origin is None or kind_of(origin) != "free":
-        return None
-    told = describe_free(trajectory.inertia, points.omega_body[0])
-    names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
-    return {name: told[name] for name in names}
-
-
-def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any] | None:
-    """Return what the invariants of a symmetric top under its weight alone tell."""
-    if origin is None or kind_of(origin) != "heavy":
-        return None
-    start = origin.state
-    try:
-        top = LagrangeTop(trajectory.inertia, start.rotor, start.omega_body, weight(origin.torque))
-    except ValueError:
-        return None
-    told = top.describe()
-    names = ("regime", "nutation_period", "precession_rate", "critical_spin", "sleeps")
-    return {"tilt": [told["tilt_min"], told["tilt_max"]], **{name: told[name] for name in names}}
+def _laws(origin: Scene | Problem | None) -> list[dict[str, Any]]:
+    """Return each law: the name of its field in a scene, and its formula or its numbers."""
+    if isinstance(origin, Scene):
+        return origin._core.laws()
+    laws = () if origin is None or origin.torque is None else origin.torque.laws
+    return [law.facts() for law in laws]

@@ -6,15 +6,17 @@ use super::made::{
     Asked, Known, Made, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
+use crate::support::facts::dict;
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::body::weight_moment;
+use polhode_rigid::describe::law_facts;
 use polhode_rigid::laws::torque::{
     Axes, FormulaTorque, FunctionTorque, Gains, Kind, Orbit, Table, Torque, total, wheel,
 };
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 /// A torque law, or one for each body of a batch.
@@ -69,6 +71,19 @@ impl Law {
             .map(|torque| if let Torque::Heavy(c) = torque { Some(c.0) } else { None })
             .collect();
         moments.map(|rows| table(py, rows.into_iter())).transpose()
+    }
+
+    /// Its name in scenes and, as text, its formula or its numbers; of a single body.
+    fn facts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let torque = slf.get().single()?;
+        let name = match &torque {
+            Torque::Formula(law) if law.axes() == Axes::Space => "torque_space",
+            Torque::Formula(_) => "torque_body",
+            Torque::Tabulated(_) => "tabulated",
+            Torque::Function(_) => "function",
+            _ => torque.call().map_or("", |(name, _)| name),
+        };
+        dict(slf.py(), law_facts(name, &torque, None))
     }
 
     /// Shape of the batch of bodies; () for one.

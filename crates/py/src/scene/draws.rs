@@ -1,101 +1,54 @@
-//! The bodies of a scene's ensemble.
+//! Drawn bodies of a scene's ensemble, as Python objects.
 
 use super::named;
 use crate::mechanics::bodies::Inertia;
 use crate::support::arrays::{Array, bad, line, table};
 use numpy::{PyArray1, PyArrayMethods};
 use polhode_rigid::laws::torque::{Argument, Torque};
-use polhode_rigid::{body, scene};
+use polhode_rigid::scene::{self, Drawn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-/// Draws the bodies of a scene.
-#[pyclass(frozen, module = "polhode._native")]
-pub(crate) struct Draws {
-    scene: scene::Scene,
-    ensemble: scene::Ensemble,
-    body: body::Body,
-    laws: Vec<scene::Law>,
-}
-
-impl Draws {
-    /// Of a scene that is built; none without an ensemble.
-    pub(crate) fn of(
-        py: Python<'_>,
-        scene: scene::Scene,
-        body: body::Body,
-        laws: Vec<scene::Law>,
-    ) -> PyResult<Option<Py<Draws>>> {
-        let Some(ensemble) = scene.ensemble.clone() else { return Ok(None) };
-        Py::new(py, Draws { scene, ensemble, body, laws }).map(Some)
-    }
-}
-
-/// What differs: its name, how it is distributed, the widths, and their unit.
-type Varied = (String, &'static str, Vec<f64>, &'static str);
+/// A varied quantity: name, distribution, widths, and their unit.
+pub(crate) type Varied = (String, &'static str, Vec<f64>, &'static str);
 
 /// Rotors (n, 4), angular velocities in the body (n, 3), places and velocities (n, 3) each, inertias (one or n) and
 /// laws.
-type Bodies<'py> = (Array<'py>, Array<'py>, Array<'py>, Array<'py>, Vec<Inertia>, Vec<Bound<'py, PyAny>>);
+pub(crate) type Bodies<'py> =
+    (Array<'py>, Array<'py>, Array<'py>, Array<'py>, Vec<Inertia>, Vec<Bound<'py, PyAny>>);
 
-#[pymethods]
-impl Draws {
-    fn number(&self) -> usize {
-        self.ensemble.number
-    }
-
-    fn seed(&self) -> u64 {
-        self.ensemble.seed
-    }
-
-    /// When all of them start, in s.
-    fn time(&self) -> f64 {
-        self.scene.time
-    }
-
-    fn varied(&self) -> Vec<Varied> {
-        let told = |varied: scene::Varied| match varied.spread {
-            None => (varied.name, "alike", Vec::new(), ""),
-            Some(spread) => (varied.name, spread.form.name(), spread.widths.to_vec(), varied.unit),
-        };
-        self.ensemble.varied().into_iter().map(told).collect()
-    }
-
-    /// So many bodies, one at least, from the first on.
-    fn draw<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bodies<'py>> {
-        let number = self.ensemble.number;
-        let end = first.checked_add(count).filter(|end| (first + 1..=number).contains(end));
-        let Some(end) = end else {
-            return Err(bad(format!("there are {number} bodies, no {count} from number {first} on")));
-        };
-        let drawn = py.detach(|| self.ensemble.draw(&self.scene, (&self.body, &self.laws), first..end));
-        let drawn = drawn.map_err(bad)?;
-        let half = |k| drawn.centers.iter().map(move |c: &[f64; 6]| [c[k], c[k + 1], c[k + 2]]);
-        Ok((
-            table(py, drawn.rotors.iter().copied())?,
-            table(py, drawn.omegas.iter().copied())?,
-            table(py, half(0))?,
-            table(py, half(3))?,
-            drawn.inertias.into_iter().map(Inertia).collect(),
-            drawn.laws.iter().map(|torques| law(py, torques)).collect::<PyResult<_>>()?,
-        ))
+pub(crate) fn varied(varied: scene::Varied) -> Varied {
+    match varied.spread {
+        None => (varied.name, "alike", Vec::new(), ""),
+        Some(spread) => (varied.name, spread.form.name(), spread.widths.to_vec(), varied.unit),
     }
 }
 
-/// A law that all bodies have, or the name of one that each has for itself and its arguments, as arrays (n,) or
-/// (n, m).
+pub(crate) fn bodies(py: Python<'_>, drawn: Drawn) -> PyResult<Bodies<'_>> {
+    let half = |k| drawn.centers.iter().map(move |c: &[f64; 6]| [c[k], c[k + 1], c[k + 2]]);
+    Ok((
+        table(py, drawn.rotors.iter().copied())?,
+        table(py, drawn.omegas.iter().copied())?,
+        table(py, half(0))?,
+        table(py, half(3))?,
+        drawn.inertias.into_iter().map(Inertia).collect(),
+        drawn.laws.iter().map(|torques| law(py, torques)).collect::<PyResult<_>>()?,
+    ))
+}
+
+/// A law that all bodies share; else its name and its arguments as arrays (n,) or (n, m).
 fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());
     }
     let calls: Vec<(&str, Vec<Argument>)> = torques.iter().filter_map(Torque::call).collect();
-    let Some((name, first)) = calls.first() else { return Err(bad("a law without numbers varies")) };
+    let Some((name, first)) = calls.first() else { return Err(bad("a law without numbers cannot vary")) };
     let column = |k: usize| column(py, calls.iter().map(|(_, numbers)| &numbers[k]));
     let columns: Vec<Array<'_>> = (0..first.len()).map(column).collect::<PyResult<_>>()?;
     Ok((*name, PyTuple::new(py, columns)?).into_pyobject(py)?.into_any())
 }
 
-/// One argument of all bodies.
+/// One argument for all bodies.
 fn column<'a, 'py>(py: Python<'py>, numbers: impl Iterator<Item = &'a Argument>) -> PyResult<Array<'py>> {
     let (mut all, mut count, mut size) = (Vec::new(), 0, None);
     for numbers in numbers {

@@ -1,5 +1,6 @@
-//! Arrays and texts between Python and the core.
+//! Arrays, texts and facts between Python and the core.
 
 pub(crate) mod arrays;
+pub(crate) mod facts;
 pub(crate) mod pool;
 pub(crate) mod text;

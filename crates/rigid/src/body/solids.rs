@@ -3,6 +3,7 @@
 use super::Body;
 use super::inertia::Inertia;
 use crate::error::BodyError;
+use crate::facts::Facts;
 use polhode_ga::Vector;
 use std::f64::consts::PI;
 
@@ -61,15 +62,6 @@ pub enum Solid {
     },
 }
 
-/// A size of a solid, in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Size {
-    /// A radius, a height.
-    One(f64),
-    /// Lengths along e1, e2 and e3.
-    Three([f64; 3]),
-}
-
 impl Amount {
     /// The mass that this amount of a volume has; `name` is the solid's, for the message.
     pub(crate) fn mass(self, volume: Option<f64>, name: &'static str) -> Result<f64, BodyError> {
@@ -83,25 +75,32 @@ impl Amount {
 }
 
 impl Solid {
-    /// Its name and its sizes, as scenes have them.
-    pub fn sizes(self) -> (&'static str, Vec<(&'static str, Size)>) {
-        use Size::{One, Three};
+    /// Its `kind` and its sizes in metres, named as in scenes.
+    pub fn facts(self) -> Facts {
+        let round = |kind: &str, radius: f64, height: f64| {
+            vec![("kind", kind.into()), ("radius", radius.into()), ("height", height.into())]
+        };
         match self {
-            Solid::Box { lengths } => ("box", vec![("lengths", Three(lengths))]),
-            Solid::Ellipsoid { semi_axes } => ("ellipsoid", vec![("semi_axes", Three(semi_axes))]),
-            Solid::Sphere { radius } => ("sphere", vec![("radius", One(radius))]),
-            Solid::HollowSphere { outer_radius, inner_radius } => {
-                let sizes = vec![("outer_radius", One(outer_radius)), ("inner_radius", One(inner_radius))];
-                ("hollow_sphere", sizes)
+            Solid::Box { lengths } => vec![("kind", "box".into()), ("lengths", lengths.into())],
+            Solid::Ellipsoid { semi_axes } => {
+                vec![("kind", "ellipsoid".into()), ("semi_axes", semi_axes.into())]
             }
-            Solid::Cylinder { radius, height } => ("cylinder", round(radius, height)),
-            Solid::Cone { radius, height } => ("cone", round(radius, height)),
-            Solid::Rod { length } => ("rod", vec![("length", One(length))]),
-            Solid::Disc { radius } => ("disc", vec![("radius", One(radius))]),
-            Solid::Torus { major_radius, minor_radius } => {
-                ("torus", vec![("major_radius", One(major_radius)), ("minor_radius", One(minor_radius))])
-            }
-            Solid::Capsule { radius, height } => ("capsule", round(radius, height)),
+            Solid::Sphere { radius } => vec![("kind", "sphere".into()), ("radius", radius.into())],
+            Solid::HollowSphere { outer_radius, inner_radius } => vec![
+                ("kind", "hollow_sphere".into()),
+                ("outer_radius", outer_radius.into()),
+                ("inner_radius", inner_radius.into()),
+            ],
+            Solid::Cylinder { radius, height } => round("cylinder", radius, height),
+            Solid::Cone { radius, height } => round("cone", radius, height),
+            Solid::Rod { length } => vec![("kind", "rod".into()), ("length", length.into())],
+            Solid::Disc { radius } => vec![("kind", "disc".into()), ("radius", radius.into())],
+            Solid::Torus { major_radius, minor_radius } => vec![
+                ("kind", "torus".into()),
+                ("major_radius", major_radius.into()),
+                ("minor_radius", minor_radius.into()),
+            ],
+            Solid::Capsule { radius, height } => round("capsule", radius, height),
         }
     }
 
@@ -226,7 +225,4 @@ impl Solid {
             }
         }
     }
-}
-fn round(radius: f64, height: f64) -> Vec<(&'static str, Size)> {
-    vec![("radius", Size::One(radius)), ("height", Size::One(height))]
 }

@@ -120,8 +120,8 @@ impl Scene {
         }
     }
 
-    /// Whether the file tells the mass, or what it follows from.
-    pub fn tells_mass(&self) -> bool {
+    /// Whether the file gives the mass, or what it follows from.
+    pub fn has_mass(&self) -> bool {
         !matches!(self.body, BodySpec::Moments { mass: None, .. } | BodySpec::Inertia { mass: None, .. })
     }
 

@@ -1,13 +1,17 @@
-//! From a scene that is built to what there is to solve.
+//! The problem that a scene poses, and how to solve it.
 
-use super::{Law, Scene};
+use super::{DrawError, Law, Scene};
 use crate::body::Body;
 use crate::body::inertia::Inertia;
+use crate::describe::Setup;
+use crate::ensemble::{Ensemble, Rows, Start};
 use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
 use crate::run::{Options, Problem};
-use polhode_ga::Vector;
+use crate::state::center::Center;
+use polhode_ga::{Bivector, Rotor, Vector};
+use std::ops::Range;
 
 impl Scene {
     /// The inertia that rules the rotation of a body that [`Scene::build`] made: about the fixed point, where there
@@ -21,13 +25,47 @@ impl Scene {
         }
     }
 
+    /// How that body turns: its start, the laws made with it, and the torques of thrusts.
+    pub fn setup(&self, body: &Body, laws: &[Law]) -> Setup {
+        let laws = laws.iter().map(|law| law.torque.clone());
+        Setup {
+            inertia: self.ruling_inertia(body),
+            rotor: self.attitude,
+            omega: self.omega_body(),
+            time: self.time,
+            torques: laws.chain(self.thrust_torques(body)).collect(),
+            has_forces: !self.forces.is_empty(),
+        }
+    }
+
     /// The motion of that body under the laws made with it, and under the forces.
     pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
-        let laws = laws.iter().map(|law| law.torque.clone());
-        let torques: Vec<Torque> = laws.chain(self.thrust_torques(body)).collect();
-        Problem::new(&self.ruling_inertia(body), self.attitude, self.omega_body(), &torques)
-            .with_center(self.center, body.mass, &self.pushes())
-            .starting_at(self.time)
+        self.setup(body, laws).problem().with_center(self.center, body.mass, &self.pushes())
+    }
+
+    /// Some bodies of the scene's ensemble, with their laws and forces.
+    pub fn bodies(
+        &self,
+        ensemble: &super::Ensemble,
+        built: (&Body, &[Law]),
+        bodies: Range<usize>,
+    ) -> Result<Ensemble, DrawError> {
+        let drawn = ensemble.draw(self, built, bodies)?;
+        let starts = drawn.rotors.iter().zip(&drawn.omegas).zip(&drawn.centers);
+        let starts = starts.map(|((rotor, omega), [x, y, z, u, v, w])| Start {
+            time: self.time,
+            rotor: Rotor::from_unit_components(*rotor),
+            omega: Bivector(*omega),
+            center: Center { position: Vector([*x, *y, *z]), velocity: Vector([*u, *v, *w]) },
+        });
+        let laws = drawn.laws.into_iter().chain(self.thrust_torques(built.0).map(|torque| vec![torque]));
+        Ok(Ensemble {
+            inertias: Rows::new(drawn.inertias),
+            starts: starts.collect(),
+            laws: laws.map(Rows::new).collect(),
+            masses: Rows::new(vec![built.0.mass]),
+            forces: self.pushes(),
+        })
     }
 
     /// Where the origin that the scene speaks of is in the axes of the built body: under gravity the pivot becomes

@@ -9,7 +9,9 @@
 
 use super::reader::{Reader, Table, Value};
 use super::{formulas, initial};
+use crate::describe::law_facts;
 use crate::error::TorqueError;
+use crate::facts::Facts;
 use crate::laws::torque::{self, Axes, Gains, Kind, Orbit, Torque};
 use crate::units::Quantity;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -26,6 +28,13 @@ pub struct Law {
     pub torque: Torque,
     /// The formula, whose numbers may have units.
     pub formula: Option<String>,
+}
+
+impl Law {
+    /// Its name and, as text, its formula or its numbers.
+    pub fn facts(&self) -> Facts {
+        law_facts(self.name, &self.torque, self.formula.as_deref())
+    }
 }
 
 /// Reads one law.

@@ -9,10 +9,9 @@ use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
 use crate::support::facts::dict;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::SimulateError;
-use polhode_rigid::describe::Setup;
 use polhode_rigid::laws::event::Direction;
 use polhode_rigid::methods::Method;
-use polhode_rigid::run::{self as rigid, Options, Progress, States};
+use polhode_rigid::run::{self as rigid, Options, Problem, Progress, Setup, States};
 use polhode_rigid::state::center::Center;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -239,7 +238,7 @@ pub(crate) fn simulate<'py>(
         torques,
         has_forces: !forces.is_empty(),
     };
-    let problem = setup.problem().with_center(center, mass, &forces);
+    let problem = Problem::of(&setup).with_center(center, mass, &forces);
     let times = numbers(&times)?;
     let (max_step, max_steps, breaks) = limits;
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };

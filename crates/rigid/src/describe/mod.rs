@@ -1,38 +1,20 @@
 //! What is known of a motion, in words and numbers: its kind, regime, periods and bounds.
 //!
-//! The kind follows from the torques ([`Setup::kind`]), the regime and the periods from the start where the motion is free
-//! or that of a heavy symmetric top, and the rest from the states at the output times ([`Setup::describe`]).
+//! The kind follows from the torques ([`Setup::kind`]), regime and periods of free motions and heavy symmetric tops from
+//! the start ([`Setup::facts`]), and the rest from the states at the output times ([`Setup::describe`]).
 
 mod samples;
 
-use crate::body::inertia::Inertia;
 use crate::exact::free::FreeMotion;
 use crate::exact::lagrange::{LagrangeDescription, LagrangeTop};
 use crate::exact::regime::{FreeDescription, Regime};
 use crate::exact::symmetric::SymmetricTop;
 use crate::facts::Facts;
 use crate::laws::torque::{Argument, Orbit, Torque, wheel};
-use crate::run::{Motion, Problem, States};
-use polhode_ga::{Bivector, Rotor, Vector};
+use crate::run::{Motion, Setup, States};
+use polhode_ga::{Rotor, Vector};
 use samples::{crossings, ends, mean_interval, mean_rate, range};
 use std::f64::consts::{LN_2, PI};
-
-/// A body that turns: its inertia, its start and the torques on it, in body axes.
-#[derive(Clone, Debug)]
-pub struct Setup {
-    /// About the centre of mass, or about the fixed point if there is one.
-    pub inertia: Inertia,
-    /// From body axes to space at the start.
-    pub rotor: Rotor,
-    /// The angular velocity at the start, in rad/s.
-    pub omega: Bivector,
-    /// The time of the start, in s.
-    pub time: f64,
-    /// The torques, those of off-centre thrusts included.
-    pub torques: Vec<Torque>,
-    /// Whether forces move the centre of mass.
-    pub has_forces: bool,
-}
 
 /// The kind of a motion, by the torques.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,11 +54,6 @@ const INTEGRABLE: [(&str, &str); 2] = [
 ];
 
 impl Setup {
-    /// The rotation as a problem to solve.
-    pub fn problem(&self) -> Problem {
-        Problem::new(&self.inertia, self.rotor, self.omega, &self.torques).starting_at(self.time)
-    }
-
     /// The kind of motion.
     pub fn kind(&self) -> Kind {
         let all = |is: fn(&Torque) -> bool| self.torques.iter().all(is);

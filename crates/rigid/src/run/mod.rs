@@ -7,6 +7,7 @@ mod motion;
 pub(crate) mod noise;
 mod options;
 pub(crate) mod refine;
+mod setup;
 pub(crate) mod stops;
 pub(crate) mod sweep;
 
@@ -33,6 +34,7 @@ use sweep::{Pace, Pass, Walker, is_finite};
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
+pub use setup::Setup;
 
 /// What to solve: a body and its state at the start, time 0 unless another is given. Kept in principal axes.
 #[derive(Clone, Debug)]
@@ -100,6 +102,11 @@ impl Problem {
             mass: f64::NAN,
             translation: None,
         }
+    }
+
+    /// The rotation of a body from its start time on.
+    pub fn of(setup: &Setup) -> Problem {
+        Problem::new(&setup.inertia, setup.rotor, setup.omega, &setup.torques).starting_at(setup.time)
     }
 
     /// The same from another start time, in s. Laws that depend on time, output times and events count from time 0

@@ -3,12 +3,11 @@
 use super::{DrawError, Law, Scene};
 use crate::body::Body;
 use crate::body::inertia::Inertia;
-use crate::describe::Setup;
 use crate::ensemble::{Ensemble, Rows, Start};
 use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
-use crate::run::{Options, Problem};
+use crate::run::{Options, Problem, Setup};
 use crate::state::center::Center;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::ops::Range;
@@ -40,7 +39,7 @@ impl Scene {
 
     /// The motion of that body under the laws made with it, and under the forces.
     pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
-        self.setup(body, laws).problem().with_center(self.center, body.mass, &self.pushes())
+        Problem::of(&self.setup(body, laws)).with_center(self.center, body.mass, &self.pushes())
     }
 
     /// Some bodies of the scene's ensemble, with their laws and forces.

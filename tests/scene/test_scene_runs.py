@@ -1,5 +1,6 @@
 """Runs of ensembles: blocks, files, summaries, failures and interrupts."""
 
+import dataclasses
 import json
 import os
 import re
@@ -124,6 +125,26 @@ def test_motion_with_an_off_centre_thrust_is_torqued(write, tmp_path):
     assert data.position.dims == ("body", "time", "axis")
     alone = write(path.read_text().partition("[ensemble]")[0], "one.toml")
     assert summary_of(alone)["motion"]["kind"] == "torqued"
+
+
+def test_runs_have_the_bits_of_simulate(write):
+    """The core's problem of a scene is that of `simulate` with the same body, laws, thrust and tolerances."""
+    text = SCENE.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2\ncenter_of_mass = [0, 0, 0.1]")
+    acting = "[torque]\ndamping = 0.1\n[force]\nthrust = { force = [0, 0, 1], at = [0.1, 0, 0] }\n"
+    scene = ph.Scene.read(write(text + acting + "[method]\nrtol = 1e-9\natol = 1e-12\n"))
+    found = scene.run()
+    expected = ph.simulate(
+        scene.body, scene.state, scene.times, scene.torque, scene.force, rtol=scene.rtol, atol=scene.atol
+    )
+    same(found, expected)
+    assert found.certificate == expected.certificate
+
+
+def test_times_alone_can_be_replaced(write):
+    scene = ph.Scene.read(write(SCENE))
+    assert dataclasses.replace(scene, times=[0.0, 3.0]).run().time.tolist() == [0.0, 3.0]
+    with pytest.raises(ValueError, match="method"):
+        dataclasses.replace(scene, method="rk4")
 
 
 def test_only_ensembles_have_blocks(write):

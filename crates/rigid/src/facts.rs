@@ -22,6 +22,14 @@ pub enum Fact {
 /// Values by name, in order.
 pub type Facts = Vec<(&'static str, Fact)>;
 
+/// Facts from names and values: `facts! { regime: "at rest", axis: 1 }`.
+#[macro_export]
+macro_rules! facts {
+    ($($name:ident: $value:expr),* $(,)?) => {
+        vec![$((stringify!($name), $crate::facts::Fact::from($value))),*]
+    };
+}
+
 macro_rules! from {
     ($($given:ty => $variant:ident),*) => {
         $(impl From<$given> for Fact {

@@ -1,6 +1,7 @@
 //! What is known of a motion besides its states: `About` in `viewer/src/core/core.ts`.
 
 use crate::opened::Opened;
+use polhode_rigid::facts;
 use polhode_rigid::facts::{Fact, Facts};
 use serde_json::{Map, Value};
 
@@ -8,46 +9,34 @@ use serde_json::{Map, Value};
 pub fn about(of: &Opened) -> Value {
     let (scene, certificate) = (&of.scene, &of.motion.certificate);
     let setup = scene.setup(&of.body, &of.laws);
-    let conserved = certificate.drifts.iter().map(|(quantity, value, drift)| {
-        vec![("name", quantity.name().into()), ("value", (*value).into()), ("drift", (*drift).into())]
-    });
+    let conserved = certificate.drifts.iter();
+    let conserved =
+        conserved.map(|(kept, value, drift)| facts! { name: kept.name(), value: *value, drift: *drift });
     let horizon = of.motion.horizons().map(|[past, future]| past.min(future)).filter(|h| h.is_finite());
-    let start: Facts = vec![
-        ("rotor", setup.rotor.components().into()),
-        ("omega_body", setup.omega.0.into()),
-        ("time", setup.time.into()),
-    ];
-    let mut facts = vec![
-        ("title", scene.title.clone().into()),
-        ("body", body(of).into()),
-        ("laws", of.laws.iter().map(|law| law.facts()).collect::<Vec<_>>().into()),
-        ("start", start.into()),
-        ("duration", scene.run.duration.into()),
-        ("samples", scene.run.samples.into()),
-        ("method", certificate.method.into()),
-        ("exact", of.motion.horizons().is_some().into()),
-        ("horizon", horizon.into()),
-        ("steps", (certificate.steps as usize).into()),
-        ("error_estimate", certificate.error_estimate.into()),
-        ("conserved", conserved.collect::<Vec<_>>().into()),
-        ("norm_drift", certificate.norm_drift.into()),
-        ("ensemble", scene.ensemble.as_ref().map(|ensemble| ensemble.number).into()),
-    ];
+    let start = facts! {
+        rotor: setup.rotor.components(), omega_body: setup.omega.0, time: setup.time,
+    };
+    let mut facts = facts! {
+        title: scene.title.clone(), body: body(of), start: start,
+        laws: of.laws.iter().map(|law| law.facts()).collect::<Vec<_>>(),
+        duration: scene.run.duration, samples: scene.run.samples,
+        method: certificate.method, exact: of.motion.horizons().is_some(), horizon: horizon,
+        steps: certificate.steps as usize, error_estimate: certificate.error_estimate,
+        conserved: conserved.collect::<Vec<_>>(), norm_drift: certificate.norm_drift,
+        ensemble: scene.ensemble.as_ref().map(|ensemble| ensemble.number),
+    };
     facts.extend(setup.facts());
     json(facts.into())
 }
 
 fn body(of: &Opened) -> Facts {
     let inertia = of.scene.ruling_inertia(&of.body);
-    vec![
-        ("mass", of.scene.has_mass().then_some(of.body.mass).into()),
-        ("center_of_mass", of.body.center_of_mass.0.into()),
-        ("moments", inertia.principal_moments().into()),
-        ("frame", inertia.principal_frame().components().into()),
-        ("solid", of.scene.solid().map(|solid| solid.facts()).into()),
-        ("solid_at", of.scene.shift().0.into()),
-        ("mesh", of.mesh().is_some().into()),
-    ]
+    facts! {
+        mass: of.scene.has_mass().then_some(of.body.mass), center_of_mass: of.body.center_of_mass.0,
+        moments: inertia.principal_moments(), frame: inertia.principal_frame().components(),
+        solid: of.scene.solid().map(|solid| solid.facts()), solid_at: of.scene.shift().0,
+        mesh: of.mesh().is_some(),
+    }
 }
 
 /// A fact as JSON, in which numbers that are not finite are `null`.

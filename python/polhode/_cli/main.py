@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import math
 import os
 import re
 import signal
@@ -118,7 +119,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--threads",
         metavar="N",
-        type=_thread_count,
+        type=_whole_number("number of threads", 1, math.inf),
         help="threads for an ensemble's bodies, default all cores; results do not depend on it",
     )
     run.set_defaults(command=_run)
@@ -142,7 +143,11 @@ def _add_view(commands: Any) -> None:
     )
     view.add_argument("file", metavar="FILE", help="a scene, or the netCDF file of one body's motion")
     view.add_argument(
-        "--port", metavar="N", type=_port, default=0, help="port of the server, default a free one"
+        "--port",
+        metavar="N",
+        type=_whole_number("port", 0, 65535),
+        default=0,
+        help="port of the server, default a free one",
     )
     view.add_argument(
         "--no-browser",
@@ -232,18 +237,16 @@ def _repl(_: argparse.Namespace) -> int:
     return _repl.run()
 
 
-def _thread_count(text: str) -> int:
-    """Return a number of threads."""
-    if not (text.isascii() and text.isdigit() and int(text) >= 1):
-        raise argparse.ArgumentTypeError(f"number of threads must be an integer of at least 1, got {text!r}")
-    return int(text)
+def _whole_number(what: str, least: int, most: float) -> Callable[[str], int]:
+    """Return an argparse type for integers in a range."""
 
+    def checked(text: str) -> int:
+        if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
+            bounds = f"of at least {least}" if most == math.inf else f"from {least} to {most}"
+            raise argparse.ArgumentTypeError(f"{what} must be an integer {bounds}, got {text!r}")
+        return int(text)
 
-def _port(text: str) -> int:
-    """Return a port."""
-    if not (text.isascii() and text.isdigit() and int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"port must be an integer from 0 to 65535, got {text!r}")
-    return int(text)
+    return checked
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -39,7 +39,7 @@ impl Made {
 impl Made {
     /// Its name in the module that makes it.
     #[getter]
-    fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
@@ -226,7 +226,8 @@ fn three(answer: Bound<'_, PyAny>, what: What<'_>, grades: Grades, kind: &str) -
     }
     // Any other value of three numbers, or the error that says why it is none.
     static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-    let module = MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
+    let module =
+        MODULE.get_or_try_init(py, || py.import("polhode._algebra.constructors").map(Bound::unbind))?;
     let rows = module.bind(py).call_method1(format!("as_{kind}s").as_str(), (answer, what()))?;
     let rows: Rows<'_> = rows.call_method0(intern!(py, "copy"))?.extract()?;
     one(&rows).map_err(|error| PyValueError::new_err(format!("{} must be a single {kind}: {error}", what())))

@@ -117,7 +117,7 @@ impl Motion {
     /// The name of its kind.
     #[getter]
     fn kind(&self) -> &'static str {
-        self.setup.kind().name()
+        self.setup.kind()
     }
 
     /// The description of the motion, by name.

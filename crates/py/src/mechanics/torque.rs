@@ -79,9 +79,7 @@ impl Law {
         let name = match &torque {
             Torque::Formula(law) if law.axes() == Axes::Space => "torque_space",
             Torque::Formula(_) => "torque_body",
-            Torque::Tabulated(_) => "tabulated",
-            Torque::Function(_) => "function",
-            _ => torque.call().map_or("", |(name, _)| name),
+            _ => slf.as_super().get().name(),
         };
         dict(slf.py(), law_facts(name, &torque, None))
     }

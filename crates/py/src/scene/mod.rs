@@ -95,7 +95,7 @@ impl Scene {
     /// The name of the kind of motion.
     #[getter]
     fn kind(&self) -> &'static str {
-        self.setup().kind().name()
+        self.setup().kind()
     }
 
     /// Facts that follow from the start, by name.

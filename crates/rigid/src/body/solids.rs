@@ -3,6 +3,7 @@
 use super::Body;
 use super::inertia::Inertia;
 use crate::error::BodyError;
+use crate::facts;
 use crate::facts::Facts;
 use polhode_ga::Vector;
 use std::f64::consts::PI;
@@ -77,30 +78,21 @@ impl Amount {
 impl Solid {
     /// Its `kind` and its sizes in metres, named as in scenes.
     pub fn facts(self) -> Facts {
-        let round = |kind: &str, radius: f64, height: f64| {
-            vec![("kind", kind.into()), ("radius", radius.into()), ("height", height.into())]
-        };
         match self {
-            Solid::Box { lengths } => vec![("kind", "box".into()), ("lengths", lengths.into())],
-            Solid::Ellipsoid { semi_axes } => {
-                vec![("kind", "ellipsoid".into()), ("semi_axes", semi_axes.into())]
+            Solid::Box { lengths } => facts! { kind: "box", lengths: lengths },
+            Solid::Ellipsoid { semi_axes } => facts! { kind: "ellipsoid", semi_axes: semi_axes },
+            Solid::Sphere { radius } => facts! { kind: "sphere", radius: radius },
+            Solid::HollowSphere { outer_radius, inner_radius } => {
+                facts! { kind: "hollow_sphere", outer_radius: outer_radius, inner_radius: inner_radius }
             }
-            Solid::Sphere { radius } => vec![("kind", "sphere".into()), ("radius", radius.into())],
-            Solid::HollowSphere { outer_radius, inner_radius } => vec![
-                ("kind", "hollow_sphere".into()),
-                ("outer_radius", outer_radius.into()),
-                ("inner_radius", inner_radius.into()),
-            ],
-            Solid::Cylinder { radius, height } => round("cylinder", radius, height),
-            Solid::Cone { radius, height } => round("cone", radius, height),
-            Solid::Rod { length } => vec![("kind", "rod".into()), ("length", length.into())],
-            Solid::Disc { radius } => vec![("kind", "disc".into()), ("radius", radius.into())],
-            Solid::Torus { major_radius, minor_radius } => vec![
-                ("kind", "torus".into()),
-                ("major_radius", major_radius.into()),
-                ("minor_radius", minor_radius.into()),
-            ],
-            Solid::Capsule { radius, height } => round("capsule", radius, height),
+            Solid::Cylinder { radius, height } => facts! { kind: "cylinder", radius: radius, height: height },
+            Solid::Cone { radius, height } => facts! { kind: "cone", radius: radius, height: height },
+            Solid::Rod { length } => facts! { kind: "rod", length: length },
+            Solid::Disc { radius } => facts! { kind: "disc", radius: radius },
+            Solid::Torus { major_radius, minor_radius } => {
+                facts! { kind: "torus", major_radius: major_radius, minor_radius: minor_radius }
+            }
+            Solid::Capsule { radius, height } => facts! { kind: "capsule", radius: radius, height: height },
         }
     }
 

@@ -9,6 +9,7 @@ use crate::exact::free::FreeMotion;
 use crate::exact::lagrange::{LagrangeDescription, LagrangeTop};
 use crate::exact::regime::{FreeDescription, Regime};
 use crate::exact::symmetric::SymmetricTop;
+use crate::facts;
 use crate::facts::Facts;
 use crate::laws::torque::{Argument, Orbit, Torque, wheel};
 use crate::run::{Motion, Setup, States};
@@ -16,54 +17,18 @@ use polhode_ga::{Rotor, Vector};
 use samples::{crossings, ends, mean_interval, mean_rate, range};
 use std::f64::consts::{LN_2, PI};
 
-/// The kind of a motion, by the torques.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// No torque.
-    Free,
-    /// Gravity on a body held at a point.
-    Heavy,
-    /// A wheel inside the body, and no torque.
-    Gyrostat,
-    /// A damping torque `−g L` alone.
-    Damped,
-    /// The gravity gradient, and any other torques.
-    Satellite,
-    /// Any other torques.
-    Torqued,
-}
-
-impl Kind {
-    /// Its name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Free => "free",
-            Kind::Heavy => "heavy",
-            Kind::Gyrostat => "gyrostat",
-            Kind::Damped => "damped",
-            Kind::Satellite => "satellite",
-            Kind::Torqued => "torqued",
-        }
-    }
-}
-
-/// Heavy bodies that have an integral of their own, by the name of the integral.
-const INTEGRABLE: [(&str, &str); 2] = [
-    ("kovalevskaya_integral", "Kovalevskaya's top about a fixed point"),
-    ("goryachev_chaplygin_integral", "Goryachev's and Chaplygin's top about a fixed point"),
-];
-
 impl Setup {
-    /// The kind of motion.
-    pub fn kind(&self) -> Kind {
+    /// The kind of motion by the torques: `free` without any; `heavy`, `gyrostat` or `damped` if all are weights, wheels or
+    /// dampings `−g L`; `satellite` if one is a gravity gradient; else `torqued`.
+    pub fn kind(&self) -> &'static str {
         let all = |is: fn(&Torque) -> bool| self.torques.iter().all(is);
         match () {
-            () if self.torques.is_empty() => Kind::Free,
-            () if self.orbit().is_some() => Kind::Satellite,
-            () if all(|torque| matches!(torque, Torque::Heavy(_))) => Kind::Heavy,
-            () if all(|torque| matches!(torque, Torque::Wheel(_))) => Kind::Gyrostat,
-            () if all(|torque| matches!(torque, Torque::Damping(_))) => Kind::Damped,
-            () => Kind::Torqued,
+            () if self.torques.is_empty() => "free",
+            () if self.orbit().is_some() => "satellite",
+            () if all(|torque| matches!(torque, Torque::Heavy(_))) => "heavy",
+            () if all(|torque| matches!(torque, Torque::Wheel(_))) => "gyrostat",
+            () if all(|torque| matches!(torque, Torque::Damping(_))) => "damped",
+            () => "torqued",
         }
     }
 
@@ -75,57 +40,39 @@ impl Setup {
 
     /// The orbit of a satellite.
     fn orbit(&self) -> Option<&Orbit> {
-        self.torques
-            .iter()
-            .find_map(|t| if let Torque::GravityGradient(orbit) = t { Some(orbit) } else { None })
+        let mut torques = self.torques.iter();
+        torques.find_map(|t| if let Torque::GravityGradient(orbit) = t { Some(orbit) } else { None })
     }
 
-    /// What follows from the start of a free motion; none for others.
-    pub fn free(&self) -> Option<FreeDescription> {
-        self.torques.is_empty().then(|| self.turning()).flatten()
-    }
-
-    /// The free motion that starts so.
-    fn turning(&self) -> Option<FreeDescription> {
+    /// The free motion from this start.
+    fn free(&self) -> Option<FreeDescription> {
         FreeMotion::new(&self.inertia, self.rotor, self.omega).ok().map(|motion| motion.describe())
     }
 
-    /// What follows from the start of a heavy symmetric top; none for others.
-    pub fn top(&self) -> Option<LagrangeDescription> {
-        let weight = self.weight().filter(|_| self.kind() == Kind::Heavy)?;
+    /// The motion of a heavy symmetric top; None for other bodies.
+    fn top(&self) -> Option<LagrangeDescription> {
+        let weight = self.weight().filter(|_| self.kind() == "heavy")?;
         LagrangeTop::new(&self.inertia, self.rotor, self.omega, weight).ok().map(|top| top.describe())
     }
 
-    /// What is known from the start alone: `held`, `heavy`, `free` and `top` of `About` in `viewer/src/core/core.ts`.
+    /// Facts that follow from the start: `held`, `heavy`, `free` and `top` of `About` in `viewer/src/core/core.ts`.
     pub fn facts(&self) -> Facts {
-        let top = self.top().map(|top| {
-            let mut facts = top.facts();
-            facts.push(("tilt", [top.tilt_min, top.tilt_max].into()));
-            facts
-        });
-        vec![
-            ("held", self.weight().is_some().into()),
-            ("heavy", self.weight().map(|c| c.0).into()),
-            ("free", self.free().map(|free| free.facts()).into()),
-            ("top", top.into()),
-        ]
+        let top = self.top().map(|top| [top.facts(), facts! { tilt: [top.tilt_min, top.tilt_max] }].concat());
+        let free = self.free().filter(|_| self.torques.is_empty()).map(|free| free.facts());
+        facts! { held: self.weight().is_some(), heavy: self.weight().map(|c| c.0), free: free, top: top }
     }
 
-    /// What is known of the motion; its `kind` says which names there are. Angles are in rad.
+    /// Facts of the motion; `kind` determines which names there are. Angles are in rad.
     pub fn describe(&self, motion: &Motion) -> Facts {
         let states = motion.states();
-        let kind = self.kind();
-        let mut facts = match kind {
-            Kind::Free => self.describe_free(motion, &states),
-            Kind::Heavy => self.describe_heavy(motion, &states),
-            Kind::Gyrostat => self.describe_gyrostat(&states),
-            Kind::Damped => self.describe_damped(),
-            Kind::Satellite => self.describe_satellite(&states),
-            Kind::Torqued => vec![("regime", "under torque".into())],
+        let mut facts = match self.kind() {
+            "free" => self.describe_free(motion, &states),
+            "heavy" => self.describe_heavy(motion, &states),
+            "gyrostat" => self.describe_gyrostat(&states),
+            "damped" => self.describe_damped(),
+            "satellite" => self.describe_satellite(&states),
+            kind => facts! { kind: kind, regime: "under torque" },
         };
-        if facts.iter().all(|(name, _)| *name != "kind") {
-            facts.push(("kind", kind.name().into()));
-        }
         let target = self.torques.iter().find_map(|torque| match torque {
             Torque::TorsionSpring { rest: target, .. } | Torque::Control { target, .. } => Some(*target),
             _ => None,
@@ -135,55 +82,49 @@ impl Setup {
                 let [scalar, x, y, z] = (target.reverse() * *rotor).components();
                 2.0 * Vector([x, y, z]).norm().atan2(scalar.abs())
             };
-            facts.push(("from_target", ends(states.rotors.iter().map(angle)).into()));
+            facts.extend(facts! { from_target: ends(states.rotors.iter().map(angle)) });
         }
         if self.torques.iter().any(|torque| !matches!(torque, Torque::Heavy(_) | Torque::Wheel(_))) {
-            let changes: Facts = vec![
-                ("rate", ends(states.omegas.iter().map(|omega| omega.norm())).into()),
-                ("angular_momentum", ends(states.momenta_space.iter().map(|l| l.norm())).into()),
-            ];
-            facts.push(("changes", changes.into()));
+            let rate = ends(states.omegas.iter().map(|omega| omega.norm()));
+            let momentum = ends(states.momenta_space.iter().map(|l| l.norm()));
+            facts.extend(facts! { changes: facts! { rate: rate, angular_momentum: momentum } });
         }
         let moves = states.centers.first().is_some_and(|center| center.velocity != Vector::default());
         if self.has_forces || moves {
-            facts.push(("position", ends(states.centers.iter().map(|center| center.position.0)).into()));
-            facts.push(("velocity", ends(states.centers.iter().map(|center| center.velocity.0)).into()));
+            let position = ends(states.centers.iter().map(|center| center.position.0));
+            let velocity = ends(states.centers.iter().map(|center| center.velocity.0));
+            facts.extend(facts! { position: position, velocity: velocity });
         }
         facts
     }
 
-    /// The free motion at the start; of a symmetric top its wobbles for each turn about its axis too.
-    fn describe_turning(&self) -> Facts {
-        let Some(free) = self.turning() else { return Facts::new() };
-        let mut facts = free.facts();
+    /// The free motion from this start; of a symmetric top its wobbles for each turn about its axis too.
+    fn describe_start(&self, kind: &str) -> Facts {
+        let Some(free) = self.free() else { return facts! { kind: kind } };
+        let mut facts = [facts! { kind: kind }, free.facts()].concat();
         if let (Regime::Symmetric, Some(rate)) = (free.regime, free.precession_rate) {
             let spin = self.inertia.principal_frame().reverse().apply_bivector(self.omega).0[free.axis];
-            facts.push(("wobbles_per_turn", (spin != 0.0).then(|| (rate / spin).abs()).into()));
+            facts.extend(facts! { wobbles_per_turn: (spin != 0.0).then(|| (rate / spin).abs()) });
         }
         facts
     }
 
     fn describe_free(&self, motion: &Motion, states: &States) -> Facts {
-        let mut facts = self.describe_turning();
-        let flip = self.turning().and_then(|free| free.flip_time());
-        let is_sampled = flip.is_some_and(|flip| longest(&states.times) < 0.25 * flip);
-        facts.push(("reversals", is_sampled.then(|| self.reversals(states)).flatten().into()));
-        if motion.horizons().is_some() {
-            return facts;
-        }
-        if let Some(top) = SymmetricTop::new(&self.inertia, self.rotor, self.omega) {
-            let mut most = [0.0_f64; 2];
+        let flip = self.free().and_then(|free| free.flip_time());
+        let flip = flip.filter(|flip| longest(&states.times) < 0.25 * flip);
+        let reversals = facts! { reversals: flip.and_then(|_| self.reversals(states)) };
+        let mut facts = [self.describe_start("free"), reversals].concat();
+        let top = SymmetricTop::new(&self.inertia, self.rotor, self.omega);
+        if let Some(top) = top.filter(|_| motion.horizons().is_none()) {
+            let (mut most, mut most_omega) = (0.0_f64, 0.0_f64);
             for (k, time) in states.times.iter().enumerate() {
                 let (rotor, omega) = top.at(time - self.time);
                 let (a, b) = (rotor.components(), states.rotors[k].components());
-                let off = (0..4).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
-                most = [most[0].max(off), most[1].max((omega - states.omegas[k]).norm())];
+                most = most.max((0..4).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt());
+                most_omega = most_omega.max((omega - states.omegas[k]).norm());
             }
-            let differences: Facts = vec![
-                ("largest_rotor_difference", most[0].into()),
-                ("largest_omega_difference", most[1].into()),
-            ];
-            facts.push(("closed_form", differences.into()));
+            let differences = facts! { largest_rotor_difference: most, largest_omega_difference: most_omega };
+            facts.extend(facts! { closed_form: differences });
         }
         facts
     }
@@ -194,8 +135,7 @@ impl Setup {
         let spin: Vec<f64> =
             states.omegas.iter().map(|omega| back.apply_bivector(*omega).0[middle]).collect();
         let times = crossings(&states.times, &spin);
-        let interval = mean_interval(&times)?;
-        Some(vec![("count", times.len().into()), ("mean_interval", interval.into())])
+        Some(facts! { count: times.len(), mean_interval: mean_interval(&times)? })
     }
 
     /// The principal axes by rising moment.
@@ -206,63 +146,53 @@ impl Setup {
         axes
     }
 
-    /// How far L, seen from the body, is from the axis of the wheel.
+    /// The angle between L, in body axes, and the axis of the wheel.
     fn describe_gyrostat(&self, states: &States) -> Facts {
-        let h = wheel(&self.torques);
-        let momenta: Vec<Vector> = states
-            .rotors
-            .iter()
-            .zip(&states.momenta_space)
-            .map(|(rotor, l)| rotor.reverse().apply_bivector(*l).dual())
-            .collect();
-        let mut facts: Facts = vec![
-            ("regime", "body with a wheel, no torque from outside".into()),
-            ("wheel", h.0.into()),
-            ("momentum_size", momenta.first().map(|l| l.norm()).into()),
-        ];
+        let h = wheel(&self.torques).dual();
+        let momenta = states.rotors.iter().zip(&states.momenta_space);
+        let momenta = momenta.map(|(rotor, l)| rotor.reverse().apply_bivector(*l).dual());
+        let size = momenta.clone().next().map(|l| l.norm());
+        let regime = "body with a wheel, no torque from outside";
+        let mut facts = facts! { kind: "gyrostat", regime: regime, wheel: h.0, momentum_size: size };
         if h.norm() != 0.0 {
-            let axis = h.dual() / h.norm();
-            facts.push((
-                "from_wheel",
-                range(momenta.iter().map(|l| l.cross(axis).norm().atan2(l.dot(axis)))).into(),
-            ));
+            let axis = h / h.norm();
+            let angles = momenta.map(|l| l.cross(axis).norm().atan2(l.dot(axis)));
+            facts.extend(facts! { from_wheel: range(angles) });
         }
         facts
     }
 
     /// The free motion at the start, which goes on in the time `(1 − e^(−gt))/g`.
     fn describe_damped(&self) -> Facts {
-        let damping: f64 =
-            self.torques.iter().map(|t| if let Torque::Damping(g) = t { *g } else { 0.0 }).sum();
-        let mut facts = self.describe_turning();
-        facts.push(("damping", damping.into()));
-        facts.push(("halved_after", (damping != 0.0).then_some(LN_2 / damping).into()));
-        facts
+        let each = self.torques.iter().map(|t| if let Torque::Damping(g) = t { *g } else { 0.0 });
+        let damping: f64 = each.sum();
+        let half = (damping != 0.0).then_some(LN_2 / damping);
+        [self.describe_start("damped"), facts! { damping: damping, halved_after: half }].concat()
     }
 
-    /// How the line from the fixed point to the centre of mass moves.
+    /// The motion of the line from the fixed point to the centre of mass.
     fn describe_heavy(&self, motion: &Motion, states: &States) -> Facts {
         let weight = self.weight().unwrap_or_default();
         let size = weight.norm();
-        let mut facts: Facts = vec![("mgl", size.into())];
         if let Some(top) = self.top().filter(|_| size != 0.0) {
-            let (spin, axial) = ((weight / size).dot(self.omega.dual()), top.axial_momentum);
-            facts.extend(top.facts());
-            facts.push(("kind", "lagrange".into()));
-            facts.push(("spin", spin.into()));
-            facts.push(("fast_top_precession_rate", (axial != 0.0).then_some(size / axial).into()));
-            return facts;
+            let spin = (weight / size).dot(self.omega.dual());
+            let fast = Some(size / top.axial_momentum).filter(|rate| rate.is_finite());
+            let own = facts! { kind: "lagrange", mgl: size, spin: spin, fast_top_precession_rate: fast };
+            return [own, top.facts()].concat();
         }
-        let is_kept =
-            |integral: &str| motion.certificate.drifts.iter().any(|(kept, ..)| kept.name() == integral);
-        let known = INTEGRABLE.iter().find(|(integral, _)| is_kept(integral));
-        facts.push(("regime", known.map_or("heavy body about a fixed point", |(_, name)| name).into()));
+        // Some heavy bodies have an integral of their own.
+        let integrals = motion.certificate.drifts.iter().map(|(kept, ..)| kept.name());
+        let regime = integrals.fold("heavy body about a fixed point", |regime, integral| match integral {
+            "kovalevskaya_integral" => "Kovalevskaya's top about a fixed point",
+            "goryachev_chaplygin_integral" => "Goryachev's and Chaplygin's top about a fixed point",
+            _ => regime,
+        });
+        let mut facts = facts! { kind: "heavy", regime: regime, mgl: size };
         if size != 0.0 {
             let path: Vec<Vector> = states.rotors.iter().map(|rotor| rotor.apply(weight / size)).collect();
             let [least, most] = range(path.iter().map(|Vector([x, y, z])| x.hypot(*y).atan2(*z)));
-            facts.push(("tilt_min", least.into()));
-            facts.push(("tilt_max", most.into()));
-            facts.push(("precession_rate", mean_rate(states, &path).into()));
+            let rate = mean_rate(states, &path);
+            facts.extend(facts! { tilt_min: least, tilt_max: most, precession_rate: rate });
         }
         facts
     }
@@ -292,31 +222,25 @@ impl Setup {
     /// normal, follow `θ'' = −3 n² (b − a)/c θ`.
     fn describe_satellite(&self, states: &States) -> Facts {
         let (Some(orbit), Some(parts)) = (self.orbit(), self.long_axis(states)) else { return Facts::new() };
-        let [_, _, largest] = self.by_moment();
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         let is_bound = parts.iter().all(|part| sign(part[2]) == sign(parts[0][2]));
         let along: Vec<f64> = parts.iter().map(|[along, _, up]| along * sign(*up)).collect();
         let swings = if is_bound { crossings(&states.times, &along) } else { Vec::new() };
-        let rate = orbit.rate().abs();
-        let [a, b, c] = self.by_moment().map(|k| self.inertia.principal_moments()[k]);
-        let stiffness = 3.0 * (b - a) / c;
-        let small = 2.0 * PI / (rate * stiffness.sqrt());
+        let libration = mean_interval(&swings).filter(|_| swings.len() > 2).map(|interval| 2.0 * interval);
+        let moments = self.inertia.principal_moments();
+        let [a, b, c] = self.by_moment().map(|k| moments[k]);
+        let (rate, stiffness) = (orbit.rate().abs(), 3.0 * (b - a) / c);
+        let period = |rate: f64| Some(2.0 * PI / rate).filter(|period| period.is_finite());
         let regime =
             if is_bound { "librating about the vertical" } else { "turning over, not held by the gradient" };
         let angle = |x: f64, y: f64, z: f64| x.hypot(y).atan2(z.abs());
-        let normal = self.principal_axis(states, largest);
-        vec![
-            ("regime", regime.into()),
-            ("orbital_period", (rate != 0.0).then_some(2.0 * PI / rate).into()),
-            ("eccentricity", orbit.eccentricity().into()),
-            (
-                "from_vertical",
-                range(parts.iter().map(|[along, across, up]| angle(*along, *across, *up))).into(),
-            ),
-            ("from_normal", range(normal.map(|Vector([x, y, z])| angle(x, y, z))).into()),
-            ("libration_period", mean_interval(&swings).filter(|_| swings.len() > 2).map(|t| 2.0 * t).into()),
-            ("small_libration_period", (rate != 0.0 && stiffness != 0.0).then_some(small).into()),
-        ]
+        let normals = self.principal_axis(states, self.by_moment()[2]);
+        facts! {
+            kind: "satellite", regime: regime, orbital_period: period(rate), eccentricity: orbit.eccentricity(),
+            from_vertical: range(parts.iter().map(|[along, across, up]| angle(*along, *across, *up))),
+            from_normal: range(normals.map(|Vector([x, y, z])| angle(x, y, z))),
+            libration_period: libration, small_libration_period: period(rate * stiffness.sqrt()),
+        }
     }
 }
 
@@ -326,13 +250,11 @@ fn longest(times: &[f64]) -> f64 {
 }
 
 /// A law's name in scenes and, as text, its formula or its numbers.
-pub fn law_facts(name: &'static str, torque: &Torque, formula: Option<&str>) -> Facts {
+pub fn law_facts(name: &str, torque: &Torque, formula: Option<&str>) -> Facts {
+    let joined = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let argument = |argument: &Argument| match argument {
         Argument::One(x) => x.to_string(),
-        Argument::Row(row) => {
-            let row: Vec<String> = row.iter().map(f64::to_string).collect();
-            format!("({})", row.join(", "))
-        }
+        Argument::Row(row) => format!("({})", joined(row)),
     };
     let text = match (formula, torque) {
         (Some(formula), _) => formula.to_owned(),
@@ -342,5 +264,5 @@ pub fn law_facts(name: &'static str, torque: &Torque, formula: Option<&str>) -> 
             numbers.iter().map(argument).collect::<Vec<_>>().join(", ")
         }
     };
-    vec![("name", name.into()), ("text", text.into())]
+    facts! { name: name, text: text }
 }

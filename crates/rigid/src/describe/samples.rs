@@ -1,6 +1,7 @@
 //! Numbers of a motion that follow from its states at the output times.
 
 use super::longest;
+use crate::facts;
 use crate::facts::{Fact, Facts};
 use crate::run::States;
 use polhode_ga::Vector;
@@ -11,7 +12,7 @@ const FOLLOWED: f64 = 2.0;
 
 /// The first and the last value.
 pub fn ends<T: Into<Fact>>(values: impl DoubleEndedIterator<Item = T> + Clone) -> Facts {
-    vec![("start", values.clone().next().into()), ("end", values.clone().next_back().into())]
+    facts! { start: values.clone().next(), end: values.clone().next_back() }
 }
 
 /// The smallest and the largest value.

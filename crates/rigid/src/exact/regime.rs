@@ -1,5 +1,6 @@
 //! The regime of a free motion, and its periods.
 
+use crate::facts;
 use crate::facts::Facts;
 use std::f64::consts::PI;
 use std::fmt;
@@ -81,21 +82,13 @@ impl FreeDescription {
     }
     /// The description by name; `axis` is 1, 2 or 3.
     pub fn facts(&self) -> Facts {
-        vec![
-            ("regime", self.regime.to_string().into()),
-            ("axis", (self.axis + 1).into()),
-            ("modulus", self.modulus.into()),
-            ("energy", self.energy.into()),
-            ("angular_momentum", self.angular_momentum.into()),
-            ("period", self.period.into()),
-            ("precession_rate", self.precession_rate.into()),
-            ("precession_period", self.precession_period().into()),
-            ("phase_per_period", self.phase_per_period().into()),
-            ("solid_angle", self.solid_angle.into()),
-            ("flip_time", self.flip_time().into()),
-            ("wobble_min", self.wobble.map(|[least, _]| least).into()),
-            ("wobble_max", self.wobble.map(|[_, most]| most).into()),
-            ("wobble_period", self.wobble_period.into()),
-        ]
+        let [wobble_min, wobble_max] = [0, 1].map(|end| self.wobble.map(|wobble| wobble[end]));
+        facts! {
+            regime: self.regime.to_string(), axis: self.axis + 1, modulus: self.modulus, energy: self.energy,
+            angular_momentum: self.angular_momentum, period: self.period, precession_rate: self.precession_rate,
+            precession_period: self.precession_period(), phase_per_period: self.phase_per_period(),
+            solid_angle: self.solid_angle, flip_time: self.flip_time(),
+            wobble_min: wobble_min, wobble_max: wobble_max, wobble_period: self.wobble_period,
+        }
     }
 }

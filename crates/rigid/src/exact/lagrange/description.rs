@@ -1,6 +1,7 @@
 //! The regime of a heavy symmetric top, and its periods.
 
 use super::{Form, LagrangeTop};
+use crate::facts;
 use crate::facts::Facts;
 use crate::numerics::wide::Wide;
 use crate::state::phase::Gyrostat;
@@ -98,21 +99,13 @@ impl LagrangeDescription {
 
     /// The description by name.
     pub fn facts(&self) -> Facts {
-        vec![
-            ("regime", self.regime.to_string().into()),
-            ("tilt_min", self.tilt_min.into()),
-            ("tilt_max", self.tilt_max.into()),
-            ("nutation_period", self.nutation_period.into()),
-            ("precession_rate", self.precession_rate.into()),
-            ("precession_period", self.precession_period().into()),
-            ("spin_rate", self.spin_rate.into()),
-            ("modulus", self.modulus.into()),
-            ("energy", self.energy.into()),
-            ("axial_momentum", self.axial_momentum.into()),
-            ("vertical_momentum", self.vertical_momentum.into()),
-            ("critical_spin", self.critical_spin.into()),
-            ("sleeps", self.sleeps.into()),
-        ]
+        facts! {
+            regime: self.regime.to_string(), tilt_min: self.tilt_min, tilt_max: self.tilt_max,
+            nutation_period: self.nutation_period, precession_rate: self.precession_rate,
+            precession_period: self.precession_period(), spin_rate: self.spin_rate, modulus: self.modulus,
+            energy: self.energy, axial_momentum: self.axial_momentum, vertical_momentum: self.vertical_momentum,
+            critical_spin: self.critical_spin, sleeps: self.sleeps,
+        }
     }
 }
 

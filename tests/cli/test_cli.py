@@ -1,4 +1,4 @@
-"""The command: its examples, the files and pages it writes, its help, and what it prints where."""
+"""The command: examples, files, help, and output."""
 
 import json
 import os
@@ -27,7 +27,7 @@ def half_period(i, omega):
     return np.pi / x / np.sqrt((c - b) * q / (a * b * c))
 
 
-def test_the_t_handle_flips_as_often_as_the_closed_form_says():
+def test_the_t_handle_flips_at_half_the_period():
     result = summary_of(EXAMPLES / "t-handle.toml")
     motion, body = result["motion"], result["body"]
     spin = np.array(body["principal_axes"]) @ (2 * np.pi * np.array([0.005, 5, 0.005]))
@@ -68,7 +68,7 @@ def test_the_gyroscope_precesses_by_the_fast_top_formula():
     assert motion["tilt_min"] == pytest.approx(np.radians(30), abs=1e-9)
 
 
-# --- what it writes
+# --- files
 
 
 @pytest.mark.parametrize("gravity", [False, True], ids=["free", "heavy"])
@@ -131,12 +131,12 @@ def test_json_is_one_document_and_nothing_else(scene):
     assert result["files"] == []
     assert result["run"]["drift_within_bound"] is True
     assert result["run"]["duration"] == 1.0
-    # Neither NaN nor Infinity, which are no JSON.
+    # Neither NaN nor Infinity, which JSON does not have.
     json.loads(done.stdout, parse_constant=pytest.fail)
 
 
-def test_it_runs_from_any_directory_and_any_path(tmp_path):
-    """The mesh is found beside its scene; the path has spaces and is not ASCII."""
+def test_scenes_run_from_any_directory_and_path(tmp_path):
+    """The mesh is found next to its scene; the path has spaces and non-ASCII letters."""
     folder = tmp_path / "Ωmega und mehr" / "twó"
     folder.mkdir(parents=True)
     scene = folder / "kreisel – 1.toml"
@@ -182,7 +182,7 @@ def test_wrong_usage_is_2(arguments):
 # --- check
 
 
-def test_check_tells_good_from_bad(scene, tmp_path):
+def test_check_reports_good_and_bad_scenes(scene, tmp_path):
     bad = tmp_path / "bad.toml"
     bad.write_text(SCENE.replace("duration", "durration"))
     done = polhode("check", scene)
@@ -202,8 +202,8 @@ def test_check_tells_good_from_bad(scene, tmp_path):
 # --- standard output
 
 
-def test_a_reader_that_leaves_early(scene):
-    """As `polhode run … | head -1`, with the reader gone before the first word."""
+def test_a_closed_pipe_is_not_an_error(scene):
+    """As `polhode run … | head -1`, with the pipe closed before the first word."""
     read, write = os.pipe()
     os.close(read)
     with os.fdopen(write, "wb") as stdout:
@@ -227,8 +227,8 @@ def test_output_that_cannot_be_printed_is_an_error(scene):
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_any_terminal_encoding_gets_the_page(encoding, scene):
-    """A character that it lacks is no reason to fail."""
+def test_the_summary_prints_in_any_encoding(encoding, scene):
+    """Missing characters do not make the command fail."""
     done = polhode("run", scene, encoding=encoding, env={"PYTHONIOENCODING": encoding})
     assert done.returncode == 0, done.stderr
     assert "short-axis mode" in done.stdout

@@ -1,4 +1,4 @@
-"""The command when things go wrong: the places of errors in scenes, exit codes, and what is left behind."""
+"""Errors of the command: places in scenes, exit codes, and files left behind."""
 
 import json
 import os
@@ -13,7 +13,7 @@ import processes
 from command_line import SCENE, polhode
 from viewers import needs_bundle
 
-# Steps enough for hours.
+# Runs for hours.
 ENDLESS = SCENE.replace('"1 s"', '"1e6 s"').replace("samples = 11", 'step = "1 ms"\nmethod = "kahan_li8"')
 
 
@@ -82,7 +82,7 @@ def test_bad_scenes_have_a_place(name, command, tmp_path):
         ("huge.toml", b"#" * 10_000_001, ["huge.toml: error: larger than 10 MB"]),
     ],
 )
-def test_files_that_are_no_scenes(name, content, parts, tmp_path):
+def test_files_that_are_not_scenes(name, content, parts, tmp_path):
     (tmp_path / name).write_bytes(content)
     done = polhode("run", name, cwd=tmp_path)
     assert done.returncode == 3
@@ -90,7 +90,7 @@ def test_files_that_are_no_scenes(name, content, parts, tmp_path):
         assert part in done.stderr
 
 
-def test_paths_that_are_no_files(tmp_path):
+def test_paths_that_are_not_files(tmp_path):
     absent = polhode("run", "absent.toml", cwd=tmp_path)
     assert absent.returncode == 3
     assert absent.stderr == "absent.toml: error: no such file\n"
@@ -105,7 +105,7 @@ def test_a_missing_mesh_is_named(tmp_path):
     assert "absent.stl: cannot be read" in done.stderr
 
 
-def test_all_errors_are_told_at_once(tmp_path):
+def test_all_errors_are_reported_at_once(tmp_path):
     text = SCENE.replace("duration", "durration").replace("spin", "spinn").replace("= 11", "= 1")
     (tmp_path / "bad.toml").write_text(text)
     done = polhode("run", "bad.toml", cwd=tmp_path)
@@ -171,7 +171,7 @@ def test_outputs_that_cannot_be_written(output, parts, scene, tmp_path):
 
 
 @pytest.mark.parametrize("output", ["out.txt", "/dev/full", "small.toml", ".nc", ""])
-def test_an_output_that_is_no_netcdf_file_is_wrong_usage(output, scene, tmp_path):
+def test_an_output_without_suffix_nc_is_a_usage_error(output, scene, tmp_path):
     before = sorted(tmp_path.iterdir())
     done = polhode("run", scene, "-o", output, cwd=tmp_path)
     assert done.returncode == 2
@@ -179,7 +179,7 @@ def test_an_output_that_is_no_netcdf_file_is_wrong_usage(output, scene, tmp_path
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_a_figure_in_the_way_is_found_before_the_run(scene, tmp_path):
+def test_figures_that_cannot_be_written_are_found_before_the_run(scene, tmp_path):
     (tmp_path / "a-motion.png").mkdir()
     done = polhode("run", scene, "-o", "a.nc", cwd=tmp_path)
     assert done.returncode == 1
@@ -188,7 +188,7 @@ def test_a_figure_in_the_way_is_found_before_the_run(scene, tmp_path):
 
 
 @pytest.mark.parametrize("spin", ["[1e160, 1e160, 1e10]", "[1e300, 1, 1]"])
-def test_what_overflows_is_refused_and_json_stays_json(spin, tmp_path):
+def test_overflow_is_refused_without_output(spin, tmp_path):
     (tmp_path / "a.toml").write_text(re.sub(r"vector = \[.*?\]", f"vector = {spin}", SCENE))
     done = polhode("run", "a.toml", "--json", cwd=tmp_path)
     assert done.returncode == 1
@@ -196,7 +196,7 @@ def test_what_overflows_is_refused_and_json_stays_json(spin, tmp_path):
     assert "must be finite" in done.stderr
 
 
-def test_a_path_that_is_no_text(tmp_path):
+def test_a_path_that_is_not_utf_8(tmp_path):
     done = polhode("check", os.fsencode(tmp_path) + b"/\xff.toml")
     assert done.returncode == 3
     assert "error:" in done.stderr
@@ -210,7 +210,7 @@ def test_a_directory_without_permission(scene, tmp_path):
     assert "permission" in done.stderr
 
 
-# A program that lets no file grow beyond its first argument, as on a disk that is full, and becomes another.
+# Limits the size of files to the first argument, as on a full disk, and runs a program.
 LIMITED = """
 import os, resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -248,7 +248,7 @@ def test_a_full_disk_leaves_the_older_files(size, name, scene, tmp_path):
     ids=lambda command: command[0],
 )
 def test_ctrl_c_ends_a_background_job_of_a_script(command, scene):
-    """Such a job is started to ignore the signal; the shell replaces itself by the command."""
+    """Such a job starts with the signal ignored; the shell execs the command."""
     (scene.parent / "long.toml").write_text(ENDLESS)
     program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"
     through = ["bash", "-c", 'trap "" INT; exec "$@"', "bash", sys.executable, "-c", program]
@@ -260,7 +260,7 @@ def test_ctrl_c_ends_a_background_job_of_a_script(command, scene):
         assert process.wait() == 130
 
 
-def test_an_interrupted_run_leaves_no_trace(tmp_path):
+def test_an_interrupted_run_leaves_no_file(tmp_path):
     (tmp_path / "long.toml").write_text(ENDLESS)
     (tmp_path / "out.nc").write_bytes(b"older")
     program = "from polhode._cli.main import main; print('go', flush=True); raise SystemExit(main())"

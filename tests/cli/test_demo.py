@@ -1,4 +1,4 @@
-"""`polhode demo` and `polhode examples`: what a new user types first."""
+"""The commands `polhode demo` and `polhode examples`."""
 
 import re
 import sys
@@ -14,25 +14,25 @@ from polhode._cli.examples import FOLDER, examples
 
 # --- demo
 
-PICTURES = {"t-handle-motion.png", "t-handle-polhode.png"}
+FIGURES = {"t-handle-motion.png", "t-handle-polhode.png"}
 
 
 def names(folder):
     return {path.name for path in folder.iterdir()}
 
 
-def test_the_demo_writes_its_page_and_pictures(bundle, tmp_path, capsys):
+def test_the_demo_writes_its_page_and_figures(bundle, tmp_path, capsys):
     pytest.importorskip("matplotlib")
     assert main.main(["demo", "-o", str(tmp_path)]) == 0
-    assert names(tmp_path) == {"t-handle.html", *PICTURES}
-    for name in PICTURES:
+    assert names(tmp_path) == {"t-handle.html", *FIGURES}
+    for name in FIGURES:
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     page = (tmp_path / "t-handle.html").read_text()
     assert "<polhode-viewer>" in page
     assert "<title>T-handle in free flight" in page
     printed = capsys.readouterr().out
     assert printed.startswith("T-handle in free flight\n\nBody\n")
-    written = [tmp_path / name for name in ("t-handle.html", *sorted(PICTURES))]
+    written = [tmp_path / name for name in ("t-handle.html", *sorted(FIGURES))]
     assert printed.endswith("\nWritten\n" + "".join(f"  {path}\n" for path in written))
 
 
@@ -45,7 +45,7 @@ def test_the_sketch_has_the_flips(bundle, tmp_path, capsys):
     assert {len(row) for row in rows} == {72}
     signs = [1 if top == "*" else -1 for top, bottom in zip(rows[0], rows[-1], strict=True) if top != bottom]
     assert np.count_nonzero(np.diff(signs)) == 9
-    assert "seen: 9" in printed
+    assert "sampled: 9" in printed
 
 
 def test_the_demo_needs_numpy_only(bundle, tmp_path, monkeypatch, capsys):
@@ -53,7 +53,7 @@ def test_the_demo_needs_numpy_only(bundle, tmp_path, monkeypatch, capsys):
         monkeypatch.setitem(sys.modules, name, None)
     assert main.main(["demo", "-o", str(tmp_path)]) == 0
     assert names(tmp_path) == {"t-handle.html"}
-    assert "No pictures: a figure needs matplotlib: pip install 'polhode[plot]'." in capsys.readouterr().out
+    assert "No figures: a figure needs matplotlib: pip install 'polhode[plot]'." in capsys.readouterr().out
 
 
 def test_the_demo_without_the_viewer(tmp_path, monkeypatch, capsys):
@@ -84,7 +84,7 @@ def test_examples_are_listed_with_their_titles():
     assert listed == {path.stem: tomllib.loads(path.read_text())["title"] for path in EXAMPLES.glob("*.toml")}
 
 
-def test_examples_are_copied_with_what_they_need(tmp_path):
+def test_examples_are_copied_with_their_meshes(tmp_path):
     done = polhode("examples", *examples(), cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert names(tmp_path) == {path.name for path in EXAMPLES.iterdir() if path.suffix in (".toml", ".stl")}
@@ -104,16 +104,14 @@ def test_a_copy_runs(tmp_path):
 
 
 def test_no_file_is_replaced(tmp_path):
-    """And if one is there, none is copied."""
+    """If one exists, none is copied."""
     (tmp_path / "t-handle.stl").write_text("mine")
     done = polhode("examples", "earth", "t-handle", cwd=tmp_path)
     assert done.returncode == 1
-    assert done.stderr == (
-        "polhode: error: t-handle.stl exists and is not replaced; move it, or choose another folder with -o\n"
-    )
+    assert done.stderr == ("polhode: error: t-handle.stl exists; move it, or choose another folder with -o\n")
     assert names(tmp_path) == {"t-handle.stl"}
     assert (tmp_path / "t-handle.stl").read_text() == "mine"
-    # A link that leads nowhere is a file of the user's, too.
+    # A broken link is not replaced either.
     (tmp_path / "earth.toml").symlink_to("nowhere")
     assert polhode("examples", "earth", cwd=tmp_path).returncode == 1
     assert names(tmp_path) == {"t-handle.stl", "earth.toml"}
@@ -122,13 +120,13 @@ def test_no_file_is_replaced(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["t-handel"], 2, "no example is named 't-handel'; did you mean t-handle?"),
-        (["scenes/earth"], 2, "no example is named 'scenes/earth'"),
-        (["zzz"], 2, "no example is named 'zzz'; `polhode examples` lists them"),
-        (["earth", "-o", "absent"], 1, "there is no directory absent; make it first"),
+        (["t-handel"], 2, "unknown example 't-handel'; did you mean t-handle?"),
+        (["scenes/earth"], 2, "unknown example 'scenes/earth'"),
+        (["zzz"], 2, "unknown example 'zzz'; `polhode examples` lists them"),
+        (["earth", "-o", "absent"], 1, "no such directory: absent; create it first"),
     ],
 )
-def test_what_cannot_be_copied(arguments, code, message, tmp_path):
+def test_examples_that_cannot_be_copied(arguments, code, message, tmp_path):
     done = polhode("examples", *arguments, cwd=tmp_path)
     assert done.returncode == code
     assert message in done.stderr
@@ -142,7 +140,7 @@ def test_examples_that_are_missing(tmp_path, monkeypatch, capsys):
 
 
 def test_wheels_and_source_distributions_hold_the_examples():
-    """The package has a link to them, which is packed by patterns: each file but the script fits one."""
+    """Each example file but the script matches a pattern of packed files."""
     assert FOLDER.resolve() == EXAMPLES
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["maturin"]["include"]
     patterns = [entry["path"] for entry in settings if entry["format"] == ["wheel", "sdist"]]

@@ -1,4 +1,4 @@
-"""Files are written in the form that their suffix names; another suffix is refused before any work."""
+"""Suffixes of output files: others are refused before the run."""
 
 import re
 
@@ -37,7 +37,7 @@ def test_an_unknown_suffix_is_refused(kind, name, bundle, tmp_path):
         (["film", "small.toml", "-o"], "a film is saved as FILE.mp4 or FILE.gif"),
     ],
 )
-def test_it_is_wrong_usage_of_the_command(arguments, message, scene):
+def test_the_command_reports_a_usage_error(arguments, message, scene):
     done = polhode(*arguments, "a.csv", cwd=scene.parent)
     assert done.returncode == 2
     assert f"{message}, not 'a.csv'" in done.stderr

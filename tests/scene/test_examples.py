@@ -1,4 +1,4 @@
-"""The scenes in examples/: each runs, prints its page, and tells the number that it is there for."""
+"""Example scenes: each runs and has the number it demonstrates."""
 
 import re
 
@@ -12,7 +12,7 @@ SIDEREAL_DAY = 86164.0905
 
 
 def period_of_pendulum(amplitude):
-    """The period over that of small swings, by the arithmetic-geometric mean."""
+    """The period relative to small swings, by the arithmetic-geometric mean."""
     x, y = 1.0, np.cos(amplitude / 2)
     while abs(x - y) > 1e-15:
         x, y = (x + y) / 2, np.sqrt(x * y)
@@ -33,7 +33,7 @@ def with_fewer_bodies(path, folder):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_examples_check_and_print_a_page(name, tmp_path):
+def test_examples_are_valid_and_print_a_summary(name, tmp_path):
     path = EXAMPLES / f"{name}.toml"
     assert polhode("check", path).returncode == 0
     if "[ensemble]" in path.read_text():
@@ -41,7 +41,7 @@ def test_examples_check_and_print_a_page(name, tmp_path):
     done = polhode("run", path)
     assert done.returncode == 0
     assert done.stderr == ""
-    for section in ("Body", "Motion", "Conserved", "Run", "Nothing was written"):
+    for section in ("Body", "Motion", "Conserved", "Run", "No file was written"):
         assert f"\n{section}" in done.stdout
     assert (EXAMPLES / f"{name}.toml").read_text().startswith("# ")
 
@@ -88,9 +88,9 @@ def test_kovalevskayas_integral_is_conserved():
     # (ω1² − ω2² − c1 γ1/i3)² + (2 ω1 ω2 − c1 γ2/i3)² about the axes of the file, γ = (−sin 40°, 0, cos 40°).
     gamma = np.array([-np.sin(np.radians(40)), 0.0])
     k = (1 - 4 - 3 * gamma[0]) ** 2 + (4 - 3 * gamma[1]) ** 2
-    told = result["conserved"]["kovalevskaya_integral"]
-    assert told["value"] == pytest.approx(k, rel=1e-12)
-    assert told["drift"] < 1e-11
+    integral = result["conserved"]["kovalevskaya_integral"]
+    assert integral["value"] == pytest.approx(k, rel=1e-12)
+    assert integral["drift"] < 1e-11
 
 
 def test_the_wheel_holds_the_middle_axis(tmp_path):
@@ -118,7 +118,7 @@ def test_the_earths_period_is_eulers():
     assert motion["period"] / SIDEREAL_DAY == pytest.approx(304.5, abs=0.05)
 
 
-def test_the_coils_take_the_spin_away():
+def test_coils_reduce_the_spin():
     result = summary_of(EXAMPLES / "detumbling.toml")
     rate = result["motion"]["changes"]["rate"]
     assert rate["start"] == pytest.approx(np.radians(np.sqrt(77)), rel=1e-12)
@@ -128,7 +128,7 @@ def test_the_coils_take_the_spin_away():
     assert result["conserved"] == {}
 
 
-def test_toutatis_is_foretold_for_months(tmp_path):
+def test_toutatis_is_predictable_for_months(tmp_path):
     result = summary_of(with_fewer_bodies(EXAMPLES / "toutatis-uncertain.toml", tmp_path))
     motion = result["motion"]
     assert motion["regimes"] == {"long-axis mode": 500}
@@ -139,5 +139,5 @@ def test_toutatis_is_foretold_for_months(tmp_path):
         assert 0.01 < (high - low) / 3.29 < 0.03
     within_10, within_90 = (entry["time"] / 86400 for entry in motion["horizons"])
     assert 10 < within_10 < 100 < within_90 < 1000
-    # In the end it may be turned anyhow about L.
+    # At the end its phase about L is unknown.
     assert np.degrees(motion["from_nominal"][-1]["quantiles"][2]) > 90

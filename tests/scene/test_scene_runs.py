@@ -1,5 +1,6 @@
-"""Runs of ensembles by the command: what is written and told, and what becomes of it when it is stopped."""
+"""Runs of ensembles: blocks, files, summaries, failures and interrupts."""
 
+import dataclasses
 import json
 import os
 import re
@@ -13,7 +14,7 @@ import polhode as ph
 import processes
 from command_line import POLHODE, SCENE, polhode, summary_of
 from polhode._report.ensemble import run as _ensemble_run
-from polhode._report.ensemble.collect import Gathered
+from polhode._report.ensemble.collect import EnsembleRecords
 from polhode._report.ensemble.quantiles import LEVELS, first_above, quantiles
 from polhode._support import memory
 
@@ -80,14 +81,14 @@ def same(a, b):
 
 
 @pytest.mark.parametrize("text", [FREE, TORQUED], ids=["free", "torqued"])
-def test_blocks_and_threads_change_no_bit(text, write):
+def test_results_do_not_depend_on_blocks_and_threads(text, write):
     scene = ph.Scene.read(write(text))
     whole = scene.run(threads=1)
     assert whole.shape == (700,)
     assert whole.attributes["title"] == "Small"
     for block, threads in ((1, 1), (300, 2), (10**6, 2)):
         ends = []
-        # The first and the last block are as good as all.
+        # The first and the last block stand for all.
         for rows, motion in scene.run_blocks(block, threads=threads):
             if rows.start in (0, 300) or rows.stop == 700:
                 same(motion, whole[rows])
@@ -95,7 +96,7 @@ def test_blocks_and_threads_change_no_bit(text, write):
         assert ends == [min(k, 700) for k in range(block, 700 + block, block)]
 
 
-def test_an_ensemble_is_its_bodies_each_alone(write):
+def test_bodies_of_an_ensemble_move_as_alone(write):
     scene = ph.Scene.read(write(TORQUED))
     state, inertias, (damping, magnetic) = scene.ensemble.draw(37, 1)
     torque = ph.torque.viscous_damping(damping.arguments[0]) + ph.torque.magnetic(*magnetic.arguments)
@@ -113,7 +114,7 @@ def test_forces_move_bodies_whose_moments_differ(write):
     np.testing.assert_allclose(motion.position.components[:, -1, 2], -0.25, rtol=1e-12)
 
 
-def test_a_thrust_beside_the_centre_is_no_free_motion(write, tmp_path):
+def test_motion_with_an_off_centre_thrust_is_torqued(write, tmp_path):
     text = FREE.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2").replace("700", "20")
     path = write(text.replace("[run]", "[force]\nthrust = { force = [0, 0, 1], at = [0.1, 0, 0] }\n[run]"))
     motion = summary_of(path, "-o", tmp_path / "out.nc")["motion"]
@@ -126,29 +127,49 @@ def test_a_thrust_beside_the_centre_is_no_free_motion(write, tmp_path):
     assert summary_of(alone)["motion"]["kind"] == "torqued"
 
 
+def test_runs_have_the_bits_of_simulate(write):
+    """The core's problem of a scene is that of `simulate` with the same body, laws, thrust and tolerances."""
+    text = SCENE.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2\ncenter_of_mass = [0, 0, 0.1]")
+    acting = "[torque]\ndamping = 0.1\n[force]\nthrust = { force = [0, 0, 1], at = [0.1, 0, 0] }\n"
+    scene = ph.Scene.read(write(text + acting + "[method]\nrtol = 1e-9\natol = 1e-12\n"))
+    found = scene.run()
+    expected = ph.simulate(
+        scene.body, scene.state, scene.times, scene.torque, scene.force, rtol=scene.rtol, atol=scene.atol
+    )
+    same(found, expected)
+    assert found.certificate == expected.certificate
+
+
+def test_times_alone_can_be_replaced(write):
+    scene = ph.Scene.read(write(SCENE))
+    assert dataclasses.replace(scene, times=[0.0, 3.0]).run().time.tolist() == [0.0, 3.0]
+    with pytest.raises(ValueError, match="method"):
+        dataclasses.replace(scene, method="rk4")
+
+
 def test_only_ensembles_have_blocks(write):
     scene = ph.Scene.read(write(SCENE))
-    with pytest.raises(ValueError, match="without a table"):
+    with pytest.raises(ValueError, match="has no table"):
         next(scene.run_blocks())
     scene = ph.Scene.read(write(FREE))
-    with pytest.raises(ValueError, match="block is 0"):
+    with pytest.raises(ValueError, match="block must be at least 1, got 0"):
         next(scene.run_blocks(0))
     assert scene.alone().run().shape == ()
 
 
-def test_progress_tells_of_all_bodies(write):
-    told = []
-    for _ in ph.Scene.read(write(TORQUED)).run_blocks(100, lambda _, fraction: told.append(fraction), 1):
+def test_progress_counts_all_bodies(write):
+    fractions = []
+    for _ in ph.Scene.read(write(TORQUED)).run_blocks(100, lambda _, fraction: fractions.append(fraction), 1):
         pass
-    assert told == sorted(told)
-    assert {k / 7 for k in range(1, 8)} <= {*told}
+    assert fractions == sorted(fractions)
+    assert {k / 7 for k in range(1, 8)} <= {*fractions}
 
 
 # --- the file
 
 
 @pytest.mark.parametrize("text", [FREE, TORQUED], ids=["free", "torqued"])
-def test_the_file_has_what_simulate_gives(text, write, tmp_path):
+def test_the_file_holds_the_results_of_run(text, write, tmp_path):
     path, output = write(text), tmp_path / "out.nc"
     result = summary_of(path, "-o", output, "--threads", "2")
     figures = [tmp_path / f"out-{name}.png" for name in ("ensemble", "directions")]
@@ -187,7 +208,7 @@ def test_the_file_has_what_simulate_gives(text, write, tmp_path):
         np.testing.assert_array_equal(data.magnetic_field.values, fields)
 
 
-def test_what_nothing_moves_has_its_velocity_once(write, tmp_path):
+def test_constant_velocity_is_written_once(write, tmp_path):
     moving = 'vector = [0.01, 1, 0.01] }\nvelocity = [0, "1 m/s", 0]'
     path = write(FREE.replace("700", "20").replace("vector = [0.01, 1, 0.01] }", moving))
     summary_of(path, "-o", tmp_path / "out.nc")
@@ -196,7 +217,7 @@ def test_what_nothing_moves_has_its_velocity_once(write, tmp_path):
     np.testing.assert_array_equal(data.velocity.values, np.broadcast_to([0.0, 1, 0], (20, 3)))
 
 
-def test_threads_change_nothing_and_are_checked(write, tmp_path):
+def test_results_do_not_depend_on_threads_which_are_checked(write, tmp_path):
     path = write(TORQUED)
     results = [
         summary_of(path, "-o", tmp_path / f"{n}.nc", "--threads", str(n)) | {"files": None} for n in (1, 2)
@@ -207,14 +228,14 @@ def test_threads_change_nothing_and_are_checked(write, tmp_path):
     for number in ("0", "-1", "two", "1.5"):
         done = polhode("run", path, "--threads", number)
         assert done.returncode == 2
-        assert f"expected a whole number of threads, 1 or more, found '{number}'" in done.stderr
+        assert f"number of threads must be an integer of at least 1, got '{number}'" in done.stderr
     assert summary_of(write(SCENE, "one.toml"), "--threads", "2")["run"]["drift_within_bound"]
 
 
 # --- the summary
 
 
-def test_the_summary_tells_quantiles(write):
+def test_the_summary_has_quantiles(write):
     path = write(FREE)
     result = summary_of(path)
     scene = ph.Scene.read(path)
@@ -223,21 +244,23 @@ def test_the_summary_tells_quantiles(write):
     assert set(result) == set(sections.split())
     assert result["ensemble"]["levels"] == [0.05, 0.25, 0.5, 0.75, 0.95]
     assert (result["ensemble"]["number"], result["ensemble"]["seed"]) == (700, 5)
-    told = result["motion"]
-    assert told["kind"] == "free"
-    assert sum(told["regimes"].values()) == 700
+    described = result["motion"]
+    assert described["kind"] == "free"
+    assert sum(described["regimes"].values()) == 700
     turns = (motion.rotor * ~nominal.rotor).components
     angles = 2 * np.arccos(np.minimum(np.abs(turns[..., 0]), 1))
-    for entry in told["from_nominal"]:
+    for entry in described["from_nominal"]:
         k = int(np.argmin(np.abs(scene.times - entry["time"])))
         np.testing.assert_allclose(entry["quantiles"], np.quantile(angles[:, k], LEVELS), rtol=1e-5)
-    assert [entry["time"] for entry in told["from_nominal"]] == [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
+    assert [entry["time"] for entry in described["from_nominal"]] == [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
     rates = motion.omega_body.norm()
     # Kept in single precision.
-    np.testing.assert_allclose(told["rate"]["end"], np.quantile(rates[:, -1], LEVELS), rtol=1e-7)
+    np.testing.assert_allclose(described["rate"]["end"], np.quantile(rates[:, -1], LEVELS), rtol=1e-7)
     free = ph.FreeMotion(motion.inertia, motion.rotor[:, 0], motion.omega_body[:, 0]).describe()
-    np.testing.assert_allclose(told["period"], np.quantile(free["period"], LEVELS), rtol=1e-12)
-    np.testing.assert_allclose(told["energy"]["start"], np.quantile(motion.energy[:, 0], LEVELS), rtol=1e-12)
+    np.testing.assert_allclose(described["period"], np.quantile(free["period"], LEVELS), rtol=1e-12)
+    np.testing.assert_allclose(
+        described["energy"]["start"], np.quantile(motion.energy[:, 0], LEVELS), rtol=1e-12
+    )
     drift = motion.certificate.drift["energy"]
     assert result["conserved"]["energy"] == {
         "bodies": 700, "worst": float(drift.max()), "body": int(drift.argmax())
@@ -246,7 +269,7 @@ def test_the_summary_tells_quantiles(write):
     assert result["failures"] == {"count": 0, "first": []}
 
 
-def test_a_terminal_shows_how_many_and_how_fast(write):
+def test_the_progress_bar_shows_bodies_and_rates(write):
     pytest.importorskip("rich")
     pty = pytest.importorskip("pty")
     master, slave = pty.openpty()
@@ -266,14 +289,14 @@ def test_a_terminal_shows_how_many_and_how_fast(write):
 
 
 def read_terminal(master):
-    """What comes next; nothing when the other end is closed, which Linux tells as an error."""
+    """The next output; empty when the other end is closed, which Linux reports as an error."""
     try:
         return os.read(master, 4096)
     except OSError:
         return b""
 
 
-def test_the_page(write):
+def test_the_summary_as_text(write):
     done = polhode("run", write(TORQUED))
     assert (done.returncode, done.stderr) == (0, "")
     for words in (
@@ -284,7 +307,7 @@ def test_the_page(write):
         "Over the bodies",
         "Conserved",
         "Run",
-        "Nothing was",
+        "No file was",
     ):
         assert f"\n{words}" in done.stdout
     assert "700, drawn from seed 5" in done.stdout
@@ -307,7 +330,7 @@ def test_a_horizon_is_where_the_quantile_passes_the_angle(write):
         assert entry["time"] == (pytest.approx(expected, rel=1e-5) if expected < 20 else None)
 
 
-def test_bodies_that_fail_are_told_and_the_others_go_on(write, tmp_path):
+def test_failed_bodies_are_reported_and_the_others_go_on(write, tmp_path):
     path = write(FAILING)
     done = polhode("run", path, "-o", tmp_path / "out.nc", "--json")
     assert done.returncode == 0, done.stderr
@@ -327,15 +350,15 @@ def test_bodies_that_fail_are_told_and_the_others_go_on(write, tmp_path):
     np.testing.assert_array_equal(data.omega_body.values, motion.omega_body.components)
     lost = motion.failures[0]
     page = polhode("run", path).stdout
-    assert f"{len(failed)} of 600 bodies could not be followed" in page
+    assert f"{len(failed)} of 600 bodies failed before the end" in page
     assert f"body {failed[0]}, after {lost.time:.6g} s: {lost.message}" in page
     assert f"and {len(failed) - 5} more" in page
 
 
-# --- what does not go well
+# --- interrupts and limits
 
 
-def test_ctrl_c_keeps_the_bodies_that_are_complete(write, tmp_path):
+def test_ctrl_c_keeps_the_complete_bodies(write, tmp_path):
     text = TORQUED.replace("700", "200_000").replace("samples = 11", "samples = 101")
     path, output = write(text.replace("step = 0.01", "step = 0.0005")), tmp_path / "out.nc"
     with processes.start([POLHODE, "run", path, "-o", output]) as process:
@@ -363,7 +386,7 @@ def test_ctrl_c_keeps_the_bodies_that_are_complete(write, tmp_path):
     assert np.isfinite(data.attitude.values).all()
 
 
-def test_a_run_that_was_stopped_early_leaves_no_trace(write, tmp_path):
+def test_a_run_interrupted_early_leaves_no_file(write, tmp_path):
     # The first block takes minutes.
     text = (
         TORQUED.replace("700", "100_000").replace('"1 s"', '"1000 s"').replace("step = 0.01", "step = 0.0001")
@@ -380,7 +403,7 @@ def test_a_run_that_was_stopped_early_leaves_no_trace(write, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_what_memory_cannot_hold_is_refused(write):
+def test_runs_larger_than_memory_are_refused(write):
     path = write(FREE.replace("700", "100_000_000").replace("samples = 11", "samples = 100_000"))
     done = polhode("run", path)
     assert done.returncode == 1
@@ -388,18 +411,18 @@ def test_what_memory_cannot_hold_is_refused(write):
     assert "take fewer bodies or fewer times" in done.stderr
 
 
-def test_what_the_disk_cannot_hold_is_refused(write, tmp_path, monkeypatch):
+def test_runs_larger_than_the_disk_are_refused(write, tmp_path, monkeypatch):
     scene = ph.Scene.read(write(FREE.replace("700", "1_000_000")))
     monkeypatch.setattr(memory, "available", lambda: None)
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 10**6}))
-    with pytest.raises(OSError, match=r"out\.nc would take .* MB; 1 MB are free on its disk"):
+    with pytest.raises(OSError, match=r"out\.nc needs .* MB; its disk has 1 MB free"):
         _ensemble_run.require_room(scene, [tmp_path / "out.nc"])
 
 
-# --- what it is made of
+# --- parts
 
 
-def test_quantiles_leave_out_what_is_not_known():
+def test_quantiles_ignore_nan():
     values = np.array([[1.0, np.nan], [2.0, np.nan], [np.nan, np.nan], [4.0, np.nan]])
     found = quantiles(values)
     np.testing.assert_array_equal(found[:, 0], np.quantile([1.0, 2, 4], LEVELS))
@@ -431,14 +454,14 @@ def test_densities_have_the_mean_1():
     assert density[0].mean() < 1e-6
 
 
-def test_the_axis_that_is_watched(write):
+def test_the_axis_of_figures(write):
     text = SCENE.replace("moments = [1, 2, 3]", "moments = [1, 2, 3]\nmass = 2\ncenter_of_mass = [0, 0, 0.5]")
     ensemble = "[ensemble]\nnumber = 5\nspin = { normal = 0.1 }\n"
     scene = ph.Scene.read(write(text.replace("[run]", "[gravity]\nacceleration = 9.81\n[run]") + ensemble))
-    gathered = Gathered(scene, scene.alone().run())
-    np.testing.assert_array_equal(gathered.axis, [0, 0, 1])
-    assert gathered.tilt_name == "the vertical"
+    records = EnsembleRecords(scene, scene.alone().run())
+    np.testing.assert_array_equal(records.axis, [0, 0, 1])
+    assert records.tilt_name == "the vertical"
     scene = ph.Scene.read(write(SCENE + ensemble))
-    gathered = Gathered(scene, scene.alone().run())
-    np.testing.assert_allclose(gathered.axis, [0, 1, 0], atol=1e-15)
-    assert (gathered.axis_name, gathered.tilt_name) == ("principal axis 2", "L")
+    records = EnsembleRecords(scene, scene.alone().run())
+    np.testing.assert_allclose(records.axis, [0, 1, 0], atol=1e-15)
+    assert (records.axis_name, records.tilt_name) == ("principal axis 2", "L")

@@ -1,4 +1,4 @@
-"""What a run tells is computed from samples, and says so when they do not suffice."""
+"""Summaries of runs: facts that depend on samples, and their text."""
 
 from pathlib import Path
 
@@ -12,8 +12,8 @@ from polhode._report.text import as_text
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def told(name, tmp_path, **changes):
-    """Return the summary of an example with some fields changed."""
+def summary_with(name, tmp_path, **changes):
+    """The summary of an example with some fields changed."""
     text = (EXAMPLES / name).read_text().replace("t-handle.stl", str(EXAMPLES / "t-handle.stl"))
     for field, value in changes.items():
         lines = [
@@ -26,26 +26,26 @@ def told(name, tmp_path, **changes):
     return summary(scene, scene.run())
 
 
-def test_precession_is_not_guessed_from_too_few_samples(tmp_path):
+def test_precession_is_unknown_if_samples_are_too_far_apart(tmp_path):
     # Off the axis of symmetry the top has no closed form, whose precession is known without samples.
     beside = {"heavy": "[0.05, 0, 3]", "duration": 5}
-    followed = told("kovalevskaya.toml", tmp_path, **beside)
+    followed = summary_with("kovalevskaya.toml", tmp_path, **beside)
     assert followed["motion"]["kind"] == "heavy"
     assert followed["motion"]["precession_rate"] is not None
-    sparse = told("kovalevskaya.toml", tmp_path, **beside, samples=2)
+    sparse = summary_with("kovalevskaya.toml", tmp_path, **beside, samples=2)
     assert sparse["motion"]["precession_rate"] is None
     assert "too far apart" in as_text(sparse)
 
 
-def test_flips_are_not_counted_from_too_few_samples(tmp_path):
-    assert told("t-handle.toml", tmp_path)["motion"]["reversals"]["count"] == 9
-    sparse = told("t-handle.toml", tmp_path, samples=12)
+def test_flips_are_not_counted_if_samples_are_too_far_apart(tmp_path):
+    assert summary_with("t-handle.toml", tmp_path)["motion"]["reversals"]["count"] == 9
+    sparse = summary_with("t-handle.toml", tmp_path, samples=12)
     assert sparse["motion"]["reversals"] is None
-    assert "seen" not in as_text(sparse)
+    assert "sampled" not in as_text(sparse)
 
 
-def test_a_title_cannot_command_the_terminal(tmp_path):
-    result = told("toutatis.toml", tmp_path, title='"a\\u001b[31mb"')
+def test_titles_are_printed_without_control_characters(tmp_path):
+    result = summary_with("toutatis.toml", tmp_path, title='"a\\u001b[31mb"')
     assert "\x1b" not in as_text(result)
 
 
@@ -57,7 +57,7 @@ def test_bodies_and_torques_add_up_with_sum():
     assert sum(laws) == laws[0] + laws[1]
 
 
-def test_a_held_body_takes_no_force():
+def test_forces_on_held_bodies_are_refused():
     body, state = ph.Body.sphere(1.0, mass=1.0), ph.State(ph.Rotor.identity(), [0, 0, 1])
     with pytest.raises(ValueError, match="fixed point"):
         ph.simulate(body, state, [1.0], ph.torque.heavy([0, 0, 1]), force=[0, 0, -9.8])

@@ -1,4 +1,4 @@
-"""The command, run as a program, and a small scene for it."""
+"""Runs of the command as a program, and a small scene."""
 
 import json
 import os
@@ -24,8 +24,8 @@ samples = 11
 
 
 def polhode(*arguments, cwd=None, through=(), **options):
-    """The finished process, started through another program; whatever happened, no traceback."""
-    # As for most people: what is printed waits in memory until the end.
+    """The finished process, started by `through` if given; it must not print a traceback."""
+    # Buffered output, as in a shell.
     environment = {**os.environ, **options.pop("env", {})}
     environment.pop("PYTHONUNBUFFERED", None)
     done = processes.run([*through, POLHODE, *arguments], cwd=cwd, env=environment, **options)

@@ -1,16 +1,16 @@
-"""The line between a widget and its page, without a notebook."""
+"""A comm between a widget and its page, without a notebook."""
 
 import json
 
 
 class Comm:
-    """What a widget opens: keeps what is sent, and hands over what a page says."""
+    """A comm that records sent messages and passes on those of a page."""
 
     def __init__(self, data=None, **_):
         self.comm_id, self.sent, self.opened = "1", [], data
 
-    def on_msg(self, heard):
-        self.heard = heard
+    def on_msg(self, callback):
+        self.callback = callback
 
     def send(self, data=None, **_):
         self.sent.append(data)
@@ -20,12 +20,12 @@ class Comm:
 
     def says(self, **state):
         data = {"method": "update", "state": state, "buffer_paths": []}
-        # As it comes through the line.
-        self.heard({"content": {"data": json.loads(json.dumps(data))}, "buffers": []})
+        # As after transport.
+        self.callback({"content": {"data": json.loads(json.dumps(data))}, "buffers": []})
 
     @property
     def told(self):
-        """The last values that were sent, by their names."""
+        """The last sent values, by name."""
         values = {}
         for message in self.sent:
             if message["method"] == "update":

@@ -1,4 +1,4 @@
-"""Programs that tests start: each has a time limit, and Ctrl-C reaches each."""
+"""Programs started by tests, with a time limit and the default action for Ctrl-C."""
 
 import contextlib
 import signal
@@ -8,7 +8,7 @@ from subprocess import DEVNULL, PIPE
 
 __all__ = ["DEVNULL", "PIPE", "interrupted", "limited", "run", "start"]
 
-# Seconds after which a program hangs: the slowest takes 20 on an idle machine.
+# Seconds after which a program is taken to hang: the slowest takes 20 on an idle machine.
 LIMIT = 180.0
 
 # A background job of a shell ignores Ctrl-C, and so does all that it starts. With a handler here, programs
@@ -18,25 +18,25 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 
 def run(command, **options):
-    """Return the finished process, with what it printed as text unless the options say otherwise."""
+    """Return the finished process, with its output as text unless `options` differ."""
     captured = {"stdout": PIPE, "stderr": PIPE, "encoding": "utf-8", "timeout": LIMIT, "check": False}
     return subprocess.run(command, **captured | options)
 
 
 @contextlib.contextmanager
 def start(command, limit=LIMIT, **options):
-    """Start a program and end it with the block, or after a time: then whatever waits for it goes on."""
+    """Start a program; kill it at the end of the block or after a time limit."""
     captured = {"stdout": PIPE, "stderr": PIPE, "encoding": "utf-8"}
     with subprocess.Popen(command, **captured | options) as process, limited(process, limit):
         try:
             yield process
         finally:
-            process.kill()  # nothing happens to one that has ended
+            process.kill()  # no effect on a process that has ended
 
 
 @contextlib.contextmanager
 def limited(process, seconds=LIMIT):
-    """Kill a process if what is inside takes too long."""
+    """Kill a process if the block takes too long."""
     timer = threading.Timer(seconds, process.kill)
     timer.daemon = True
     timer.start()
@@ -47,9 +47,9 @@ def limited(process, seconds=LIMIT):
 
 
 def interrupted(process, press):
-    """Return what a process printed that ends by Ctrl-C, which `press` sends.
+    """Return the output of a process that ends by Ctrl-C, which `press` sends.
 
-    Python drops an interrupt that comes while it runs a destructor; a person presses again.
+    Python drops an interrupt during a destructor, so it is sent again.
     """
     for _ in range(4):
         press()

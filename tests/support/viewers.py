@@ -1,4 +1,4 @@
-"""Whether the viewer was built, and a small script that stands for it."""
+"""Marker for tests of the built viewer, and a small script in place of it."""
 
 from pathlib import Path
 
@@ -12,5 +12,5 @@ needs_bundle = pytest.mark.skipif(
     not (BUNDLE.is_file() and BUNDLE.stat().st_size), reason="the viewer was not built: make viewer"
 )
 
-# Stands for the bundle where only what goes around it is tested.
+# In place of the bundle in tests that do not run it.
 SCRIPT = 'const text = "</script><b>"; export default { render() {} };\n'

@@ -227,7 +227,7 @@ def test_a_port_is_a_number(port, scene, capsys):
     with pytest.raises(SystemExit) as stop:
         main.main(["view", str(scene), f"--port={port}"])
     assert stop.value.code == 2
-    assert "expected a port" in capsys.readouterr().err
+    assert "port must be an integer" in capsys.readouterr().err
 
 
 def test_a_missing_bundle_is_reported(scene, tmp_path, monkeypatch, capsys):

@@ -60,9 +60,7 @@ mod _native {
     use crate::support::pool::{Buffer, buffer};
 
     #[pymodule_export]
-    use crate::scene::draws::Draws;
-    #[pymodule_export]
-    use crate::scene::{SceneError, read_scene, scene_mesh};
+    use crate::scene::{Scene, SceneError, scene_mesh};
     #[pymodule_export]
     use crate::support::text::diagnostic;
 

@@ -7,15 +7,17 @@
 //! Rooms: [`body`] (mass, centre of mass, the inertia map; solids, triangle meshes and their files), [`state`] (a point
 //! of a motion), [`laws`] (torques, forces, formulas, events, and what is conserved), [`exact`] (motions in closed form),
 //! [`methods`] (steps), [`run`] (one motion at given times, with a certificate of what was conserved), [`ensemble`] (many
-//! bodies at once), [`numerics`] (arithmetic of twice the precision, elliptic integrals), [`error`]; [`units`] and
-//! [`scene`] (scene files).
+//! bodies at once), [`describe`] (properties of a motion as [`facts`]), [`numerics`] (arithmetic of twice the
+//! precision, elliptic integrals), [`error`]; [`units`] and [`scene`] (scene files).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.
 
 pub mod body;
+pub mod describe;
 pub mod ensemble;
 pub mod error;
 pub mod exact;
+pub mod facts;
 pub mod laws;
 pub mod methods;
 pub mod numerics;
@@ -28,7 +30,7 @@ pub mod units;
 pub use body::Body;
 pub use body::inertia::Inertia;
 pub use body::mesh::TriangleMesh;
-pub use body::solids::{Amount, Size, Solid};
+pub use body::solids::{Amount, Solid};
 pub use body::surface::Surface;
 pub use error::{BodyError, SimulateError};
 pub use polhode_ga::diagnostic::Diagnostic;

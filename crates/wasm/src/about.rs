@@ -1,138 +1,60 @@
 //! What is known of a motion besides its states: `About` in `viewer/src/core/core.ts`.
 
-use crate::json::Json;
 use crate::opened::Opened;
-use polhode_rigid::exact::free::FreeMotion;
-use polhode_rigid::exact::lagrange::{LagrangeDescription, LagrangeTop};
-use polhode_rigid::exact::regime::FreeDescription;
-use polhode_rigid::laws::torque::Torque;
-use polhode_rigid::scene::Law;
-use polhode_rigid::{Size, Solid};
+use polhode_rigid::facts::{Fact, Facts};
+use polhode_rigid::{Solid, facts};
+use serde_json::{Map, Value};
 
-fn count(n: usize) -> Json {
-    Json::Number(n as f64)
-}
-
-fn numbers(row: &[f64]) -> Json {
-    Json::list(row.iter().copied())
-}
-
-/// As a JSON object.
-pub fn about(of: &Opened) -> Json {
+/// The facts of a motion as a JSON object.
+pub fn about(of: &Opened) -> Value {
     let (scene, certificate) = (&of.scene, &of.motion.certificate);
-    let conserved = certificate.drifts.iter().map(|(quantity, value, drift)| {
-        Json::Object(vec![
-            ("name", quantity.name().into()),
-            ("value", (*value).into()),
-            ("drift", (*drift).into()),
-        ])
-    });
+    let setup = scene.setup(&of.body, &of.laws);
+    let conserved = certificate.drifts.iter();
+    let conserved =
+        conserved.map(|(kept, value, drift)| facts! { name: kept.name(), value: *value, drift: *drift });
     let horizon = of.motion.horizons().map(|[past, future]| past.min(future)).filter(|h| h.is_finite());
-    let heavy = of.laws.iter().find_map(|law| match law.torque {
-        Torque::Heavy(c) => Some(c),
-        _ => None,
-    });
-    Json::Object(vec![
-        ("title", Json::or_null(scene.title.clone())),
-        ("body", body(of)),
-        ("held", scene.is_held().into()),
-        ("heavy", Json::or_null(heavy.map(|c| numbers(&c.0)))),
-        ("laws", Json::List(of.laws.iter().map(law).collect())),
-        (
-            "start",
-            Json::Object(vec![
-                ("rotor", numbers(&scene.attitude.components())),
-                ("omega_body", numbers(&scene.omega_body().0)),
-                ("time", scene.time.into()),
-            ]),
-        ),
-        ("duration", scene.run.duration.into()),
-        ("samples", count(scene.run.samples)),
-        ("method", certificate.method.into()),
-        ("exact", of.motion.horizons().is_some().into()),
-        ("horizon", Json::or_null(horizon)),
-        ("steps", Json::Number(certificate.steps as f64)),
-        ("error_estimate", Json::or_null(certificate.error_estimate)),
-        ("conserved", Json::List(conserved.collect())),
-        ("norm_drift", certificate.norm_drift.into()),
-        ("free", Json::or_null(free(of).map(described))),
-        ("top", Json::or_null(top(of).map(top_described))),
-        ("ensemble", Json::or_null(scene.ensemble.as_ref().map(|ensemble| count(ensemble.number)))),
-    ])
+    let start = facts! {
+        rotor: setup.rotor.components(), omega_body: setup.omega.0, time: setup.time,
+    };
+    let mut facts = facts! {
+        title: scene.title.clone(), body: body(of), start: start,
+        laws: of.laws.iter().map(|law| law.facts()).collect::<Vec<_>>(),
+        duration: scene.run.duration, samples: scene.run.samples,
+        method: certificate.method, exact: of.motion.horizons().is_some(), horizon: horizon,
+        steps: certificate.steps as usize, error_estimate: certificate.error_estimate,
+        conserved: conserved.collect::<Vec<_>>(), norm_drift: certificate.norm_drift,
+        ensemble: scene.ensemble.as_ref().map(|ensemble| ensemble.number),
+    };
+    facts.extend(setup.facts());
+    json(facts.into())
 }
 
-fn body(of: &Opened) -> Json {
+fn body(of: &Opened) -> Facts {
     let inertia = of.scene.ruling_inertia(&of.body);
-    Json::Object(vec![
-        ("mass", Json::or_null(of.scene.tells_mass().then_some(of.body.mass))),
-        ("center_of_mass", numbers(&of.body.center_of_mass.0)),
-        ("moments", numbers(&inertia.principal_moments())),
-        ("frame", numbers(&inertia.principal_frame().components())),
-        ("solid", Json::or_null(of.scene.solid().map(solid))),
-        ("solid_at", numbers(&of.scene.shift().0)),
-        ("mesh", (of.surface.is_some() && of.scene.solid().is_none()).into()),
-    ])
+    facts! {
+        mass: of.scene.has_mass().then_some(of.body.mass), center_of_mass: of.body.center_of_mass.0,
+        moments: inertia.principal_moments(), frame: inertia.principal_frame().components(),
+        solid: of.scene.solid().map(|solid| solid.facts()), solid_at: of.scene.shift().0,
+        mesh: of.surface.is_some() && of.scene.solid().is_none(),
+    }
 }
 
 /// A solid by the names that scenes give its sizes.
-pub fn solid(solid: Solid) -> Json {
-    let (kind, sizes) = solid.sizes();
-    let size = |(name, size): (&'static str, Size)| match size {
-        Size::One(length) => (name, length.into()),
-        Size::Three(lengths) => (name, numbers(&lengths)),
-    };
-    Json::Object([("kind", kind.into())].into_iter().chain(sizes.into_iter().map(size)).collect())
+pub fn solid(solid: Solid) -> Value {
+    json(solid.facts().into())
 }
 
-/// A law by its name, and its formula as in the scene or its numbers.
-fn law(law: &Law) -> Json {
-    let argument = |(_, own): (_, &[f64])| match own {
-        [x] => x.to_string(),
-        own => format!("({})", own.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
-    };
-    let text = match (&law.formula, law.torque.registered()) {
-        (Some(formula), _) => formula.clone(),
-        (None, Some((entry, numbers))) => entry.split(&numbers).map(argument).collect::<Vec<_>>().join(", "),
-        (None, None) => String::new(),
-    };
-    Json::Object(vec![("name", law.name.into()), ("text", text.into())])
-}
-
-/// What the invariants of a free motion tell.
-fn free(of: &Opened) -> Option<FreeDescription> {
-    let turned = !of.laws.is_empty() || of.scene.thrust_torques(&of.body).next().is_some();
-    if turned {
-        return None;
+/// A fact as JSON, in which numbers that are not finite are `null`.
+pub fn json(fact: Fact) -> Value {
+    match fact {
+        Fact::None => Value::Null,
+        Fact::Flag(flag) => flag.into(),
+        Fact::Count(count) => count.into(),
+        Fact::Number(x) => x.into(),
+        Fact::Text(text) => text.into(),
+        Fact::List(facts) => facts.into_iter().map(json).collect(),
+        Fact::Table(facts) => Value::Object(
+            facts.into_iter().map(|(name, fact)| (name.to_owned(), json(fact))).collect::<Map<_, _>>(),
+        ),
     }
-    let inertia = of.scene.ruling_inertia(&of.body);
-    FreeMotion::new(&inertia, of.scene.attitude, of.scene.omega_body()).ok().map(|motion| motion.describe())
-}
-
-/// What the invariants of a symmetric top under its weight alone tell.
-fn top(of: &Opened) -> Option<LagrangeDescription> {
-    let [Law { torque: Torque::Heavy(c), .. }] = of.laws[..] else { return None };
-    let inertia = of.scene.ruling_inertia(&of.body);
-    LagrangeTop::new(&inertia, of.scene.attitude, of.scene.omega_body(), c).ok().map(|top| top.describe())
-}
-
-fn top_described(top: LagrangeDescription) -> Json {
-    Json::Object(vec![
-        ("regime", top.regime.to_string().into()),
-        ("tilt", numbers(&[top.tilt_min, top.tilt_max])),
-        ("nutation_period", Json::or_null(top.nutation_period)),
-        ("precession_rate", Json::or_null(top.precession_rate)),
-        ("critical_spin", top.critical_spin.into()),
-        ("sleeps", top.sleeps.into()),
-    ])
-}
-
-fn described(free: FreeDescription) -> Json {
-    Json::Object(vec![
-        ("regime", free.regime.to_string().into()),
-        ("modulus", free.modulus.into()),
-        ("axis", count(free.axis + 1)),
-        ("period", Json::or_null(free.period)),
-        ("precession_period", Json::or_null(free.precession_period())),
-        ("flip_time", Json::or_null(free.flip_time())),
-    ])
 }

@@ -1,10 +1,10 @@
-//! What JavaScript calls.
+//! Functions exported to JavaScript.
 //!
-//! A call takes what was put into [`room`]s before it, in their order, and leaves an answer at [`reply`], of
-//! [`reply_size`] bytes; it returns 0 or a handle, or −1 where the answer says what is wrong. So no pointer from outside
-//! is ever followed, and all memory is the core's own. The page has one thread.
+//! A call takes its arguments from the [`room`]s filled before it, in order, and leaves [`reply_size`] bytes at
+//! [`reply`]. It returns 0 or a handle, or −1 if the reply is an error message. No pointer from JavaScript is
+//! dereferenced, and the core owns all memory. The page has one thread.
 
-// A name for JavaScript is `unsafe` in so far as two crates might choose the same.
+// `no_mangle` is unsafe because two crates might export the same name.
 #![allow(unsafe_code)]
 
 use crate::about::{about, solid as solid_json};
@@ -26,7 +26,7 @@ enum Held {
 
 #[derive(Default)]
 struct Desk {
-    /// What the next call takes.
+    /// Arguments of the next call.
     rooms: Vec<Vec<u8>>,
     reply: Vec<u8>,
     held: Vec<Option<Held>>,
@@ -42,11 +42,11 @@ mod clock {
     #[cfg(target_arch = "wasm32")]
     #[link(wasm_import_module = "page")]
     unsafe extern "C" {
-        /// Seconds since some moment.
+        /// Seconds since a fixed instant.
         safe fn now() -> f64;
     }
 
-    /// Seconds since some moment.
+    /// Seconds since a fixed instant.
     pub fn seconds() -> f64 {
         #[cfg(target_arch = "wasm32")]
         return now();
@@ -60,13 +60,13 @@ mod clock {
     }
 }
 
-/// Whether there is time left, of so many seconds from now.
+/// Whether a budget in seconds, from now on, is not used up.
 fn within(budget: f64) -> impl FnMut() -> bool {
     let end = clock::seconds() + budget;
     move || clock::seconds() < end
 }
 
-/// Room for so many bytes of what the next call takes.
+/// Allocates an argument of the next call, of so many bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(size: usize) -> *mut u8 {
     DESK.with_borrow_mut(|desk| {
@@ -75,19 +75,19 @@ pub extern "C" fn room(size: usize) -> *mut u8 {
     })
 }
 
-/// Where the last answer is.
+/// Address of the last reply.
 #[unsafe(no_mangle)]
 pub extern "C" fn reply() -> *const u8 {
     DESK.with_borrow(|desk| desk.reply.as_ptr())
 }
 
-/// How many bytes it has.
+/// Size of the last reply in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn reply_size() -> usize {
     DESK.with_borrow(|desk| desk.reply.len())
 }
 
-/// Does the work with what was put into rooms.
+/// Runs a call with its arguments and stores its reply.
 fn answered(work: impl FnOnce(&mut Desk, Vec<Vec<u8>>) -> Outcome<(i32, Vec<u8>)>) -> i32 {
     DESK.with_borrow_mut(|desk| {
         let rooms = std::mem::take(&mut desk.rooms);
@@ -115,7 +115,7 @@ fn bytes(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
     numbers.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
-/// The rest of the rooms: a scene, its name, and files, each after its name.
+/// The remaining arguments: a scene, its name, and files, each after its name.
 fn scene(mut rooms: impl Iterator<Item = Vec<u8>>) -> Outcome<(String, String, Files)> {
     let (scene, name) = (text(rooms.next())?, text(rooms.next())?);
     let mut files = Files::new();
@@ -137,13 +137,16 @@ impl Desk {
     }
 
     fn get(&self, handle: usize) -> Outcome<&Held> {
-        self.held.get(handle).and_then(Option::as_ref).ok_or_else(|| format!("there is no motion {handle}"))
+        self.held
+            .get(handle)
+            .and_then(Option::as_ref)
+            .ok_or_else(|| format!("no motion has the handle {handle}"))
     }
 
     fn followed(&self, handle: usize) -> Outcome<&Opened> {
         match self.get(handle)? {
             Held::Followed(opened) => Ok(opened),
-            Held::Recorded(..) => Err("this motion was recorded".to_owned()),
+            Held::Recorded(..) => Err("this motion is a recording".to_owned()),
         }
     }
 
@@ -160,7 +163,7 @@ impl Desk {
     }
 }
 
-/// Takes a scene, its name and files; follows the motion for at most so many seconds; a handle.
+/// Takes a scene, its name and files; computes the motion for at most `budget` seconds; returns a handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn open(budget: f64) -> i32 {
     answered(|desk, rooms| {
@@ -170,7 +173,7 @@ pub extern "C" fn open(budget: f64) -> i32 {
     })
 }
 
-/// Takes rows of a recorded motion and, if there is one, the scene, its name and files; a handle.
+/// Takes rows of a recorded motion and, if there is one, the scene, its name and files; returns a handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn record() -> i32 {
     answered(|desk, rooms| {
@@ -181,7 +184,7 @@ pub extern "C" fn record() -> i32 {
     })
 }
 
-/// Lets go of a motion.
+/// Frees a motion.
 #[unsafe(no_mangle)]
 pub extern "C" fn close(handle: usize) {
     DESK.with_borrow_mut(|desk| {
@@ -191,13 +194,13 @@ pub extern "C" fn close(handle: usize) {
     });
 }
 
-/// What is known of a motion, as JSON.
+/// The facts of a motion, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn about_motion(handle: usize) -> i32 {
     answered(|desk, _| Ok((0, about(desk.followed(handle)?).to_string().into_bytes())))
 }
 
-/// Takes times, answers rows of states.
+/// Takes times; replies with rows of states.
 #[unsafe(no_mangle)]
 pub extern "C" fn states(handle: usize) -> i32 {
     answered(|desk, rooms| {
@@ -277,8 +280,8 @@ pub extern "C" fn plane_angle() -> i32 {
     })
 }
 
-/// Rotors of the first bodies of an ensemble, at most `count`, at a time. The first call follows them, for at most so
-/// many seconds.
+/// Rotors of the first bodies of an ensemble, at most `count`, at a time. The first call computes their motions, for
+/// at most `budget` seconds.
 #[unsafe(no_mangle)]
 pub extern "C" fn bodies(handle: usize, time: f64, count: usize, budget: f64) -> i32 {
     answered(|desk, _| {
@@ -287,7 +290,7 @@ pub extern "C" fn bodies(handle: usize, time: f64, count: usize, budget: f64) ->
     })
 }
 
-/// Takes a scene and tables, answers the scene with its tables replaced.
+/// Takes a scene and tables; replies with the scene with these tables replaced.
 #[unsafe(no_mangle)]
 pub extern "C" fn merge() -> i32 {
     answered(|_, rooms| {
@@ -297,7 +300,7 @@ pub extern "C" fn merge() -> i32 {
     })
 }
 
-/// Takes lines of formulas, answers what each came to, as JSON.
+/// Takes lines of formulas; replies with their results, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn evaluate() -> i32 {
     answered(|_, rooms| {

@@ -1,14 +1,12 @@
 //! The core in the browser: the same motion and the same algebra as in Python, behind plain exports.
 //!
-//! [`opened`] follows a scene, [`about`] tells what is known of the motion, [`opened::crowd`] follows an ensemble for
-//! looking, [`recorded`] holds a motion that was followed elsewhere, [`merged`] changes tables of a scene, [`formulas`] evaluates
-//! lines; [`json`] is the text in which the page gets what is not an array. `viewer/src/core/wasm.ts` is the other side
-//! of the exports.
+//! [`opened`] runs a scene, [`about`] describes its motion, [`opened::crowd`] runs an ensemble for display, [`recorded`]
+//! holds a motion that was computed elsewhere, [`merged`] replaces tables of a scene, and [`formulas`] evaluates lines.
+//! `viewer/src/core/wasm.ts` calls the exports.
 
 pub mod about;
 mod exports;
 pub mod formulas;
-pub mod json;
 pub mod laws;
 mod merged;
 pub mod opened;

@@ -1,9 +1,9 @@
-//! Tables of a scene replaced by others, all else kept as it was written.
+//! Replacement of tables in the text of a scene.
 
 use toml_edit::{Decor, DocumentMut, Item, Table};
 
-/// The scene with its tables replaced by those of `change`; an empty table takes its one away. Of a table that is
-/// written with dots, `run.samples = 11`, those fields alone are replaced. Comments and the order of the rest stay.
+/// The scene with its tables replaced by those of `change`; an empty table removes one. Of a dotted table,
+/// `run.samples = 11`, only these fields are replaced. Comments and order of the rest stay.
 pub fn merged(scene: &str, change: &str) -> Result<String, String> {
     let read = |text: &str, what: &str| {
         text.parse::<DocumentMut>().map_err(|error| format!("{what} cannot be read: {error}"))
@@ -20,7 +20,7 @@ pub fn merged(scene: &str, change: &str) -> Result<String, String> {
             continue;
         }
         let mut table = table.clone();
-        // In the place of the one that it replaces, else at the end.
+        // At the position of the old table, else at the end.
         let old = scene.get(name).and_then(|old| old.as_table());
         let (place, decor) = (old.and_then(|old| old.position()), old.map(|old| old.decor().clone()));
         if let Some(table) = table.as_table_mut() {
@@ -32,7 +32,7 @@ pub fn merged(scene: &str, change: &str) -> Result<String, String> {
     Ok(scene.to_string())
 }
 
-/// Replaces fields of a table, each in its place; an empty table takes its one away.
+/// Replaces fields of a table in place; an empty table removes a field.
 fn replace_fields(table: &mut Item, fields: &Table) {
     let Some(table) = table.as_table_like_mut() else { return };
     for (name, field) in fields {
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_are_added_and_taken_away() {
+    fn tables_are_added_and_removed() {
         let heavy = merged(SCENE, "[gravity]\nacceleration = 9.81\n").unwrap();
         assert_eq!(heavy.trim_end(), format!("{SCENE}\n[gravity]\nacceleration = 9.81").trim_end());
         assert_eq!(merged(&heavy, "[gravity]\n").unwrap().trim_end(), SCENE.trim_end());
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_toml_is_told() {
+    fn invalid_toml_is_reported() {
         assert!(merged("[body", "").unwrap_err().contains("the scene cannot be read"));
         assert!(merged(SCENE, "[body").unwrap_err().contains("the change cannot be read"));
     }

@@ -1,4 +1,4 @@
-//! A motion that was followed elsewhere, as rows of states.
+//! Recorded motions: rows of states that were computed elsewhere.
 
 use crate::rows::ROW;
 use polhode_ga::Rotor;
@@ -10,12 +10,12 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Of rows one after another; times must rise.
+    /// From rows one after another, with increasing times.
     pub fn new(numbers: &[f64]) -> Result<Recorded, String> {
         let (rows, rest) = numbers.as_chunks::<ROW>();
         if rows.is_empty() || !rest.is_empty() {
             return Err(format!(
-                "a recorded motion has rows of {ROW} numbers, found {} numbers",
+                "rows of a recorded motion have {ROW} numbers, got {} numbers",
                 numbers.len()
             ));
         }
@@ -23,15 +23,15 @@ impl Recorded {
             rows.windows(2).position(|pair| pair[0][0].partial_cmp(&pair[1][0]) != Some(Ordering::Less));
         if let Some(k) = fall {
             return Err(format!(
-                "the times of a recorded motion must rise, found row {} after row {k}",
+                "times of a recorded motion must increase, but row {} is not after row {k}",
                 k + 1
             ));
         }
         Ok(Recorded { rows: rows.to_vec() })
     }
 
-    /// Rows at times from the first to the last. Between rows, for looking only, rotors turn evenly and all else
-    /// changes evenly.
+    /// Rows at times from the first to the last. Between rows, for display only, rotors are interpolated by a uniform
+    /// turn and all else linearly.
     pub fn states(&self, times: &[f64]) -> Result<Vec<[f64; ROW]>, String> {
         times.iter().map(|&time| self.at(time)).collect()
     }
@@ -57,7 +57,7 @@ fn rotor(row: &[f64; ROW]) -> Rotor {
     Rotor::from_unit_components([row[1], row[2], row[3], row[4]])
 }
 
-/// From one rotor part of the way to another, the shorter way round: `R (~R S)^part`.
+/// The rotor part of the shorter way from one to another: `R (~R S)^part`.
 pub fn between(r: Rotor, s: Rotor, part: f64) -> Rotor {
     let turn = r.reverse() * s;
     let [scalar, ..] = turn.components();

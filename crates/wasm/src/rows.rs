@@ -1,4 +1,4 @@
-//! States as rows of numbers, in the order of `State` in `viewer/src/core/core.ts`.
+//! Rows of numbers for states, in the order of `State` in `viewer/src/core/core.ts`.
 
 use polhode_rigid::run::States;
 

@@ -1,4 +1,4 @@
-//! What the page asks of the core.
+//! Motions, facts and surfaces for the page.
 
 use crate::about::about;
 use crate::opened::{Files, Opened};
@@ -18,9 +18,9 @@ fn opened(text: &str) -> Opened {
     Opened::new(text, "test.toml", &Files::new(), &mut || true).expect("a scene")
 }
 
-/// `R Ω_B ~R = Ω_S` and `L_S = R I(Ω_B) ~R` stand in each row, and exact motions know times beyond their run.
+/// `R Ω_B ~R = Ω_S` and `L_S = R I(Ω_B) ~R` in each row; exact motions have states beyond their run.
 #[test]
-fn rows_hold_what_they_say() {
+fn rows_are_consistent() {
     for text in [FREE, HEAVY, DAMPED] {
         let of = opened(text);
         let times: &[f64] = if text == DAMPED { &[2.0, 0.0, 1.3] } else { &[2.0, 0.0, -7.0, 1e6] };
@@ -61,7 +61,7 @@ fn a_late_scene_is_known_from_its_start_on() {
 }
 
 #[test]
-fn a_motion_that_takes_too_long_is_given_up() {
+fn motions_beyond_the_time_limit_are_refused() {
     let long = DAMPED.replace("duration = 2", "duration = 1e6");
     let mut calls = 0;
     let error = Opened::new(&long, "test.toml", &Files::new(), &mut || {
@@ -72,7 +72,7 @@ fn a_motion_that_takes_too_long_is_given_up() {
 }
 
 #[test]
-fn what_is_known_of_a_motion_is_told() {
+fn facts_of_motions() {
     let free = about(&opened(FREE)).to_string();
     assert!(free.contains(r#""method":"exact""#) && free.contains(r#""regime":"long-axis mode""#), "{free}");
     let heavy = about(&opened(HEAVY)).to_string();
@@ -87,11 +87,11 @@ fn what_is_known_of_a_motion_is_told() {
 }
 
 #[test]
-fn a_mesh_that_is_missing_is_told_at_its_place() {
+fn a_missing_mesh_is_reported_at_its_place() {
     let text = FREE.replace("moments = [3, 2, 1]", "mesh = 'part.stl'\nmass = 1");
     let error = Opened::new(&text, "test.toml", &Files::new(), &mut || true).err().unwrap();
     assert!(
-        error.starts_with("test.toml:2:8: error: part.stl: ") && error.contains("was not given"),
+        error.starts_with("test.toml:2:8: error: part.stl: ") && error.contains("does not have this file"),
         "{error}"
     );
 }
@@ -121,13 +121,13 @@ fn a_surface_is_where_the_body_is() {
 }
 
 #[test]
-fn a_recording_is_met_at_its_times_and_turns_evenly_between() {
+fn recordings_are_interpolated_between_rows() {
     let of = opened(FREE);
     let rows = of.states(&[0.0, 0.01, 0.02]).unwrap();
     let recorded = Recorded::new(&rows.concat()).unwrap();
     assert_eq!(recorded.states(&[0.0, 0.01, 0.02]).unwrap(), rows);
     let (found, exact) = (recorded.states(&[0.005]).unwrap()[0], of.states(&[0.005]).unwrap()[0]);
-    // Evenly turned to second order in the interval: some |Ω'| h²/8 = 1e-5.
+    // The uniform turn is off by about |Ω'| h²/8 = 1e-5.
     assert!((0..ROW).all(|k| (found[k] - exact[k]).abs() < 1e-4));
     assert!(recorded.states(&[0.03]).unwrap_err().contains("recorded from 0 s to 0.02 s"));
     assert!(Recorded::new(&[0.0; 5]).is_err());
@@ -136,7 +136,7 @@ fn a_recording_is_met_at_its_times_and_turns_evenly_between() {
 
 /// Bodies of an exact ensemble are the scene's; stepped ones meet the single body's motion at the frames.
 #[test]
-fn the_bodies_of_an_ensemble_are_followed() {
+fn bodies_of_an_ensemble() {
     let exact = opened(&format!("{FREE}{SWARM}"));
     let rotors = exact.bodies(1.0, 5, &mut || true).unwrap();
     assert_eq!(rotors.len(), 5);
@@ -146,7 +146,7 @@ fn the_bodies_of_an_ensemble_are_followed() {
     for rotor in stepped.bodies(2.0, 100, &mut || true).unwrap() {
         assert!((0..4).all(|k| (rotor[k] - alone[1 + k]).abs() < 1e-8), "{rotor:?}");
     }
-    assert!(opened(FREE).bodies(0.0, 5, &mut || true).unwrap_err().contains("one body"));
+    assert!(opened(FREE).bodies(0.0, 5, &mut || true).unwrap_err().contains("no table [ensemble]"));
 }
 
 #[test]

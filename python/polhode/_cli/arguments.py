@@ -1,4 +1,4 @@
-"""Values of the command's arguments: what cannot be read is wrong usage."""
+"""Types of command-line arguments."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from polhode._support.files import form_of
 
 
 def file_name(what: str) -> Callable[[str], str]:
-    """Return what checks the name of a file to be written; one of another form is wrong usage."""
+    """Return an argparse type that checks the suffix of a file to be written."""
 
     def checked(name: str) -> str:
         try:

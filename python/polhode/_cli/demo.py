@@ -1,4 +1,4 @@
-"""The command ``polhode demo``: the T-handle in free flight, its page and its pictures."""
+"""The command ``polhode demo``: a T-handle in free flight."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ def add(commands: Any) -> None:
     """Add the command to those of `polhode`."""
     demo = commands.add_parser(
         "demo",
-        help="run the T-handle, sketch it here, and write its page and pictures",
+        help="run an example: print a summary and a sketch, write a page and figures",
         description="Run a T-handle in free flight: print its summary and a sketch, and write "
-        "t-handle.html, a page that shows it in any browser. With matplotlib it also writes pictures.",
+        "t-handle.html, a page that shows it in a browser. With matplotlib it also writes figures.",
     )
     demo.add_argument(
         "-o",
         "--output",
         metavar="FOLDER",
         default=".",
-        help="write into this folder; the current one if left out",
+        help="folder for the files, default the current one",
     )
     demo.set_defaults(command=_run)
 
@@ -50,35 +50,35 @@ def _run(options: argparse.Namespace) -> int:
     trajectory = scene.run()
     result = summary(scene, trajectory)
     print(as_text(result), "", *_sketch(trajectory), "", sep="\n")
-    written, missing = _made(scene, trajectory, folder)
+    written, missing = _contents(scene, trajectory, folder)
     write_atomically(written)
     print(*missing, *(["Written"] if written else []), *(f"  {path}" for path in written), sep="\n")
     return OK if result["run"]["drift_within_bound"] else DRIFTED
 
 
-def _made(scene: Scene, trajectory: Trajectory, folder: Path) -> tuple[dict[Path, bytes], list[str]]:
-    """Return the contents of the files that can be written here, and what to install for the others."""
+def _contents(scene: Scene, trajectory: Trajectory, folder: Path) -> tuple[dict[Path, bytes], list[str]]:
+    """Return the contents of the files by path, and messages about missing libraries."""
     from polhode._viewer.server import motion_page
 
-    made: dict[Path, bytes] = {}
+    contents: dict[Path, bytes] = {}
     missing = []
     try:
-        made[folder / f"{NAME}.html"] = motion_page(trajectory)
+        contents[folder / f"{NAME}.html"] = motion_page(trajectory)
     except FileNotFoundError as error:
         missing.append(f"No page: {error}.")
     try:
         from polhode._figures.registry import characteristic_figure
         from polhode._figures.style import as_png, motion_figure
 
-        made[folder / f"{NAME}-motion.png"] = as_png(motion_figure(trajectory))
-        made[folder / f"{NAME}-polhode.png"] = as_png(characteristic_figure(scene, trajectory))
+        contents[folder / f"{NAME}-motion.png"] = as_png(motion_figure(trajectory))
+        contents[folder / f"{NAME}-polhode.png"] = as_png(characteristic_figure(scene, trajectory))
     except ImportError as error:
-        missing.append(f"No pictures: {error}.")
-    return made, missing
+        missing.append(f"No figures: {error}.")
+    return contents, missing
 
 
 def _sketch(trajectory: Trajectory) -> list[str]:
-    """Return lines of text that draw the angular velocity about the stem over time."""
+    """Return a plot of the angular velocity about the stem over time, as lines of text."""
     values = trajectory.omega_body.components[:, 1]
     labels = {
         0: f"{abs(values).max():.3g} rad/s",
@@ -94,7 +94,7 @@ def _sketch(trajectory: Trajectory) -> list[str]:
 
 
 def _rows(values: Array) -> list[str]:
-    """Return rows of text, 0 in the middle one; each column has a mark wherever its part of the values is."""
+    """Return the rows of a plot of values as text; 0 is in the middle row."""
     marks = np.full((_HEIGHT, _WIDTH), " ")
     scaled = np.rint((1 - values / abs(values).max()) / 2 * (_HEIGHT - 1)).astype(int)
     for column, part in enumerate(np.array_split(scaled, _WIDTH)):

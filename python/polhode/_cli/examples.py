@@ -1,4 +1,4 @@
-"""The command ``polhode examples``, and the scenes that come with the package."""
+"""The command ``polhode examples`` and the example scenes of the package."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ def add(commands: Any) -> None:
     """Add the command to those of `polhode`."""
     examples = commands.add_parser(
         "examples",
-        help="list the example scenes, or copy some to work on",
-        description="List the example scenes, or copy those that are named. No existing file is replaced.",
+        help="list or copy the example scenes",
+        description="List the example scenes, or copy those that are named. Existing files are not replaced.",
     )
     examples.add_argument(
-        "names", metavar="NAME", nargs="*", help="an example, as listed; all are listed without"
+        "names", metavar="NAME", nargs="*", help="name of an example; without one, list all"
     )
     examples.add_argument(
         "-o",
         "--output",
         metavar="FOLDER",
         default=".",
-        help="copy into this folder; the current one if left out",
+        help="folder for the copies, default the current one",
     )
     examples.set_defaults(command=lambda options: _run(options, examples))
 
 
 def examples() -> dict[str, Path]:
-    """Return the scene file of each example by its name; a FileNotFoundError where there are none."""
+    """Return the scene files of the examples by name; a FileNotFoundError if there are none."""
     if not (found := {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}):
         raise FileNotFoundError(
-            f"{FOLDER} has no examples: this copy of polhode was installed without them. Install a wheel, or "
-            "take them from the folder examples/ of the sources"
+            f"{FOLDER} has no examples: polhode was installed without them; install a wheel, or copy them "
+            "from the folder examples/ of the source repository"
         )
     return found
 
@@ -52,7 +52,7 @@ def _run(options: argparse.Namespace, parser: argparse.ArgumentParser) -> int:
         if name not in known:
             close = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {close[0]}?" if close else "`polhode examples` lists them"
-            parser.error(f"no example is named {name!r}; {hint}")
+            parser.error(f"unknown example {name!r}; {hint}")
     copied = _copy(
         [file for name in dict.fromkeys(names) for file in _files(known[name])], Path(options.output)
     )
@@ -66,21 +66,19 @@ def _content(path: Path) -> dict[str, Any]:
 
 
 def _files(scene: Path) -> list[Path]:
-    """Return a scene file and the mesh that it names."""
+    """Return a scene file and its mesh file, if it has one."""
     mesh = _content(scene)["body"].get("mesh")
     return [scene] if mesh is None else [scene, scene.with_name(mesh)]
 
 
 def _copy(files: list[Path], folder: Path) -> list[Path]:
-    """Copy files into a folder, all or none, and return the copies; an OSError if one is there already."""
+    """Copy files into a folder, all or none, and return the copies; an OSError if one exists."""
     targets = {folder / file.name: file.read_bytes() for file in files}
     if not folder.is_dir():
-        raise FileNotFoundError(f"there is no directory {folder}; make it first")
+        raise FileNotFoundError(f"no such directory: {folder}; create it first")
     for path in targets:
         if path.exists() or path.is_symlink():
-            raise FileExistsError(
-                f"{path} exists and is not replaced; move it, or choose another folder with -o"
-            )
+            raise FileExistsError(f"{path} exists; move it, or choose another folder with -o")
     for path, content in targets.items():
         with path.open("xb") as file:
             file.write(content)

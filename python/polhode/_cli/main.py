@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import math
 import os
 import re
 import signal
@@ -28,11 +29,11 @@ OK, FAILED, USAGE, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command; the exit code is its value."""
+    """Run the command and return its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ω gets a question mark, not an error
-    _heed_ctrl_c()
+    _restore_ctrl_c()
     options = _parser().parse_args(_with_values(sys.argv[1:] if arguments is None else arguments))
     try:
         with _printed_warnings():
@@ -43,17 +44,17 @@ def main(arguments: list[str] | None = None) -> int:
     except SceneError as error:
         code = _complain(str(error), BAD_INPUT)
     except BrokenPipeError:
-        code = FAILED  # the reader of our output has gone; there is nobody to tell
+        code = FAILED  # nobody reads the output any more
     except (OSError, ValueError, ImportError, MemoryError) as error:
         code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
-    _let_go_of_output()
+    _drop_output()
     return code
 
 
-def _heed_ctrl_c() -> None:
-    """Let Ctrl-C end the command also where it was started to ignore it, as a background job of a script.
+def _restore_ctrl_c() -> None:
+    """Let Ctrl-C interrupt the command even if it was started to ignore it, as a background job of a script.
 
-    A long run is ended by ``kill -INT``, which keeps the bodies that are complete, wherever it was started.
+    So ``kill -INT`` always stops a long run and keeps the complete bodies.
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -61,7 +62,7 @@ def _heed_ctrl_c() -> None:
 
 @contextmanager
 def _printed_warnings() -> Iterator[None]:
-    """Print warnings about results as errors are printed."""
+    """Print warnings in the format of errors."""
 
     def show(message: object, *_: object) -> None:
         print(f"polhode: warning: {message}", file=sys.stderr)
@@ -73,8 +74,8 @@ def _printed_warnings() -> Iterator[None]:
         yield
 
 
-def _let_go_of_output() -> None:
-    """Drop what cannot be written, which Python would try once more, and complain of, when it ends."""
+def _drop_output() -> None:
+    """Drop output that cannot be written; else Python reports an error when it exits."""
     try:
         print(end="", flush=True)
     except OSError:
@@ -105,25 +106,25 @@ def _parser() -> argparse.ArgumentParser:
         "--output",
         metavar="FILE.nc",
         type=file_name("a motion"),
-        help="write the motion, or all those of an ensemble, to this netCDF file, and figures beside it "
+        help="write the motion, or all motions of an ensemble, to this netCDF file, and figures next to it "
         "(FILE-motion.png …)",
     )
     run.add_argument(
         "--html",
         metavar="FILE.html",
         type=file_name("a page"),
-        help="write a page that shows the motion in any browser, without anything from outside",
+        help="write a self-contained page that shows the motion in a browser",
     )
     run.add_argument("--json", action="store_true", help="print the summary as JSON, in SI units")
     run.add_argument(
         "--threads",
         metavar="N",
-        type=_thread_count,
-        help="share an ensemble's bodies among N threads, all cores if left out; the results are the same",
+        type=_whole_number("number of threads", 1, math.inf),
+        help="threads for an ensemble's bodies, default all cores; results do not depend on it",
     )
     run.set_defaults(command=_run)
 
-    check = commands.add_parser("check", help="check a scene and what it names, without running it")
+    check = commands.add_parser("check", help="check scenes and their meshes without running them")
     check.add_argument("scenes", metavar="SCENE.toml", nargs="+", help="scene files")
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
     check.set_defaults(command=_check)
@@ -137,15 +138,22 @@ def _add_view(commands: Any) -> None:
     view = commands.add_parser(
         "view",
         help="show a motion in the browser",
-        description="Show a scene, or a motion that was written, in the browser of this machine. The file is "
-        "read again whenever the page is loaded, so that a scene can be edited beside it.",
+        description="Show a scene, or a motion from a netCDF file, in the browser of this machine. Reload "
+        "the page to read an edited scene again.",
     )
     view.add_argument("file", metavar="FILE", help="a scene, or the netCDF file of one body's motion")
     view.add_argument(
-        "--port", metavar="N", type=_port, default=0, help="serve at this port; a free one if left out"
+        "--port",
+        metavar="N",
+        type=_whole_number("port", 0, 65535),
+        default=0,
+        help="port of the server, default a free one",
     )
     view.add_argument(
-        "--no-browser", dest="browser", action="store_false", help="only print where the page is"
+        "--no-browser",
+        dest="browser",
+        action="store_false",
+        help="print the address of the page without opening it",
     )
     view.set_defaults(command=_view)
 
@@ -154,12 +162,12 @@ def _add_formulas(commands: Any) -> None:
     evaluate = commands.add_parser(
         "eval",
         help="evaluate formulas",
-        description="Evaluate formulas, written as on paper or in ASCII: `-I a∧b` is `-I a^b`.",
-        epilog="Lines of files and of standard input are formulas, `let NAME = VALUE`, or comments after #.",
+        description="Evaluate formulas in paper notation or in ASCII: `-I a∧b` is `-I a^b`.",
+        epilog="Lines of files and of standard input are formulas or `let NAME = VALUE`; # begins a comment.",
     )
     evaluate.add_argument("formulas", metavar="FORMULA", nargs="*", help="a formula, or an equation to check")
     evaluate.add_argument(
-        "-f", "--file", metavar="FILE", help="read formulas from this file first, from standard input for -"
+        "-f", "--file", metavar="FILE", help="read formulas from this file first; - is standard input"
     )
     evaluate.add_argument(
         "--let",
@@ -167,7 +175,7 @@ def _add_formulas(commands: Any) -> None:
         action="append",
         default=[],
         type=_definition,
-        help="give a name a value, which may have units (θ=90deg), or define a function (V(x)=½ x·x)",
+        help="define a value, which may have units (θ=90deg), or a function (V(x)=½ x·x)",
     )
     form = evaluate.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print the values as JSON")
@@ -188,19 +196,19 @@ def _add_others(commands: Any) -> None:
 
 
 def _definition(text: str) -> str:
-    """Return what --let is given; without a name and a value it is wrong usage."""
+    """Return the argument of --let, NAME=VALUE."""
     name, sign, value = text.partition("=")
     if not (sign and name.strip() and value.strip()):
-        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as θ=90deg, found {text!r}")
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, such as θ=90deg, got {text!r}")
     return text
 
 
-# What begins with a minus and yet is no option: a formula -a∧b, a view -20,35.
+# Values that begin with a minus: a formula -a∧b, a view -20,35.
 _VALUES = {"eval": r"-[^-fh]", "figure": r"-[.\d]", "film": r"-[.\d]"}
 
 
 def _with_values(arguments: list[str]) -> list[str]:
-    """Return arguments among which these are taken for values: argparse takes no option with a space."""
+    """Return arguments with a space before such values, which argparse does not take for options."""
     value = _VALUES.get(arguments[0]) if arguments else None
     return arguments if value is None else [f" {x}" if re.match(value, x) else x for x in arguments]
 
@@ -229,18 +237,16 @@ def _repl(_: argparse.Namespace) -> int:
     return _repl.run()
 
 
-def _thread_count(text: str) -> int:
-    """Return how many threads; anything but a whole number from 1 on is wrong usage."""
-    if not (text.isascii() and text.isdigit() and int(text) >= 1):
-        raise argparse.ArgumentTypeError(f"expected a whole number of threads, 1 or more, found {text!r}")
-    return int(text)
+def _whole_number(what: str, least: int, most: float) -> Callable[[str], int]:
+    """Return an argparse type for integers in a range."""
 
+    def checked(text: str) -> int:
+        if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
+            bounds = f"of at least {least}" if most == math.inf else f"from {least} to {most}"
+            raise argparse.ArgumentTypeError(f"{what} must be an integer {bounds}, got {text!r}")
+        return int(text)
 
-def _port(text: str) -> int:
-    """Return a port; anything else is wrong usage."""
-    if not (text.isascii() and text.isdigit() and int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"expected a port, a whole number up to 65535, found {text!r}")
-    return int(text)
+    return checked
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -259,16 +265,16 @@ def _run(options: argparse.Namespace) -> int:
         print("Written")
         print("\n".join(f"  {path}" for path in written))
     else:
-        print("Nothing was written; add -o FILE.nc for data and figures, --html FILE.html for a page.")
+        print("No file was written; use -o FILE.nc for data and figures, --html FILE.html for a page.")
     if result["run"]["drift_within_bound"] is None:
-        return _complain("polhode: error: no body could be followed to the end", FAILED)
+        return _complain("polhode: error: all bodies failed", FAILED)
     return OK if result["run"]["drift_within_bound"] else DRIFTED
 
 
 def _run_one(
     scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
 ) -> dict[str, Any]:
-    """Run one body, print its page and write its files; return its summary."""
+    """Run one body, print its summary and write its files; return the summary."""
     from polhode._report.summary import summary
     from polhode._report.text import as_text
 
@@ -284,7 +290,7 @@ def _run_one(
 def _run_many(
     scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
 ) -> dict[str, Any]:
-    """The same for the bodies of an ensemble."""
+    """Run an ensemble, print its summary and write its files; return the summary."""
     from polhode._report.ensemble import run as _ensemble_run
     from polhode._report.ensemble.summary import summary
     from polhode._report.ensemble.text import as_text
@@ -321,14 +327,14 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _size(scene: Scene) -> dict[str, int]:
-    """Return how many bodies an ensemble has and how much memory they will take; nothing without one."""
+    """Return the number of bodies of an ensemble and their bytes of results; nothing without one."""
     if scene.ensemble is None:
         return {}
     return {"bodies": scene.ensemble.number, "bytes": scene.result_bytes}
 
 
 def _many(scene: Scene) -> str:
-    """Return the same in words."""
+    """Return the size of an ensemble in words; nothing without one."""
     if scene.ensemble is None:
         return ""
     from polhode._support.memory import size
@@ -337,18 +343,17 @@ def _many(scene: Scene) -> str:
 
 
 def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
-    """Return the paths of the data and two figures; what cannot be written is refused before the work."""
+    """Return the paths of the data and two figures, checked before the run."""
     if output is None:
         return []
     from polhode._figures.registry import ON_ELLIPSOID
-    from polhode._report.describe import kind_of
     from polhode._report.netcdf import require_libraries
     from polhode._support.extras import optional
     from polhode._support.files import check_target
 
     require_libraries()
     optional("matplotlib", "plot", "a figure")
-    figures = ("motion", "polhode" if kind_of(scene) in ON_ELLIPSOID else "axis")
+    figures = ("motion", "polhode" if scene.kind in ON_ELLIPSOID else "axis")
     if scene.ensemble is not None:
         figures = ("ensemble", "directions")
     targets = [output, *(output.with_name(f"{output.stem}-{name}.png") for name in figures)]
@@ -358,7 +363,7 @@ def _checked_targets(output: Path | None, scene: Scene) -> list[Path]:
 
 
 def _checked_page(name: str | None) -> Path | None:
-    """Return the path of the page; what cannot be made or written is refused before the work."""
+    """Return the path of the page, checked before the run."""
     if name is None:
         return None
     from polhode._viewer.server import check_page
@@ -378,8 +383,8 @@ def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Tra
         from polhode._report.netcdf import netcdf
 
         second = characteristic_figure(scene, trajectory)
-        made = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
-        contents |= dict(zip(targets, made, strict=True))
+        written = (netcdf(trajectory), as_png(motion_figure(trajectory)), as_png(second))
+        contents |= dict(zip(targets, written, strict=True))
     if html:
         from polhode._viewer.server import motion_page
 
@@ -389,7 +394,7 @@ def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Tra
 
 @contextmanager
 def _progress(name: str) -> Iterator[Callable[[int, float], Any] | None]:
-    """Show a bar on standard error, if that is a terminal and the run takes long enough to see it."""
+    """Show a progress bar on standard error, if that is a terminal."""
     from polhode._support.extras import progress_bar
 
     if (shown := progress_bar("{task.percentage:>3.0f} %")) is None:

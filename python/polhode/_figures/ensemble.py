@@ -8,7 +8,7 @@ import numpy as np
 
 from polhode._algebra.constructors import vector
 from polhode._figures.style import _BLACK, _BLUE, _ORANGE, new_figure, time_unit
-from polhode._report.ensemble.collect import Gathered
+from polhode._report.ensemble.collect import EnsembleRecords
 from polhode._report.ensemble.quantiles import first_above, quantiles
 from polhode._report.text import time as time_text
 from polhode._support.arrays import Array
@@ -32,7 +32,7 @@ _HIGH = np.radians(70)
 _FAINTEST, _DENSEST = 0.03, 100.0
 
 
-def fan_figure(gathered: Gathered) -> Figure:
+def fan_figure(gathered: EnsembleRecords) -> Figure:
     """Draw bands of quantiles over time.
 
     From the top: the angle of the attitude from that of the nominal body, the tilt of an axis, and the rate.
@@ -83,7 +83,7 @@ def _fan(axes: Axes, t: Array, bands: Array) -> None:
     axes.plot(t, median, color=_BLUE, lw=1.4, label="median")
 
 
-def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
+def _horizons(axes: Axes, gathered: EnsembleRecords, seconds: float) -> None:
     """Mark where the 95 % quantile of the angle exceeds 10° and 90°."""
     highest = quantiles(gathered.series["from_nominal"])[-1]
     axes.set_ylim(0, 185)
@@ -108,14 +108,14 @@ def _horizons(axes: Axes, gathered: Gathered, seconds: float) -> None:
         )
 
 
-def _counted(gathered: Gathered) -> str:
+def _counted(gathered: EnsembleRecords) -> str:
     finished = gathered.complete - len(gathered.failures)
     without = f" ({len(gathered.failures)} failed on the way)" if gathered.failures else ""
     counted = f"{finished:,}".replace(",", "\u2009")
     return f"{counted} {'body' if finished == 1 else 'bodies'}{without}"
 
 
-def directions_figure(gathered: Gathered) -> Figure:
+def directions_figure(gathered: EnsembleRecords) -> Figure:
     """Draw equal-area maps of the directions of the axis in space at three times.
 
     Each is centred on the reference of the tilt, L of the nominal body or e3; else on e1.
@@ -147,7 +147,7 @@ def directions_figure(gathered: Gathered) -> Figure:
     return figure
 
 
-def _middle(gathered: Gathered) -> tuple[Array, str]:
+def _middle(gathered: EnsembleRecords) -> tuple[Array, str]:
     """Return the direction on which the maps are centred, and its name."""
     momentum = gathered.nominal.momentum_space.components[0]
     size = float(np.linalg.norm(momentum))
@@ -190,7 +190,7 @@ def _map(axes: Axes, directions: Array) -> Any:
     return drawn
 
 
-def _mark(axes: Axes, gathered: Gathered, frame: Array, k: int) -> None:
+def _mark(axes: Axes, gathered: EnsembleRecords, frame: Array, k: int) -> None:
     """Mark the axis of the nominal body and the axes of space."""
     from matplotlib.patheffects import withStroke
 

@@ -12,7 +12,7 @@ import numpy as np
 from polhode._figures.camera import angles_of
 from polhode._figures.spheres import axis_figure, orbit_figure, polhode_figure
 from polhode._figures.style import main_axis, motion_figure, require_times
-from polhode._report.describe import kind_of, long_axis, orbit_of, weight, wheel
+from polhode._report.describe import long_axis, weight, wheel
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.files import form_of, write_atomically
@@ -60,11 +60,11 @@ def check(kind: str, view: Any, time: float | None) -> None:
 
 def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
     """Return the figure typical of the kind of motion: the polhode, or the path of an axis."""
-    kind = kind_of(scene)
+    kind = scene.kind
     if kind in ON_ELLIPSOID:
         return polhode_figure(trajectory, wheel(scene.torque) if kind == "gyrostat" else None)
     if kind == "satellite":
-        path = long_axis(orbit_of(scene.torque), trajectory)
+        path = long_axis(trajectory)
         return orbit_figure(trajectory, path, "the axis of the least moment")
     if scene.held and (c := weight(scene.torque)).any():
         return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
@@ -162,8 +162,8 @@ KINDS: dict[str, Callable[[Trajectory, Any, float | None], Figure]] = {
 
 def _kind(trajectory: Trajectory) -> str:
     """Return the kind of motion from what acted, or if that is unknown from what was conserved."""
-    if trajectory._origin is not None:
-        return kind_of(trajectory._origin)
+    if trajectory._motion is not None:
+        return trajectory._motion.kind
     if "angular_momentum" not in trajectory.certificate.conserved:
         return "unknown"
     return "gyrostat" if _wheel(trajectory).any() else "free"

@@ -23,7 +23,7 @@ from polhode._figures.style import (
 )
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.smooth import rotor_at, samples
-from polhode._report.describe import long_axis, orbit_of
+from polhode._report.describe import long_axis
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -95,8 +95,7 @@ def top_figure(trajectory: Trajectory, c: Array) -> Figure:
 @in_our_look
 def satellite_figure(trajectory: Trajectory) -> Figure:
     """Draw the angle of a satellite's long axis from up, in the orbit plane, against its rate."""
-    assert trajectory._origin is not None
-    along, _, up = long_axis(orbit_of(trajectory._origin.torque), trajectory).T
+    along, _, up = long_axis(trajectory).T
     angle = np.unwrap(np.arctan2(along, up))
     rate = _rate_of(angle, trajectory.time)
     figure, axes = _portrait(trajectory)

@@ -64,8 +64,7 @@ class Ensemble:
     @property
     def bytes(self) -> int:
         """Memory for the results and for the computation."""
-        point = _BYTES_OF_POINT + (_BYTES_OF_CENTER if self.forces else 0)
-        return self.bodies * (point * len(self.times) + _BYTES_OF_BODY)
+        return _bytes(self.bodies, len(self.times), bool(self.forces))
 
     def block(self, rows: slice) -> Ensemble:
         """Return the bodies of some rows of the first batch axis."""
@@ -95,13 +94,18 @@ class Ensemble:
 
     def run(self, threads: int | None, progress: Callable[[int, float], object] | None) -> Trajectory:
         """Return the motions; a MemoryError, raised first, if they would not fit into memory."""
-        memory.require(
-            self.bytes,
-            f"the motions of {self.bodies} bodies at {len(self.times)} times",
-            "use fewer times, or ph.simulate_blocks",
+        require(self.bodies, len(self.times), bool(self.forces))
+        results = Results(
+            self.shape,
+            self.inertias,
+            self.start_times,
+            self.positions,
+            self.velocities,
+            self.times,
+            self.method,
         )
         if not self.bodies:
-            return self._empty()
+            return results.empty(bool(self.forces))
         # The core needs at least one time.
         times = self.times if len(self.times) else self.start_times.ravel()[:1]
         centers = np.concatenate(np.broadcast_arrays(self.positions, self.velocities), axis=-1)
@@ -123,14 +127,32 @@ class Ensemble:
             threads,
             progress,
         )
+        trajectory = results.trajectory(arrays, summary)
+        warn_of(trajectory.certificate)
+        return trajectory
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Bodies of a batch shape as in `Ensemble`, at times (n,), whose results become a trajectory."""
+
+    shape: Shape
+    inertias: Any
+    start_times: Array
+    positions: Array
+    velocities: Array
+    times: Array
+    method: str
+
+    def trajectory(self, arrays: list[Array], summary: dict[str, Any]) -> Trajectory:
+        """Return the trajectory from the arrays of the core (bodies, n, components) and its summary."""
         n = len(self.times)
         arrays = [frozen(x.reshape(*self.shape, *x.shape[1:])[..., :n, :]) for x in arrays]
-        certificate = self._certificate(summary)
-        warn_of(certificate)
-        return self._trajectory(arrays, certificate, self._failures(summary))
+        return self._trajectory(arrays, self._certificate(summary), self._failures(summary))
 
-    def _empty(self) -> Trajectory:
-        sizes = (4, 3, 3, 1, 3, 3) if self.forces else (4, 3, 3, 1)
+    def empty(self, forced: bool) -> Trajectory:
+        """Return the trajectory of no bodies."""
+        sizes = (4, 3, 3, 1, 3, 3) if forced else (4, 3, 3, 1)
         arrays = [frozen(np.zeros((*self.shape, len(self.times), size))) for size in sizes]
         none = np.zeros(self.shape)
         whole = none.astype(int)
@@ -208,6 +230,20 @@ def _rows_of(argument: Any, rows: slice) -> Any:
     if isinstance(argument, tuple) and any(isinstance(x, tuple) and len(x) == 2 for x in argument):
         return tuple((name, _rows_of(value, rows)) for name, value in argument)
     return argument
+
+
+def require(bodies: int, times: int, forced: bool) -> None:
+    """Raise a MemoryError if the motions would not fit into memory."""
+    memory.require(
+        _bytes(bodies, times, forced),
+        f"the motions of {bodies} bodies at {times} times",
+        "use fewer times, or ph.simulate_blocks",
+    )
+
+
+def _bytes(bodies: int, times: int, forced: bool) -> int:
+    point = _BYTES_OF_POINT + (_BYTES_OF_CENTER if forced else 0)
+    return bodies * (point * times + _BYTES_OF_BODY)
 
 
 # --- inputs

@@ -16,7 +16,6 @@ from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
 from polhode._mechanics.problem import Problem
-from polhode._mechanics.result import Certificate
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import as_count, as_float, as_floats, output_times
@@ -118,9 +117,9 @@ def simulate(
     """
     limits = _limits(max_step, max_steps, breaks)
     ensemble = _ensemble(body, state, times, torque, force, method, rtol, atol, step, limits)
-    _check_progress(progress)
+    check_progress(progress)
     wanted = _events(events)
-    count = _threads(threads)
+    count = checked_threads(threads)
     if ensemble.shape:
         if wanted:
             raise ValueError(
@@ -146,8 +145,6 @@ def simulate(
         [event.law for event in wanted],
         progress,
     )
-    certificate = Certificate(**motion.certificate())
-    warn_of(certificate)
     bodies, law = settled(bodies_of(body), as_torque(torque))
     problem = Problem(
         bodies[()],
@@ -160,7 +157,9 @@ def simulate(
         ensemble.rtol,
         ensemble.limits,
     )
-    return Trajectory._of(motion, inertia, certificate, [event.name for event in wanted], problem)
+    trajectory = Trajectory._of(motion, inertia, [event.name for event in wanted], problem)
+    warn_of(trajectory.certificate)
+    return trajectory
 
 
 def simulate_blocks(
@@ -202,12 +201,12 @@ def simulate_blocks(
     """
     limits = _limits(max_step, max_steps, breaks)
     ensemble = _ensemble(body, state, times, torque, force, method, rtol, atol, step, limits)
-    _check_progress(progress)
+    check_progress(progress)
     if not ensemble.shape:
         raise ValueError("simulate_blocks needs a batch of bodies, got one body; use simulate")
     if block is not None and as_count(block, "block") < 1:
         raise ValueError(f"block must be at least 1, got {block}")
-    _threads(threads)
+    checked_threads(threads)
     rows = ensemble.shape[0]
     size = block or max(1, _BLOCK * rows // max(ensemble.bytes, 1))
     return _blocks(ensemble, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
@@ -219,7 +218,7 @@ def _blocks(
     threads: int | None,
     progress: Callable[[int, float], object] | None,
 ) -> Iterator[tuple[slice, Trajectory]]:
-    count = _threads(threads)
+    count = checked_threads(threads)
     for rows in blocks:
 
         def of_all(number: int, fraction: float, rows: slice = rows) -> None:
@@ -286,12 +285,12 @@ def _limits(max_step: Any, max_steps: Any, breaks: Any) -> StepLimits:
     )
 
 
-def _check_progress(progress: Any) -> None:
+def check_progress(progress: Any) -> None:
     if progress is not None and not callable(progress):
         raise TypeError(f"progress must be callable, got {type(progress).__name__}")
 
 
-def _threads(threads: Any) -> int | None:
+def checked_threads(threads: Any) -> int | None:
     if threads is not None and as_count(threads, "threads") < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
     return None if threads is None else min(as_count(threads, "threads"), 1024)

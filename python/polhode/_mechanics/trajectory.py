@@ -92,9 +92,8 @@ class Trajectory:
     def _of(
         motion: _native.Motion,
         inertia: Inertia,
-        certificate: Certificate,
         names: Sequence[str],
-        origin: Problem,
+        origin: Scene | Problem,
     ) -> Trajectory:
         which, rising, points = motion.events()
         happened = _Points.of(points)
@@ -113,7 +112,7 @@ class Trajectory:
             at.position,
             at.velocity,
             inertia,
-            certificate,
+            Certificate(**motion.certificate()),
             tuple(events),
             _motion=motion,
             _origin=origin,

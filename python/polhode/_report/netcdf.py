@@ -1,4 +1,4 @@
-"""Trajectories as labelled data, and to and from netCDF files."""
+"""Trajectories as xarray datasets, and netCDF files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ CONVENTIONS = (
 def to_xarray(trajectory: Trajectory) -> xarray.Dataset:
     """Return a dataset with dimensions time, quaternion and axis, units and conventions.
 
-    Of a batch the first dimension is `body`, all batch axes in one.
+    A batch has the first dimension `body`, its batch axes flattened.
     """
     xr = optional("xarray", "io", "labelled data")
     body = ("body",) if trajectory.shape else ()
@@ -85,7 +85,7 @@ def _inertia(trajectory: Trajectory, variable: Callable[..., Any]) -> Any:
 
 
 def _bodies(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
-    """Return what the certificate and the failures tell of each body of a batch."""
+    """Return certificate and failure of each body of a batch."""
     proof, along = trajectory.certificate, ("body",)
 
     def column(numbers: Any, units: str, text: str) -> Any:
@@ -95,26 +95,26 @@ def _bodies(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
     messages = np.full(trajectory.shape, "", dtype=object)
     for failure in trajectory.failures:
         failed[failure.index], messages[failure.index] = failure.time, failure.message
-    told = {
+    columns = {
         "step": column(proof.step, "s", "longest step"),
         "steps": column(proof.steps, "1", "steps of all passes"),
         "evaluations": column(proof.evaluations, "1", "evaluations of the torque"),
         "error_estimate": column(proof.error_estimate, "1", "estimate of the relative error"),
         "rotor_norm_drift": column(proof.norm_drift, "1", "largest abs(|R| - 1)"),
-        "failure_time": column(failed, "s", "until when a body that failed was followed"),
-        "failure": (along, messages.ravel(), {"long_name": "why a body failed"}),
+        "failure_time": column(failed, "s", "time up to which a failed body was computed"),
+        "failure": (along, messages.ravel(), {"long_name": "error of a failed body"}),
     }
     if not isinstance(proof.method, str):
         names = proof.method.astype(object).ravel()
-        told["method"] = (along, names, {"long_name": "method"})
+        columns["method"] = (along, names, {"long_name": "method"})
     for name, start in proof.conserved.items():
-        told[f"{name}_start"] = column(start, "SI", f"{name} at the start")
-        told[f"{name}_drift"] = column(proof.drift[name], "1", f"largest relative change of the {name}")
-    return told
+        columns[f"{name}_start"] = column(start, "SI", f"{name} at the start")
+        columns[f"{name}_drift"] = column(proof.drift[name], "1", f"largest relative change of the {name}")
+    return columns
 
 
 def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
-    """Return what happened, one event after the other."""
+    """Return all events, one after another."""
     events, along, axes = trajectory.events, ("event",), ("event", "axis")
 
     def joined(part: Callable[[Crossings], Any]) -> Any:
@@ -124,9 +124,11 @@ def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
     attitude = joined(lambda event: event.rotor.to_quaternion(order="wxyz"))
     omega = joined(lambda event: event.omega_body._data)
     return {
-        "event_name": (along, names, {"long_name": "what passed zero"}),
+        "event_name": (along, names, {"long_name": "name of the event"}),
         "event_time": variable(along, joined(lambda event: event.time), "s", "time of the event"),
-        "event_rising": variable(along, joined(lambda event: event.rising), "1", "whether it rose"),
+        "event_rising": variable(
+            along, joined(lambda event: event.rising), "1", "whether the event function was rising"
+        ),
         "event_attitude": variable(("event", "quaternion"), attitude, "1", "attitude, body to space"),
         "event_omega_body": variable(axes, omega, "rad/s", "angular velocity in body axes"),
         "event_position": variable(
@@ -139,7 +141,7 @@ def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
 
 
 def require_libraries() -> None:
-    """Raise an ImportError now if a netCDF file could not be written later."""
+    """Raise an ImportError if libraries for netCDF files are missing."""
     optional("xarray", "io", "labelled data")
     optional("h5netcdf", "io", "a netCDF file")
 
@@ -154,7 +156,7 @@ def netcdf(trajectory: Trajectory) -> bytes:
 
 
 def _attributes(trajectory: Trajectory) -> dict[str, Any]:
-    """Flat text and numbers, which every netCDF reader shows."""
+    """Return attributes: flat text and numbers, which every netCDF reader shows."""
     proof = trajectory.certificate
     attributes: dict[str, Any] = {
         "conventions": CONVENTIONS,
@@ -179,11 +181,11 @@ def _attributes(trajectory: Trajectory) -> dict[str, Any]:
     return {**attributes, **trajectory.attributes}
 
 
-# --- back again
+# --- reading
 
-# Of the files of others, which may be of any size, no more is read.
+# Foreign files may have any size: nothing else is read.
 _READ = {"time", "attitude", "omega_body", "momentum_space", "energy", "position", "velocity", "inertia"}
-# Attributes that are ours, or the library's.
+# Attributes written here or by the library; all others are the user's.
 _OWN = {
     *("conventions", "source", "method", "step_s", "steps", "evaluations", "conserved", "drift"),
     *("error_estimate", "warnings", "_NCProperties"),
@@ -212,9 +214,9 @@ def read(path: str | os.PathLike[str]) -> Trajectory:
             attributes={name: x for name, x in attributes.items() if name not in _OWN},
         )
     except KeyError as error:
-        raise ValueError(f"{path} is no motion that polhode wrote: it has no {error}") from None
+        raise ValueError(f"{path} is not a motion that polhode wrote: {error} is missing") from None
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{path} is no motion that polhode wrote: {error}") from error
+        raise ValueError(f"{path} is not a motion that polhode wrote: {error}") from error
 
 
 def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -231,26 +233,26 @@ def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, An
             names = [] if many else [name for name in file if name in _READ or name.startswith("event_")]
             fields = {name: _array(name, file[name]) for name in names}
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
-        # A file that is damaged fails at any depth of the library, which has no error of its own.
-        raise OSError(f"{path} is no netCDF file that can be read: {error}") from error
+        # The library raises any of these for a damaged file.
+        raise OSError(f"{path} cannot be read as a netCDF file: {error}") from error
     if many:
-        raise ValueError(f"{path} holds a batch of bodies; xarray.open_dataset reads it")
+        raise ValueError(f"{path} holds a batch of bodies; read it with xarray.open_dataset")
     return fields, attributes
 
 
 def _attribute(x: Any) -> Any:
-    """Return a text or a number as such; in the file a number is an array of one."""
+    """Return an attribute; numbers are arrays of one element in the file."""
     return x.item() if isinstance(x, np.ndarray) and x.size == 1 else x
 
 
 def _array(name: str, variable: Any) -> Any:
     if not hasattr(variable, "dtype"):
-        raise OSError(f"`{name}` is no variable")
+        raise OSError(f"`{name}` is not a variable")
     return variable.asstr()[...] if variable.dtype.kind == "O" else variable[...]
 
 
 def _rotors(quaternions: Any) -> Any:
-    """Return the rotors whose components became these quaternions: another sign of some, no rounding."""
+    """Return the rotors of quaternions wxyz: three signs change, without rounding."""
     from polhode._algebra.rotor import Rotor
 
     return Rotor._from_rows(np.ascontiguousarray(quaternions * [1.0, -1.0, -1.0, -1.0]))
@@ -275,7 +277,7 @@ def _certificate(attributes: dict[str, Any]) -> Any:
 
 
 def _crossings(fields: dict[str, Any]) -> tuple[Crossings, ...]:
-    """Return the events that happened, by their names."""
+    """Return the events, grouped by name."""
     from polhode._algebra.constructors import bivector, vector
     from polhode._mechanics.result import Crossings
 

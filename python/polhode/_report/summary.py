@@ -1,4 +1,4 @@
-"""What a physicist wants to know of a run, as numbers for programs; `polhode._report.text` prints it."""
+"""Summary of a run as numbers for programs; `polhode._report.text` prints it."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import describe
 from polhode._scene.scene import Scene
 from polhode.torque import Torque
 
 
 def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
-    """Return the summary in SI units; everything in it is a number, text, None, a list or a dict."""
+    """Return the summary in SI units, of values that JSON can hold."""
+    assert trajectory._motion is not None
     proof = trajectory.certificate
     drifts = (proof.norm_drift, *proof.drift.values())
     return {
@@ -23,7 +23,7 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
         "body": body_of(scene, trajectory.inertia),
         "torques": torques_of(scene),
         "forces": [] if scene.force is None else repr(scene.force).split(" + "),
-        "motion": describe(scene, trajectory),
+        "motion": trajectory._motion.describe(),
         "conserved": {
             name: {"value": value, "drift": proof.drift[name]} for name, value in proof.conserved.items()
         },
@@ -37,14 +37,14 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
             "duration": float(scene.elapsed[-1]),
             "samples": len(scene.times),
             "drift_bound": scene.drift_bound,
-            # One by one: a maximum may forget what is not a number.
+            # Not by max(), which may lose a NaN.
             "drift_within_bound": all(drift <= scene.drift_bound for drift in drifts),
         },
     }
 
 
 def body_of(scene: Scene, inertia: Inertia) -> dict[str, Any]:
-    """Return what the body is, with the inertia that rules its motion."""
+    """Return the body, with the inertia that rules its motion."""
     moments = inertia.principal_moments
     return {
         "mass": scene.body.mass if scene.tells_mass else None,
@@ -57,7 +57,7 @@ def body_of(scene: Scene, inertia: Inertia) -> dict[str, Any]:
 
 
 def torques_of(scene: Scene) -> list[dict[str, Any]]:
-    """Return each law by its name in `polhode.torque`, its call, and its formula as the scene has it."""
+    """Return each law: name in `polhode.torque`, call, arguments, and formula as in the scene."""
     laws = scene.torque.laws if scene.torque else ()
     return [
         {
@@ -71,7 +71,7 @@ def torques_of(scene: Scene) -> list[dict[str, Any]]:
 
 
 def _plain(argument: Any) -> Any:
-    """Return an argument of a law as JSON has it."""
+    """Return an argument of a law as a value that JSON can hold."""
     if isinstance(argument, tuple):
         return [_plain(x) for x in argument]
     return argument if isinstance(argument, (str, float)) else str(argument)

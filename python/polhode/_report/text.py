@@ -1,4 +1,4 @@
-"""The summary of a run as a page for people."""
+"""Summary of a run as text for a terminal."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 from polhode._mechanics.registry import TORQUES
 
-# How wide the names of rows are.
+# Width of the names of rows.
 _COLUMNS = 18
 
 Row = Callable[[str, str], None]
 
-# (what is shorter is told so, seconds in the unit, its name)
+# (upper bound in s, unit in s, name of the unit)
 _SECONDS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"), (6e7, 86400.0, "d"))
 
 QUANTITIES = {
@@ -56,12 +56,12 @@ def as_text(summary: dict[str, Any]) -> str:
 
 
 def printable(title: str) -> str:
-    """Return a title without what a terminal would obey."""
+    """Return a title with control characters replaced."""
     return "".join(c if c.isprintable() else "\ufffd" for c in title)
 
 
 def body_rows(body: dict[str, Any], free: bool, row: Row) -> None:
-    """Print what the body is."""
+    """Print the rows of the body."""
     ignored = "free motion ignores it" if free else "the motion does not depend on it"
     row("mass", f"not given, and {ignored}" if body["mass"] is None else f"{number(body['mass'])} kg")
     row("centre of mass", f"{_listed(body['center_of_mass'])} m")
@@ -71,7 +71,7 @@ def body_rows(body: dict[str, Any], free: bool, row: Row) -> None:
 
 
 def acting(summary: dict[str, Any], row: Row) -> None:
-    """Print what turns the body, and what moves it."""
+    """Print the torques and the forces."""
     for law in summary["torques"]:
         row(*_law(law))
     for force in summary["forces"]:
@@ -135,7 +135,7 @@ def _free(motion: dict[str, Any], row: Row) -> None:
         text = f"every {time(motion['flip_time'])} about the middle axis (half a period)"
         found = motion.get("reversals")
         if found:
-            text += f"; seen: {found['count']}, every {time(found['mean_interval'])}"
+            text += f"; sampled: {found['count']}, every {time(found['mean_interval'])}"
         row("flips", text)
     if "closed_form" in motion:
         difference = motion["closed_form"]["largest_rotor_difference"]
@@ -143,9 +143,9 @@ def _free(motion: dict[str, Any], row: Row) -> None:
 
 
 def _damped(motion: dict[str, Any], row: Row) -> None:
-    row("damping", "the motion of a free body, more and more slowly")
+    row("damping", "the motion of a free body, slower and slower")
     if motion["halved_after"] is not None:
-        row("half of ω", f"after {time(motion['halved_after'])}, and again")
+        row("half of ω", f"after every {time(motion['halved_after'])}")
     _free(motion, row)
     if motion["period"] is not None:
         row("", "(periods are those at the start)")
@@ -174,11 +174,11 @@ def _lagrange(motion: dict[str, Any], row: Row) -> None:
         if (fast := motion["fast_top_precession_rate"]) is not None:
             off = motion["precession_rate"] / fast - 1
             row("fast-top formula", f"{number(fast)} rad/s, m g l/(i3 ω3); the average is off by {off:+.2e}")
-    able = "stable" if motion["sleeps"] else "not stable"
+    stable = "stable" if motion["sleeps"] else "unstable"
     row(
         "upright",
-        f"{able} with its spin of {number(motion['spin'])} rad/s; "
-        f"from {number(motion['critical_spin'])} rad/s on it sleeps",
+        f"{stable} with its spin of {number(motion['spin'])} rad/s; "
+        f"stable from {number(motion['critical_spin'])} rad/s",
     )
 
 
@@ -190,7 +190,7 @@ def _heavy(motion: dict[str, Any], row: Row) -> None:
     _tilt(motion, row)
     rate = motion["precession_rate"]
     if rate is None:
-        row("precession", "not followed: the output times are too far apart")
+        row("precession", "unknown: the output times are too far apart")
     else:
         row("precession", f"{number(rate)} rad/s on average")
 
@@ -228,7 +228,7 @@ _KINDS = {
 
 
 def _changes(motion: dict[str, Any], row: Row) -> None:
-    """Tell how rate, momentum, attitude and place were at the start and at the end."""
+    """Print rate, momentum, attitude and position at the start and at the end."""
     for key, name, unit in (("rate", "|ω|", "rad/s"), ("angular_momentum", "|L|", "kg m²/s")):
         if "changes" in motion:
             ends = motion["changes"][key]
@@ -245,24 +245,24 @@ def _changes(motion: dict[str, Any], row: Row) -> None:
 
 
 def number(x: float, digits: int = 6) -> str:
-    """Return a number with so many digits."""
+    """Return a number rounded to significant digits."""
     return f"{x:.{digits}g}"
 
 
 def _listed(values: list[float]) -> str:
-    """Return components; what is rounding beside the largest reads 0."""
+    """Return components; those below 1e-12 of the largest as 0."""
     floor = 1e-12 * max(abs(x) for x in values)
     return ", ".join(number(x if abs(x) > floor else 0.0) for x in values)
 
 
 def _angles(low: float, high: float) -> str:
-    """Return a range of angles in degrees, one where both read the same."""
+    """Return a range of angles in degrees; one angle if both print alike."""
     first, last = (f"{np.degrees(x):.6g}°" for x in (low, high))
     return first if first == last else f"{first} to {last}"
 
 
 def time(seconds: float, digits: int = 6) -> str:
-    """Return a time in a unit that reads well."""
+    """Return a time in s, min, h, d or yr."""
     for below, unit, name in _SECONDS:
         if abs(seconds) < below:
             return f"{number(seconds / unit, digits)} {name}"

@@ -1,10 +1,10 @@
-"""Scenes: a body, how it starts and how long it runs, from a TOML file."""
+"""Scenes: body, start, torques and output times from a TOML file."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,11 +13,12 @@ import numpy as np
 from polhode import _native
 from polhode import force as forces
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body
-from polhode._mechanics.simulate import simulate
+from polhode._mechanics.bodies import Body, Inertia
+from polhode._mechanics.ensemble import Results, require, warn_of
+from polhode._mechanics.simulate import check_progress, checked_threads
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
-from polhode._scene.ensemble import EnsembleSpec, torque_of
+from polhode._scene.ensemble import EnsembleSpec
 from polhode._support.arrays import Array, frozen, hands_out_copies
 from polhode.force import Force
 from polhode.torque import Torque
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
 DRIFT_BOUND = 1e-8
 
-# Bytes of results in a block of bodies. So many blocks that a run which is stopped keeps most of what it
-# did, but none so small that its lanes and threads are idle.
+# Bytes of results in a block of bodies; number of blocks, so that an interrupted run keeps most of its
+# bodies; and least number of bodies in a block, so that lanes and threads are busy.
 _BLOCK, _BLOCKS, _FEW = 32 << 20, 64, 512
 
 
@@ -39,28 +40,30 @@ class SceneNotFoundError(_native.SceneError, FileNotFoundError):
 @hands_out_copies("shift", "times")
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a scene file says, in SI units, ready to run. Made by `Scene.read`.
+    """A scene file in SI units, ready to run; see `Scene.read`.
+
+    `dataclasses.replace` takes `path`, `times` and `ensemble`; the other attributes follow from the file.
 
     Attributes
     ----------
     path, text, title
         The file, its content, and its title or None.
     body
-        The body; under gravity in axes whose origin is the fixed point.
+        The body; with gravity in axes whose origin is the fixed point.
     tells_mass
-        False where the file gives an inertia alone; the body then has 1 kg, which the motion ignores.
+        False if the file gives an inertia only; the body then has 1 kg, which does not affect the motion.
     solid
-        The kind of the solid that the file says and its sizes in m, as the fields of a scene; None without.
+        Kind and sizes in m of the solid in the file, named as there; None without.
     shift
-        Where the origin of the file's axes is in those of the body, (3,), in m: not 0 for a pivot alone.
+        Origin of the file's axes in those of the body, (3,), in m: 0 without a pivot.
     state
-        The state at the start, which has the time that the file says, or 0.
+        The state at the start.
     torque
-        What turns the body, gravity first and then as in the file; None where nothing does.
+        The torque, gravity first and then as in the file; None without.
     formulas
-        For each law of `torque` its formula as the file has it, or None.
+        For each law of `torque` its formula as in the file, or None.
     force
-        What moves the centre of mass; None where nothing does.
+        The force on the centre of mass; None without.
     times
         Output times in s.
     method, step, rtol, atol, max_step, max_steps
@@ -68,29 +71,30 @@ class Scene:
     drift_bound
         Largest relative drift of a conserved quantity that counts as success.
     ensemble
-        How many bodies there are, and in what they differ from this one; None where there is but one.
+        The table `[ensemble]`; None without.
     """
 
     path: Path
-    text: str
-    title: str | None
-    body: Body
-    tells_mass: bool
-    solid: dict[str, Any] | None
-    shift: Array
-    state: State
-    torque: Torque | None
-    formulas: tuple[str | None, ...]
-    force: Force | None
     times: Array
-    method: str
-    step: float | None
-    rtol: float | None
-    atol: float | None
-    max_step: float | None
-    max_steps: float | None
-    drift_bound: float
     ensemble: EnsembleSpec | None
+    _core: _native.Scene = field(repr=False)
+    text: str = field(init=False, repr=False)
+    title: str | None = field(init=False)
+    body: Body = field(init=False)
+    tells_mass: bool = field(init=False)
+    solid: dict[str, Any] | None = field(init=False)
+    shift: Array = field(init=False)
+    state: State = field(init=False)
+    torque: Torque | None = field(init=False)
+    formulas: tuple[str | None, ...] = field(init=False)
+    force: Force | None = field(init=False)
+    method: str = field(init=False)
+    step: float | None = field(init=False)
+    rtol: float | None = field(init=False)
+    atol: float | None = field(init=False)
+    max_step: float | None = field(init=False)
+    max_steps: float | None = field(init=False)
+    drift_bound: float = field(init=False)
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Scene:
@@ -99,56 +103,46 @@ class Scene:
         Raises
         ------
         SceneError
-            A ValueError whose text gives file, line and column of everything that is wrong, with the line.
+            A ValueError that reports every error in the file with its line, column and source line.
         FileNotFoundError
             If there is no such file; it is a SceneError too.
         """
         try:
-            fields = _native.read_scene(os.fspath(path))
+            core = _native.Scene.read(os.fspath(path))
         except _native.SceneError as error:
             if os.path.lexists(path):
                 raise
             raise SceneNotFoundError(str(error)) from None
-        return Scene(
-            path=Path(path),
-            text=fields["text"],
-            title=fields["title"],
-            body=Body._of(fields["body"]),
-            tells_mass=fields["tells_mass"],
-            solid=fields["solid"],
-            shift=frozen(fields["shift"]),
-            state=State(
-                Rotor._from_rows(fields["rotor"]),
-                fields["omega_body"],
-                fields["position"],
-                fields["velocity"],
-                time=fields["time"],
-            ),
-            torque=Torque(tuple(fields["laws"])) if fields["laws"] else None,
-            formulas=tuple(fields["formulas"]),
-            force=_sum_of(fields["forces"]),
-            times=frozen(fields["times"]),
-            method=fields["method"],
-            step=fields["step"],
-            rtol=fields["rtol"],
-            atol=fields["atol"],
-            max_step=fields["max_step"],
-            max_steps=fields["max_steps"],
-            drift_bound=DRIFT_BOUND if fields["drift_bound"] is None else fields["drift_bound"],
-            ensemble=None if fields["ensemble"] is None else EnsembleSpec._of(fields["ensemble"]),
-        )
+        return Scene(Path(path), core.fields()["times"], EnsembleSpec._of(core), core)
+
+    def __post_init__(self) -> None:
+        given = self._core.fields()
+        rotor, center = Rotor._from_rows(given["rotor"]), (given["position"], given["velocity"])
+        given |= {
+            "body": Body._of(given["body"]),
+            "shift": frozen(given["shift"]),
+            "state": State(rotor, given["omega_body"], *center, time=given["time"]),
+            "torque": Torque(tuple(given["laws"])) if given["laws"] else None,
+            "formulas": tuple(given["formulas"]),
+            "force": _sum_of(given["forces"]),
+            "drift_bound": given["drift_bound"] or DRIFT_BOUND,
+            "times": frozen(np.asarray(self.times, float)),
+        }
+        # Fields that the file alone determines: `dataclasses.replace` refuses them.
+        for name in (*(own.name for own in fields(self) if not own.init), "times"):
+            self.__dict__[name] = given[name]
 
     def surface(self) -> tuple[Array, Array] | None:
-        """Return the mesh that the file names: vertices (n, 3) in body axes in m, and triangles (m, 3).
+        """Return the mesh of the body: vertices (n, 3) in body axes in m, and triangles (m, 3).
 
-        None where it names none.
+        None without a mesh.
         """
         mesh = _native.scene_mesh(os.fspath(self.path))
         return None if mesh is None else (mesh[0], np.array(mesh[1], int))
 
     @property
     def result_bytes(self) -> int:
-        """The memory that the states of all bodies at all times take: rotors, Ω, L and energies."""
+        """Bytes of the states of all bodies at all times: rotors, Ω, L and energies."""
         numbers = 4 + 3 + 3 + 1
         return (1 if self.ensemble is None else self.ensemble.number) * len(self.times) * numbers * 8
 
@@ -168,8 +162,13 @@ class Scene:
         return self.title or self.path.stem
 
     def alone(self) -> Scene:
-        """Return the scene of the one body from which those of an ensemble differ."""
+        """Return the scene of the nominal body, without the ensemble."""
         return replace(self, ensemble=None)
+
+    @property
+    def kind(self) -> str:
+        """The kind of motion, by the torques: free, heavy, gyrostat, damped, satellite or torqued."""
+        return self._core.kind
 
     def run(
         self, progress: Callable[[int, float], object] | None = None, threads: int | None = None
@@ -178,11 +177,18 @@ class Scene:
 
         Errors, `progress` and `threads` as for `polhode.simulate`.
         """
-        if self.ensemble is None:
-            # Moments in a file may be those about the fixed point, without a centre of mass.
-            body = self.body.inertia_about(0) if self.held else self.body
-            return self._moved(body, self.state, self.torque, progress, threads)
-        return self._drawn(slice(0, self.ensemble.number), progress, threads)
+        if self.ensemble is not None:
+            return self._drawn(slice(0, self.ensemble.number), progress, threads)
+        check_progress(progress)
+        motion = self._core.simulate(self.times, progress)
+        # The path stays valid if the working directory changes.
+        origin = replace(self, path=self.path.absolute())
+        return self._labelled(Trajectory._of(motion, Inertia(self._core.inertia()), (), origin))
+
+    def _labelled(self, trajectory: Trajectory) -> Trajectory:
+        warn_of(trajectory.certificate)
+        trajectory.attributes.update({"title": self.name, "scene": self.text})
+        return trajectory
 
     if TYPE_CHECKING:
         view = _outputs.view_of
@@ -193,16 +199,16 @@ class Scene:
         progress: Callable[[int, float], object] | None = None,
         threads: int | None = None,
     ) -> Iterator[tuple[slice, Trajectory]]:
-        """Yield the motions of an ensemble's bodies in blocks, drawn as they come: which bodies, and theirs.
+        """Yield the motions of an ensemble's bodies in blocks: a slice of bodies, and their trajectory.
 
-        So all together need not fit into memory. The same bits as in ``run()[rows]``, for any block.
+        All bodies together need not fit into memory. Bits are those of ``run()[rows]`` for any block.
 
         Parameters
         ----------
         block
-            How many bodies at a time; None for as many as have some 32 MB of results, or a 64th of all.
+            Number of bodies in a block; None for about 32 MB of results, or a 64th of all.
         progress
-            Called now and then with 1 and the fraction of all bodies that is done.
+            Called regularly with 1 and the completed fraction of all bodies.
 
         Raises
         ------
@@ -210,9 +216,9 @@ class Scene:
             Without an ensemble; else as for `polhode.simulate`.
         """
         if self.ensemble is None:
-            raise ValueError("this scene is one body, without a table [ensemble]; use run")
+            raise ValueError("this scene has no table [ensemble]; use run")
         if block is not None and block < 1:
-            raise ValueError(f"block is {block}; it must be 1 or more")
+            raise ValueError(f"block must be at least 1, got {block}")
         number, size = self.ensemble.number, block or self.block
         for start in range(0, number, size):
             rows = slice(start, min(start + size, number))
@@ -227,7 +233,7 @@ class Scene:
 
     @property
     def block(self) -> int:
-        """How many bodies of an ensemble are run at a time, if nobody says it."""
+        """Default number of bodies in a block of an ensemble."""
         number = 1 if self.ensemble is None else self.ensemble.number
         fits = max(1, _BLOCK * number // self.result_bytes)
         return min(fits, max(_FEW, -(-number // _BLOCKS)))
@@ -236,46 +242,26 @@ class Scene:
         self, rows: slice, progress: Callable[[int, float], object] | None, threads: int | None
     ) -> Trajectory:
         """Return the motions of some bodies of the ensemble."""
-        assert self.ensemble is not None
-        state, inertias, laws = self.ensemble.draw(rows.start, rows.stop - rows.start)
-        bodies: list[Any] = list(inertias)
-        if self.force is not None:
-            mass, center = self.body.mass, self.body.center_of_mass
-            bodies = [Body(mass, inertia, center) for inertia in inertias]
-        body = bodies[0] if len(bodies) == 1 else bodies
-        return self._moved(body, state, torque_of(laws), progress, threads)
-
-    def _moved(
-        self,
-        body: Any,
-        state: State,
-        torque: Torque | None,
-        progress: Callable[[int, float], object] | None,
-        threads: int | None,
-    ) -> Trajectory:
-        trajectory = simulate(
-            body,
-            state,
-            self.times,
-            torque,
-            self.force,
-            method=self.method,
-            step=self.step,
-            rtol=self.rtol,
-            atol=self.atol,
-            max_step=self.max_step,
-            max_steps=self.max_steps,
-            threads=threads,
-            progress=progress,
+        check_progress(progress)
+        count = rows.stop - rows.start
+        require(count, len(self.times), self.force is not None)
+        found, inertias, centers = self._core.simulate_many(
+            rows.start, count, self.times, checked_threads(threads), progress
         )
-        trajectory.attributes.update({"title": self.name, "scene": self.text})
-        if trajectory.shape:
-            return trajectory
-        # Wherever the program goes afterwards.
-        return replace(trajectory, _origin=replace(self, path=self.path.absolute()))
+        shared = np.array([Inertia(inertia) for inertia in inertias], object)
+        results = Results(
+            (count,),
+            shared if len(shared) > 1 else shared.reshape(()),
+            np.array(self.state.time),
+            centers[:, :3],
+            centers[:, 3:],
+            self.times,
+            self.method,
+        )
+        return self._labelled(results.trajectory(*found))
 
 
 def _sum_of(calls: list[tuple[str, tuple[Any, ...]]]) -> Force | None:
-    """Return the sum of forces, each the name and the arguments of a function of `polhode.force`."""
-    made: list[Force] = [getattr(forces, name)(*arguments) for name, arguments in calls]
-    return sum(made[1:], made[0]) if made else None
+    """Return the sum of forces, each given as name and arguments of a function of `polhode.force`."""
+    laws: list[Force] = [getattr(forces, name)(*arguments) for name, arguments in calls]
+    return sum(laws[1:], laws[0]) if laws else None

@@ -1,4 +1,4 @@
-"""What a simulation was asked for, and the scene that asks for the same."""
+"""Problem of a simulation, and the scene file that states it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from polhode._mechanics.registry import FORCES, TORQUES, Entry
 
 
 class UnwritableError(ValueError):
-    """A motion that no scene can ask for; the message says what is in the way."""
+    """A problem that a scene file cannot state."""
 
 
 def scene_text(problem: Problem) -> str:
@@ -74,14 +74,14 @@ def _run(problem: Problem) -> dict[str, Any]:
     duration = float(np.max(problem.times, initial=start)) - start
     if duration <= 0:
         raise UnwritableError(
-            f"a scene goes on from its start at {start:g} s, and this motion has no later time"
+            f"a scene needs an output time after its start at {start:g} s, and this motion has none"
         )
     return {"duration": duration, "samples": max(2, len(problem.times))}
 
 
 def _method(problem: Problem) -> dict[str, Any]:
     fields: dict[str, Any] = {}
-    # A scene is exact by itself where a closed form is known.
+    # Without a method, scenes use a closed form if there is one.
     if problem.method not in ("auto", "exact"):
         fields["name"] = problem.method
     if problem.step is not None:
@@ -92,7 +92,7 @@ def _method(problem: Problem) -> dict[str, Any]:
         fields["rtol"] = problem.tolerance
     max_step, max_steps, breaks = problem.limits
     if breaks:
-        raise UnwritableError("a scene has no breaks; give max_step instead")
+        raise UnwritableError("breaks cannot be written to a scene file; use max_step")
     given = {"max_step": max_step, "max_steps": max_steps}
     fields |= {name: value for name, value in given.items() if value is not None}
     return fields
@@ -108,7 +108,9 @@ def _fields(laws: Iterable[Any], entries: Mapping[str, Entry], table: str) -> di
         is_formula = (table, law.name) == ("torque", "formula")
         name = f"torque_{law.arguments[1]}" if is_formula else law.name
         if name in fields:
-            raise UnwritableError(f"a scene has at most one {table} `{name}`, this motion has two")
+            raise UnwritableError(
+                f"a scene file has at most one {table} `{name}`, and this motion has two; add them"
+            )
         if is_formula:
             fields[name] = law.arguments[0]
         elif name in entries:
@@ -118,7 +120,7 @@ def _fields(laws: Iterable[Any], entries: Mapping[str, Entry], table: str) -> di
                 "Python callables cannot be written to a scene file; use a formula, as of ph.torque.formula"
             )
         else:
-            raise UnwritableError(f"[{table}] of a scene has no {name}")
+            raise UnwritableError(f"{table}.{name} cannot be written to a scene file; use {table}.formula")
     return fields
 
 
@@ -132,25 +134,25 @@ def _field(entry: Entry, arguments: tuple[Any, ...]) -> Any:
 
 
 def _definitions(formulas: Iterable[Any]) -> dict[str, Any]:
-    """Return what names in formulas stand for."""
+    """Return the values of names in formulas."""
     defined: dict[str, Any] = {}
     for law in formulas:
         for name, value in law.arguments[2]:
             text = _definition(name, value)
             if defined.setdefault(name, text) != text:
-                raise UnwritableError(f"`{name}` has two values in formulas, and in a scene but one")
+                raise UnwritableError(f"`{name}` has two values in formulas; a scene file has one for all")
     return defined
 
 
 def _definition(name: str, value: Any) -> float | str:
-    """Return a number as such, and the sum of components that a multivector is."""
+    """Return a number, or a multivector as a sum of components."""
     if isinstance(value, float):
         return value
     if not isinstance(value, Multivector):
-        raise UnwritableError(f"`{name}` is no multivector; a scene does not define a linear map")
+        raise UnwritableError(f"`{name}` is not a multivector; linear maps cannot be written to a scene file")
     names = value.algebra._names(value._mask)
     terms = (f"({float(x)!r}) {name}".strip() for x, name in zip(value.components, names, strict=True))
-    # In a formula an e may be a basis vector.
+    # In a formula, e may be a basis vector.
     return " + ".join(terms).replace("e+", "E+").replace("e-", "E-") or "0"
 
 
@@ -163,7 +165,7 @@ def _key(name: str) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, str):
-        # JSON's escapes are TOML's, which wants one more.
+        # TOML has the escapes of JSON and one more.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(name)} = {_value(x)}" for name, x in value.items()) + " }"

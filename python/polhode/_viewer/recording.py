@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 from typing import Any
 
 import numpy as np
@@ -16,12 +15,9 @@ from polhode._algebra.constructors import bivector, vector
 from polhode._algebra.interpolation import slerp
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body
-from polhode._mechanics.closed_forms import LagrangeTop
-from polhode._mechanics.free_motion import describe_free
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory, _Points
-from polhode._report.describe import kind_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.packing import packed, unpacked
@@ -147,8 +143,6 @@ def _rows(points: _Points) -> Array:
 
 def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any]:
     proof, inertia = trajectory.certificate, trajectory.inertia
-    torque = None if origin is None else origin.torque
-    held = torque is not None and torque.holds
     start = None if origin is None else origin.state
     if start is not None and start.time != points.time[0]:
         # Read from a file without the start.
@@ -161,8 +155,7 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             "moments": inertia.principal_moments.tolist(),
             "frame": inertia.principal_frame.components.tolist(),
         },
-        "held": held,
-        "heavy": weight(torque).tolist() if held else None,
+        **_facts(trajectory, origin),
         "laws": _laws(origin),
         "start": {
             "rotor": (start.rotor if start else points.rotor[0]).components.tolist(),
@@ -181,10 +174,17 @@ def _about(trajectory: Trajectory, origin: Scene | Problem | None, points: _Poin
             for name, value in proof.conserved.items()
         ],
         "norm_drift": proof.norm_drift,
-        "free": _free(trajectory, origin, points),
-        "top": _top(trajectory, origin),
         "ensemble": None,
     }
+
+
+def _facts(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any]:
+    """Return what is known from the start."""
+    if isinstance(origin, Scene):
+        return origin._core.facts()
+    if trajectory._motion is not None:
+        return trajectory._motion.facts()
+    return {"held": False, "heavy": None, "free": None, "top": None}
 
 
 def _body(origin: Scene | Problem | None) -> dict[str, Any]:
@@ -202,48 +202,9 @@ def _body(origin: Scene | Problem | None) -> dict[str, Any]:
     }
 
 
-def _laws(origin: Scene | Problem | None) -> list[dict[str, str]]:
-    """Return the laws: the name of each field in a scene, and its formula or numbers as text."""
-    laws = origin.torque.laws if origin is not None and origin.torque is not None else ()
-    formulas = origin.formulas if isinstance(origin, Scene) else (None,) * len(laws)
-    gravity = isinstance(origin, Scene) and "gravity" in tomllib.loads(origin.text)
-    named = []
-    for k, (law, formula) in enumerate(zip(laws, formulas, strict=True)):
-        arguments = law.arguments
-        if law.name == "formula":
-            named.append({"name": f"torque_{arguments[1]}", "text": formula or arguments[0]})
-        elif law.name in ("tabulated", "function"):
-            named.append({"name": law.name, "text": ""})
-        else:
-            name = "gravity" if gravity and k == 0 else law.name
-            named.append({"name": name, "text": ", ".join(map(_number, arguments))})
-    return named
-
-
-def _number(argument: Any) -> str:
-    if isinstance(argument, tuple):
-        return f"({', '.join(map(_number, argument))})"
-    return repr(argument).removesuffix(".0")
-
-
-def _free(trajectory: Trajectory, origin: Scene | Problem | None, points: _Points) -> dict[str, Any] | None:
-    """Return the description of a free motion; None for others."""
-    if origin is None or kind_of(origin) != "free":
-        return None
-    about = describe_free(trajectory.inertia, points.omega_body[0])
-    names = ("regime", "modulus", "axis", "period", "precession_period", "flip_time")
-    return {name: about[name] for name in names}
-
-
-def _top(trajectory: Trajectory, origin: Scene | Problem | None) -> dict[str, Any] | None:
-    """Return the description of a symmetric top under its weight alone; None for others."""
-    if origin is None or kind_of(origin) != "heavy":
-        return None
-    start = origin.state
-    try:
-        top = LagrangeTop(trajectory.inertia, start.rotor, start.omega_body, weight(origin.torque))
-    except ValueError:
-        return None
-    about = top.describe()
-    names = ("regime", "nutation_period", "precession_rate", "critical_spin", "sleeps")
-    return {"tilt": [about["tilt_min"], about["tilt_max"]], **{name: about[name] for name in names}}
+def _laws(origin: Scene | Problem | None) -> list[dict[str, Any]]:
+    """Return each law: the name of its field in a scene, and its formula or its numbers."""
+    if isinstance(origin, Scene):
+        return origin._core.laws()
+    laws = () if origin is None or origin.torque is None else origin.torque.laws
+    return [law.facts() for law in laws]

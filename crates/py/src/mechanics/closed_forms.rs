@@ -2,12 +2,13 @@
 
 use super::bodies::{Inertia, rotor};
 use crate::support::arrays::{Array, Rows, bad, numbers, one, threads};
+use crate::support::facts::dict;
 use crate::support::pool;
 use numpy::PyArrayMethods;
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::exact::damped;
-use polhode_rigid::exact::lagrange::{self, LagrangeDescription};
+use polhode_rigid::exact::lagrange;
 use polhode_rigid::exact::larmor;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -77,22 +78,7 @@ impl LagrangeTop {
     }
 
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let d: LagrangeDescription = self.0.describe();
-        let result = PyDict::new(py);
-        result.set_item("regime", d.regime.to_string())?;
-        result.set_item("tilt_min", d.tilt_min)?;
-        result.set_item("tilt_max", d.tilt_max)?;
-        result.set_item("nutation_period", d.nutation_period)?;
-        result.set_item("precession_rate", d.precession_rate)?;
-        result.set_item("precession_period", d.precession_period())?;
-        result.set_item("spin_rate", d.spin_rate)?;
-        result.set_item("modulus", d.modulus)?;
-        result.set_item("energy", d.energy)?;
-        result.set_item("axial_momentum", d.axial_momentum)?;
-        result.set_item("vertical_momentum", d.vertical_momentum)?;
-        result.set_item("critical_spin", d.critical_spin)?;
-        result.set_item("sleeps", d.sleeps)?;
-        Ok(result)
+        dict(py, self.0.describe().facts())
     }
 }
 

@@ -20,7 +20,7 @@ use pyo3::types::PyDict;
 
 /// Rotors, angular velocities, momenta, energies and, where forces move them, places and velocities of all bodies at all
 /// times, body by body; and the summary of the bodies.
-type Results<'py> = PyResult<(Vec<Array<'py>>, Bound<'py, PyDict>)>;
+pub(crate) type Results<'py> = (Vec<Array<'py>>, Bound<'py, PyDict>);
 
 /// Simulates bodies of a batch shape. Inertias with their shape, start times (…), rotors (…, 4), angular velocities (…, 3), laws, places and
 /// velocities (…, 6) and masses (…), NaN where unknown, broadcast to it. Neither the batch nor the times may be empty.
@@ -48,7 +48,7 @@ pub(crate) fn simulate_many<'py>(
     limits: Limits,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
-) -> Results<'py> {
+) -> PyResult<Results<'py>> {
     let (method, exact) = method_of(method)?;
     if shape.contains(&0) || times.len() == 0 {
         return Err(bad("no bodies or no times to simulate"));
@@ -71,14 +71,29 @@ pub(crate) fn simulate_many<'py>(
         masses: ensemble::Rows::new(spread(numbers(&masses)?.to_vec(), masses.shape(), &shape)),
         forces: forces.iter().map(|force| force.get().force.clone()).collect(),
     };
-    if let Some((body, error)) = ensemble.first_unusable() {
-        return Err(bad(format!("{}{error}", place(body, &shape))));
-    }
-    let threads = threads.map_or_else(all_threads, |count| Ok(Threads::new(count)))?;
     let (max_step, max_steps, breaks) = limits;
     let events = Vec::new();
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
-    let (bodies, times) = (ensemble.starts.len(), numbers(&times)?);
+    run_many(py, &ensemble, &shape, numbers(&times)?, &options, threads, &made, progress)
+}
+
+/// Runs the bodies of a batch shape.
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn run_many<'py>(
+    py: Python<'py>,
+    ensemble: &Ensemble,
+    shape: &[usize],
+    times: &[f64],
+    options: &Options,
+    threads: Option<usize>,
+    made: &[Py<LawValue>],
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Results<'py>> {
+    if let Some((body, error)) = ensemble.first_unusable() {
+        return Err(bad(format!("{}{error}", place(body, shape))));
+    }
+    let threads = threads.map_or_else(all_threads, |count| Ok(Threads::new(count)))?;
+    let bodies = ensemble.starts.len();
     let sizes: &[usize] = if ensemble.forces.is_empty() { &[4, 3, 3, 1] } else { &[4, 3, 3, 1, 3, 3] };
     let arrays = sizes.iter().map(|&size| pool::array(py, &[bodies, times.len(), size]));
     let arrays: Vec<Array<'py>> = arrays.collect::<PyResult<_>>()?;
@@ -91,14 +106,12 @@ pub(crate) fn simulate_many<'py>(
         let (rotors, omegas, momenta, energies) = (next(), next(), next(), next());
         let centers = (!ensemble.forces.is_empty()).then(|| [next(), next()]);
         let outputs = Outputs { rotors, omegas, momenta, energies, centers };
-        run(py, &made, progress.as_ref(), |progress| {
-            ensemble.run(times, &options, threads, outputs, progress)
-        })?
+        run(py, made, progress.as_ref(), |progress| ensemble.run(times, options, threads, outputs, progress))?
     };
     interrupted(made.iter().map(|one| one.bind(py)))?;
     let unfit = summary.failures.iter().find(|failure| matches!(failure.error, SimulateError::Unfit { .. }));
     if let Some(failure) = unfit {
-        return Err(bad(format!("{}{}", place(failure.body, &shape), failure.error)));
+        return Err(bad(format!("{}{}", place(failure.body, shape), failure.error)));
     }
     Ok((arrays, dictionary(py, summary)?))
 }

@@ -4,6 +4,7 @@ use super::bodies::Inertia;
 use super::motion::{angular_velocity, check_times};
 use crate::algebra::value::{Multivector, number, one, one_rotor};
 use crate::support::arrays::{Array, Rows, bad, line, numbers, place, table, threads};
+use crate::support::facts::{columns, dict};
 use crate::support::pool;
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use polhode_ga::product::Grades;
@@ -183,24 +184,14 @@ impl FreeMotion {
 
     /// The description as a dict; for a batch with lists and arrays, NaN for None.
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let told = pieces(py, self.starts.len(), 1, |row| self.motion(row).map(|motion| motion.describe()))?;
-        let told: Vec<FreeDescription> = told.into_iter().collect::<Result<_, _>>().map_err(bad)?;
-        let result = PyDict::new(py);
-        if let ([one], []) = (&told[..], &self.shape[..]) {
-            result.set_item("regime", one.regime.to_string())?;
-            result.set_item("axis", one.axis + 1)?;
-            for (name, number) in NUMBERS {
-                result.set_item(name, number(one))?;
-            }
-            return Ok(result);
+        let rows = pieces(py, self.starts.len(), 1, |row| self.motion(row).map(|motion| motion.describe()))?;
+        let rows: Vec<FreeDescription> = rows.into_iter().collect::<Result<_, _>>().map_err(bad)?;
+        if let ([one], []) = (&rows[..], &self.shape[..]) {
+            return dict(py, one.facts());
         }
-        result.set_item("regime", told.iter().map(|one| one.regime.to_string()).collect::<Vec<_>>())?;
-        result.set_item("axis", told.iter().map(|one| one.axis + 1).collect::<Vec<_>>())?;
-        for (name, number) in NUMBERS {
-            let numbers = told.iter().map(|one| number(one).unwrap_or(f64::NAN)).collect();
-            result.set_item(name, line(py, numbers))?;
-        }
-        Ok(result)
+        let sphere = inertia::Inertia::from_principal_moments([1.0; 3]).map_err(bad)?;
+        let at_rest = free::FreeMotion::new(&sphere, Rotor::IDENTITY, Bivector::default()).map_err(bad)?;
+        columns(py, at_rest.describe().facts(), rows.iter().map(FreeDescription::facts))
     }
 
     /// Angular velocities in body axes along the polhode, n for each motion.
@@ -275,23 +266,6 @@ impl FreeMotion {
         PyTuple::new(py, &self.shape)
     }
 }
-
-/// The numbers of a description.
-type Number = (&'static str, fn(&FreeDescription) -> Option<f64>);
-const NUMBERS: [Number; 12] = [
-    ("modulus", |d| Some(d.modulus)),
-    ("energy", |d| Some(d.energy)),
-    ("angular_momentum", |d| Some(d.angular_momentum)),
-    ("period", |d| d.period),
-    ("precession_rate", |d| d.precession_rate),
-    ("precession_period", FreeDescription::precession_period),
-    ("phase_per_period", FreeDescription::phase_per_period),
-    ("solid_angle", |d| d.solid_angle),
-    ("flip_time", FreeDescription::flip_time),
-    ("wobble_min", |d| d.wobble.map(|[least, _]| least)),
-    ("wobble_max", |d| d.wobble.map(|[_, most]| most)),
-    ("wobble_period", |d| d.wobble_period),
-];
 
 /// A matrix row by row.
 pub(crate) fn flat<const N: usize, const ALL: usize>(rows: &[[f64; 3]; N]) -> [f64; ALL] {

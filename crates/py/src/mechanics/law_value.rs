@@ -39,7 +39,7 @@ impl LawValue {
 impl LawValue {
     /// Its name in its module.
     #[getter]
-    fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 

@@ -6,11 +6,12 @@ use super::law_value::{LawValue, failed};
 use super::motion::check_times;
 use super::torque::Law;
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
+use crate::support::facts::dict;
 use polhode_ga::{Bivector, Vector};
 use polhode_rigid::SimulateError;
 use polhode_rigid::laws::event::Direction;
 use polhode_rigid::methods::Method;
-use polhode_rigid::run::{self as rigid, Options, Problem, Progress, States};
+use polhode_rigid::run::{self as rigid, Options, Problem, Progress, Setup, States};
 use polhode_rigid::state::center::Center;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -67,8 +68,22 @@ fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Motion {
     motion: rigid::Motion,
+    setup: Setup,
     /// The laws and events, which keep what their functions raise.
     made: Vec<Py<LawValue>>,
+}
+
+impl Motion {
+    /// The motion that `simulate` computes, with progress and Ctrl-C.
+    pub(crate) fn new(
+        py: Python<'_>,
+        setup: Setup,
+        made: Vec<Py<LawValue>>,
+        progress: Option<Py<PyAny>>,
+        simulate: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<rigid::Motion, SimulateError> + Send,
+    ) -> PyResult<Motion> {
+        run(py, &made, progress.as_ref(), simulate).map(|motion| Motion { motion, setup, made })
+    }
 }
 
 #[pymethods]
@@ -99,7 +114,29 @@ impl Motion {
         drifts.map(|(quantity, change)| (quantity.name(), line(py, change))).collect()
     }
 
-    /// The certificate of the run.
+    /// The name of its kind.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.setup.kind()
+    }
+
+    /// The description of the motion, by name.
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        dict(py, py.detach(|| self.setup.describe(&self.motion)))
+    }
+
+    /// Facts that follow from the start, by name.
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        dict(py, self.setup.facts())
+    }
+
+    /// The axis of a satellite's least moment, rows (n, 3): along the orbit, on its normal and up. None for other bodies.
+    fn long_axis<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
+        let parts = self.setup.long_axis(&self.motion.states());
+        parts.map(|parts| table(py, parts.into_iter())).transpose()
+    }
+
+    /// How the motion was computed and what it conserved.
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let proof = &self.motion.certificate;
         let certificate = PyDict::new(py);
@@ -193,12 +230,17 @@ pub(crate) fn simulate<'py>(
     let events = events.iter().map(|event| event.get().event.clone()).collect();
     let [x, y, z, u, v, w] = one(&center)?;
     let center = Center { position: Vector([x, y, z]), velocity: Vector([u, v, w]) };
-    let problem = Problem::new(&inertia.0, rotor(&rotor_row)?, Bivector(one(&omega)?), &torques)
-        .with_center(center, mass, &forces)
-        .starting_at(start);
+    let setup = Setup {
+        inertia: inertia.0,
+        rotor: rotor(&rotor_row)?,
+        omega: Bivector(one(&omega)?),
+        time: start,
+        torques,
+        has_forces: !forces.is_empty(),
+    };
+    let problem = Problem::of(&setup).with_center(center, mass, &forces);
     let times = numbers(&times)?;
     let (max_step, max_steps, breaks) = limits;
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
-    let motion = run(py, &made, progress.as_ref(), |progress| problem.simulate(times, options, progress))?;
-    Ok(Motion { motion, made })
+    Motion::new(py, setup, made, progress, |progress| problem.simulate(times, options, progress))
 }

@@ -6,16 +6,18 @@ use super::law_value::{
     Callback, Known, LawValue, Raised, Values, bivector, bivector_of, failed, formula, rotor_of, sole,
 };
 use crate::support::arrays::{Array, Rows, bad, line, numbers, one, table};
+use crate::support::facts::dict;
 use polhode_ga::Bivector;
 use polhode_ga::formula::{Given, Input, canonical};
 use polhode_rigid::body::weight_moment;
+use polhode_rigid::describe::law_facts;
 use polhode_rigid::laws::registry::{Entry, Kernel, torque};
 use polhode_rigid::laws::torque::{
     Axes, FormulaTorque, FunctionTorque, Kind, Orbit, Table, Torque, total, wheel,
 };
 use polhode_rigid::state::phase::{Gyrostat, Phase};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -71,6 +73,17 @@ impl Law {
             .map(|torque| if let Torque::Heavy(c) = torque { Some(c.0) } else { None })
             .collect();
         moments.map(|rows| table(py, rows.into_iter())).transpose()
+    }
+
+    /// Its name in scenes and, as text, its formula or its numbers; of a single body.
+    fn facts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let torque = slf.get().single()?;
+        let name = match &torque {
+            Torque::Formula(law) if law.axes() == Axes::Space => "torque_space",
+            Torque::Formula(_) => "torque_body",
+            _ => slf.as_super().get().name(),
+        };
+        dict(slf.py(), law_facts(name, &torque, None))
     }
 
     /// Shape of the batch of bodies; () for one.

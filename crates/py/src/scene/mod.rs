@@ -1,87 +1,188 @@
 //! Scene files.
 
-pub(crate) mod draws;
+mod draws;
 
 use crate::algebra::value;
-use crate::mechanics::bodies::Body;
+use crate::mechanics::bodies::{Body, Inertia};
+use crate::mechanics::ensemble::{Results, run_many};
+use crate::mechanics::simulation::Motion;
 use crate::mechanics::torque::Law;
-use crate::support::arrays::{Array, bad, line, table};
-use draws::Draws;
-use polhode_ga::Bivector;
+use crate::support::arrays::{Array, Rows, bad, line, numbers, table};
+use crate::support::facts::dict;
+use draws::{Bodies, Varied, bodies, varied};
 use polhode_ga::formula::Given;
 use polhode_ga::product::Grades;
+use polhode_ga::{Bivector, Vector};
+use polhode_rigid::ensemble::Start;
 use polhode_rigid::laws::registry::{Entry, TABLE};
 use polhode_rigid::laws::torque::{Axes, Kind, Torque};
+use polhode_rigid::run::Setup;
 use polhode_rigid::scene::Push;
-use polhode_rigid::{Diagnostic, Size, Solid, TriangleMesh, scene};
+use polhode_rigid::{Diagnostic, TriangleMesh, body, scene};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use std::ops::Range;
 use std::path::PathBuf;
 
-create_exception!(polhode, SceneError, PyValueError, "What is wrong with a scene file, with its places.");
+create_exception!(polhode, SceneError, PyValueError, "Errors in a scene file, with their places.");
 
 fn report(diagnostics: &[Diagnostic]) -> PyErr {
     let texts: Vec<String> = diagnostics.iter().map(Diagnostic::to_string).collect();
     SceneError::new_err(texts.join("\n"))
 }
 
-/// Reads a scene file: a dict of what it says, in SI units, with the body and the laws made.
-#[pyfunction]
-pub(crate) fn read_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let built = py.detach(|| {
-        let scene = scene::Scene::read(&path)?;
-        scene.build().map(|(body, laws)| (scene, body, laws))
-    });
-    let (scene, body, laws) = built.map_err(|diagnostics| report(&diagnostics))?;
-    let (position, velocity) = (scene.center.position, scene.center.velocity);
-    let formulas: Vec<Option<String>> = laws.iter().map(|law| law.formula.clone()).collect();
-    let made: Vec<Py<Law>> = laws.iter().map(|law| named(py, law.torque.clone())).collect::<PyResult<_>>()?;
-    let forces: Vec<_> = scene.forces.iter().map(|push| pushed(py, push)).collect::<PyResult<_>>()?;
-    let result = PyDict::new(py);
-    result.set_item("title", &scene.title)?;
-    result.set_item("text", &scene.text)?;
-    result.set_item("body", Py::new(py, Body(body))?)?;
-    result.set_item("tells_mass", scene.tells_mass())?;
-    result.set_item("solid", scene.solid().map(|solid| sizes(py, solid)).transpose()?)?;
-    result.set_item("shift", line(py, scene.shift().0.to_vec()))?;
-    result.set_item("rotor", line(py, scene.attitude.components().to_vec()))?;
-    result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
-    result.set_item("position", line(py, position.0.to_vec()))?;
-    result.set_item("velocity", line(py, velocity.0.to_vec()))?;
-    result.set_item("time", scene.time)?;
-    result.set_item("laws", made)?;
-    result.set_item("formulas", formulas)?;
-    result.set_item("forces", forces)?;
-    result.set_item("times", line(py, scene.times()))?;
-    result.set_item("method", &scene.run.choice.method)?;
-    result.set_item("step", scene.run.choice.step)?;
-    result.set_item("rtol", scene.run.choice.rtol)?;
-    result.set_item("atol", scene.run.choice.atol)?;
-    result.set_item("max_step", scene.run.choice.max_step)?;
-    result.set_item("max_steps", scene.run.choice.max_steps)?;
-    result.set_item("drift_bound", scene.run.drift_bound)?;
-    result.set_item("ensemble", Draws::of(py, scene, body, laws)?)?;
-    Ok(result)
+/// A scene with its body and laws, ready to run.
+#[pyclass(frozen, module = "polhode._native")]
+pub(crate) struct Scene {
+    scene: scene::Scene,
+    body: body::Body,
+    laws: Vec<scene::Law>,
 }
 
-/// The kind of a solid and its sizes, by the names that scenes give them.
-fn sizes(py: Python<'_>, solid: Solid) -> PyResult<Bound<'_, PyDict>> {
-    let (kind, sizes) = solid.sizes();
-    let told = PyDict::new(py);
-    told.set_item("kind", kind)?;
-    for (name, size) in sizes {
-        match size {
-            Size::One(length) => told.set_item(name, length)?,
-            Size::Three(lengths) => told.set_item(name, lengths.to_vec())?,
+#[pymethods]
+impl Scene {
+    /// Reads a scene file and the mesh that it names.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Scene> {
+        let built = py.detach(|| {
+            let scene = scene::Scene::read(&path)?;
+            scene.build().map(|(body, laws)| Scene { scene, body, laws })
+        });
+        built.map_err(|diagnostics| report(&diagnostics))
+    }
+
+    /// The attributes of Python's `Scene`, in SI units.
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let Scene { scene, body, laws } = self;
+        let formulas: Vec<Option<String>> = laws.iter().map(|law| law.formula.clone()).collect();
+        let made: Vec<Py<Law>> =
+            laws.iter().map(|law| named(py, law.torque.clone())).collect::<PyResult<_>>()?;
+        let forces: Vec<_> = scene.forces.iter().map(|push| pushed(py, push)).collect::<PyResult<_>>()?;
+        let choice = &scene.run.choice;
+        let result = PyDict::new(py);
+        result.set_item("title", &scene.title)?;
+        result.set_item("text", &scene.text)?;
+        result.set_item("body", Py::new(py, Body(*body))?)?;
+        result.set_item("tells_mass", scene.has_mass())?;
+        result.set_item("solid", scene.solid().map(|solid| dict(py, solid.facts())).transpose()?)?;
+        result.set_item("shift", line(py, scene.shift().0.to_vec()))?;
+        result.set_item("rotor", line(py, scene.attitude.components().to_vec()))?;
+        result.set_item("omega_body", line(py, scene.omega_body().0.to_vec()))?;
+        result.set_item("position", line(py, scene.center.position.0.to_vec()))?;
+        result.set_item("velocity", line(py, scene.center.velocity.0.to_vec()))?;
+        result.set_item("time", scene.time)?;
+        result.set_item("laws", made)?;
+        result.set_item("formulas", formulas)?;
+        result.set_item("forces", forces)?;
+        result.set_item("times", line(py, scene.times()))?;
+        result.set_item("method", &choice.method)?;
+        result.set_item("step", choice.step)?;
+        result.set_item("rtol", choice.rtol)?;
+        result.set_item("atol", choice.atol)?;
+        result.set_item("max_step", choice.max_step)?;
+        result.set_item("max_steps", choice.max_steps)?;
+        result.set_item("drift_bound", scene.run.drift_bound)?;
+        Ok(result)
+    }
+
+    /// The inertia that rules the motion: about the fixed point if there is one.
+    fn inertia(&self) -> Inertia {
+        Inertia(self.scene.ruling_inertia(&self.body))
+    }
+
+    /// The name of the kind of motion.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.setup().kind()
+    }
+
+    /// Facts that follow from the start, by name.
+    fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        dict(py, self.setup().facts())
+    }
+
+    /// For each law its name and, as text, its formula or its numbers.
+    fn laws<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        self.laws.iter().map(|law| dict(py, law.facts())).collect()
+    }
+
+    /// The motion of the scene's own body at times.
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        times: Rows<'py>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Motion> {
+        let times = numbers(&times)?;
+        let (problem, options) = (self.scene.problem(&self.body, &self.laws), self.scene.options());
+        Motion::new(py, self.setup(), Vec::new(), progress, |progress| {
+            problem.simulate(times, options, progress)
+        })
+    }
+
+    /// Number of bodies, seed and varied quantities of the ensemble; None without one.
+    fn ensemble(&self) -> Option<(usize, u64, Vec<Varied>)> {
+        let ensemble = self.scene.ensemble.as_ref()?;
+        Some((ensemble.number, ensemble.seed, ensemble.varied().into_iter().map(varied).collect()))
+    }
+
+    /// Bodies of the ensemble from the first on, one at least.
+    fn draw<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bodies<'py>> {
+        let (ensemble, rows) = self.rows(first, count)?;
+        let drawn = py.detach(|| ensemble.draw(&self.scene, (&self.body, &self.laws), rows));
+        bodies(py, drawn.map_err(bad)?)
+    }
+
+    /// The motions of bodies of the ensemble from the first on at times, as `simulate_many`, with their inertias (one or
+    /// n), and places and velocities at the start (n, 6).
+    fn simulate_many<'py>(
+        &self,
+        py: Python<'py>,
+        first: usize,
+        count: usize,
+        times: Rows<'py>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Results<'py>, Vec<Inertia>, Array<'py>)> {
+        let (ensemble, rows) = self.rows(first, count)?;
+        let bodies =
+            py.detach(|| self.scene.bodies(ensemble, (&self.body, &self.laws), rows)).map_err(bad)?;
+        let inertias = bodies.inertias.all().iter().map(|inertia| Inertia(*inertia)).collect();
+        let centers = bodies.starts.iter().map(|Start { center, .. }| {
+            let (Vector([x, y, z]), Vector([u, v, w])) = (center.position, center.velocity);
+            [x, y, z, u, v, w]
+        });
+        let centers = table(py, centers)?;
+        let options = self.scene.options();
+        let told = run_many(py, &bodies, &[count], numbers(&times)?, &options, threads, &[], progress)?;
+        Ok((told, inertias, centers))
+    }
+}
+
+impl Scene {
+    fn setup(&self) -> Setup {
+        self.scene.setup(&self.body, &self.laws)
+    }
+
+    /// The ensemble, and so many of its bodies from the first on.
+    fn rows(&self, first: usize, count: usize) -> PyResult<(&scene::Ensemble, Range<usize>)> {
+        let Some(ensemble) = &self.scene.ensemble else {
+            return Err(bad("this scene has no table [ensemble]"));
+        };
+        let number = ensemble.number;
+        let end = first.checked_add(count).filter(|end| (first + 1..=number).contains(end));
+        match end {
+            Some(end) => Ok((ensemble, first..end)),
+            None => Err(bad(format!(
+                "first = {first} and count = {count} are out of bounds for {number} bodies; take one body at least"
+            ))),
         }
     }
-    Ok(told)
 }
 
-/// The mesh that a scene names, in the axes of its body and in metres: vertices (n, 3) and triangles (m, 3); none where
-/// it names none.
+/// The mesh of a scene in body axes, in metres: vertices (n, 3) and triangles (m, 3); None without a mesh.
 #[pyfunction]
 pub(crate) fn scene_mesh(py: Python<'_>, path: PathBuf) -> PyResult<Option<(Array<'_>, Vec<[u32; 3]>)>> {
     let read = py.detach(|| {

@@ -1,6 +1,7 @@
-//! Arrays and texts between Python and the core.
+//! Arrays, texts and facts between Python and the core.
 
 pub(crate) mod arrays;
 pub(crate) mod face;
+pub(crate) mod facts;
 pub(crate) mod pool;
 pub(crate) mod text;

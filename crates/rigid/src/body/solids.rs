@@ -3,6 +3,8 @@
 use super::Body;
 use super::inertia::Inertia;
 use crate::error::BodyError;
+use crate::facts;
+use crate::facts::Facts;
 use polhode_ga::Vector;
 use std::f64::consts::PI;
 
@@ -61,15 +63,6 @@ pub enum Solid {
     },
 }
 
-/// A size of a solid, in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Size {
-    /// A radius, a height.
-    One(f64),
-    /// Lengths along e1, e2 and e3.
-    Three([f64; 3]),
-}
-
 impl Amount {
     /// The mass of a volume; `name` is the solid's, for errors.
     pub(crate) fn mass(self, volume: Option<f64>, name: &'static str) -> Result<f64, BodyError> {
@@ -83,25 +76,23 @@ impl Amount {
 }
 
 impl Solid {
-    /// Its name and its sizes, as scenes have them.
-    pub fn sizes(self) -> (&'static str, Vec<(&'static str, Size)>) {
-        use Size::{One, Three};
+    /// Its `kind` and its sizes in metres, named as in scenes.
+    pub fn facts(self) -> Facts {
         match self {
-            Solid::Box { lengths } => ("box", vec![("lengths", Three(lengths))]),
-            Solid::Ellipsoid { semi_axes } => ("ellipsoid", vec![("semi_axes", Three(semi_axes))]),
-            Solid::Sphere { radius } => ("sphere", vec![("radius", One(radius))]),
+            Solid::Box { lengths } => facts! { kind: "box", lengths: lengths },
+            Solid::Ellipsoid { semi_axes } => facts! { kind: "ellipsoid", semi_axes: semi_axes },
+            Solid::Sphere { radius } => facts! { kind: "sphere", radius: radius },
             Solid::HollowSphere { outer_radius, inner_radius } => {
-                let sizes = vec![("outer_radius", One(outer_radius)), ("inner_radius", One(inner_radius))];
-                ("hollow_sphere", sizes)
+                facts! { kind: "hollow_sphere", outer_radius: outer_radius, inner_radius: inner_radius }
             }
-            Solid::Cylinder { radius, height } => ("cylinder", round(radius, height)),
-            Solid::Cone { radius, height } => ("cone", round(radius, height)),
-            Solid::Rod { length } => ("rod", vec![("length", One(length))]),
-            Solid::Disc { radius } => ("disc", vec![("radius", One(radius))]),
+            Solid::Cylinder { radius, height } => facts! { kind: "cylinder", radius: radius, height: height },
+            Solid::Cone { radius, height } => facts! { kind: "cone", radius: radius, height: height },
+            Solid::Rod { length } => facts! { kind: "rod", length: length },
+            Solid::Disc { radius } => facts! { kind: "disc", radius: radius },
             Solid::Torus { major_radius, minor_radius } => {
-                ("torus", vec![("major_radius", One(major_radius)), ("minor_radius", One(minor_radius))])
+                facts! { kind: "torus", major_radius: major_radius, minor_radius: minor_radius }
             }
-            Solid::Capsule { radius, height } => ("capsule", round(radius, height)),
+            Solid::Capsule { radius, height } => facts! { kind: "capsule", radius: radius, height: height },
         }
     }
 
@@ -247,7 +238,4 @@ impl Solid {
             }
         }
     }
-}
-fn round(radius: f64, height: f64) -> Vec<(&'static str, Size)> {
-    vec![("radius", Size::One(radius)), ("height", Size::One(height))]
 }

@@ -1,11 +1,11 @@
-//! What a run should have conserved, and how far it went astray.
+//! Certificate of a run: its method, its error and the drift of conserved quantities.
 
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Rotor;
 
-/// How far a run went astray in what it should have conserved.
+/// How a run was computed, and how well it conserved what it should.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certificate {
     /// The method's name, `exact` for the exact solution.
@@ -16,7 +16,7 @@ pub struct Certificate {
     pub steps: u64,
     /// Evaluations of the torque, in all passes.
     pub evaluations: u64,
-    /// A cautious estimate of the error, from the difference of the last two passes, or of what an exact solution
+    /// Conservative estimate of the error, from the difference of the last two passes, or of what an exact solution
     /// neglects.
     pub error_estimate: Option<f64>,
     /// Each conserved quantity: its initial value, and its largest change over the run relative to the
@@ -24,7 +24,7 @@ pub struct Certificate {
     pub drifts: Vec<(Conserved, f64, f64)>,
     /// Largest `abs(|R| − 1)` at the output times.
     pub norm_drift: f64,
-    /// What the numbers do not show: a law that fixed steps are too long for.
+    /// Warnings, such as of a law for which fixed steps are too long.
     pub warnings: Vec<String>,
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn off_unit(rotor: Rotor) -> f64 {
     (rotor.components().iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs()
 }
 
-/// Follows the conserved quantities along a run.
+/// Tracks the conserved quantities along a run.
 pub(crate) struct Watch<'a> {
     body: Gyrostat,
     torques: &'a [Torque],
@@ -51,7 +51,7 @@ struct Followed {
 impl<'a> Watch<'a> {
     pub fn new(body: Gyrostat, torques: &'a [Torque], start: Phase) -> Watch<'a> {
         let follow = |quantity: Conserved| {
-            // A quantity that starts at zero with nothing to compare to counts absolutely.
+            // Drift from zero without other terms is absolute.
             let scale = match quantity.scale(&body, torques, &start) {
                 0.0 => 1.0,
                 scale => scale,
@@ -78,7 +78,7 @@ impl<'a> Watch<'a> {
         for followed in &mut self.quantities {
             let value = followed.quantity.value(&self.body, self.torques, state);
             let drift = (value - followed.start).abs() / followed.scale;
-            // f64::max would forget a NaN.
+            // f64::max loses a NaN.
             if !(drift <= followed.drift || followed.drift.is_nan()) {
                 followed.drift = drift;
             }

@@ -9,6 +9,7 @@ pub(crate) mod noise;
 mod options;
 pub(crate) mod output;
 pub(crate) mod refine;
+mod setup;
 pub(crate) mod stops;
 pub(crate) mod sweep;
 
@@ -36,6 +37,7 @@ use sweep::{Integrator, StepRule, Sweep, is_finite};
 
 pub use motion::{Motion, States};
 pub use options::{MAX_STEPS, Options};
+pub use setup::Setup;
 
 /// A body with its start, time 0 unless another is given, torques and forces. Stored in principal axes.
 #[derive(Clone, Debug)]
@@ -102,6 +104,11 @@ impl Problem {
             mass: f64::NAN,
             translation: None,
         }
+    }
+
+    /// The rotation of a body from its start time on.
+    pub fn of(setup: &Setup) -> Problem {
+        Problem::new(&setup.inertia, setup.rotor, setup.omega, &setup.torques).starting_at(setup.time)
     }
 
     /// The same with another start time, in s. Laws that depend on time, output times and events still count from time 0.

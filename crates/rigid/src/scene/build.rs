@@ -121,7 +121,7 @@ impl Scene {
     }
 
     /// Whether the file gives the mass, or values that determine it.
-    pub fn tells_mass(&self) -> bool {
+    pub fn has_mass(&self) -> bool {
         !matches!(self.body, BodySpec::Moments { mass: None, .. } | BodySpec::Inertia { mass: None, .. })
     }
 

@@ -1,13 +1,16 @@
 //! The problem and the options of a scene.
 
-use super::{Law, Scene};
+use super::{DrawError, Law, Scene};
 use crate::body::Body;
 use crate::body::inertia::Inertia;
+use crate::ensemble::{Ensemble, Rows, Start};
 use crate::laws::force::Force;
 use crate::laws::torque::Torque;
 use crate::methods::Method;
-use crate::run::{Options, Problem};
-use polhode_ga::Vector;
+use crate::run::{Options, Problem, Setup};
+use crate::state::center::Center;
+use polhode_ga::{Bivector, Rotor, Vector};
+use std::ops::Range;
 
 impl Scene {
     /// The inertia for the rotation of a body of [`Scene::build`]: about the fixed point, if there is one, which is then the
@@ -21,13 +24,47 @@ impl Scene {
         }
     }
 
-    /// The motion of that body under its torque laws and the forces.
-    pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
+    /// How that body turns: its start, the laws made with it, and the torques of thrusts.
+    pub fn setup(&self, body: &Body, laws: &[Law]) -> Setup {
         let laws = laws.iter().map(|law| law.torque.clone());
-        let torques: Vec<Torque> = laws.chain(self.thrust_torques(body)).collect();
-        Problem::new(&self.ruling_inertia(body), self.attitude, self.omega_body(), &torques)
-            .with_center(self.center, body.mass, &self.pushes())
-            .starting_at(self.time)
+        Setup {
+            inertia: self.ruling_inertia(body),
+            rotor: self.attitude,
+            omega: self.omega_body(),
+            time: self.time,
+            torques: laws.chain(self.thrust_torques(body)).collect(),
+            has_forces: !self.forces.is_empty(),
+        }
+    }
+
+    /// The motion of that body under the laws made with it, and under the forces.
+    pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
+        Problem::of(&self.setup(body, laws)).with_center(self.center, body.mass, &self.pushes())
+    }
+
+    /// Some bodies of the scene's ensemble, with their laws and forces.
+    pub fn bodies(
+        &self,
+        ensemble: &super::Ensemble,
+        built: (&Body, &[Law]),
+        bodies: Range<usize>,
+    ) -> Result<Ensemble, DrawError> {
+        let drawn = ensemble.draw(self, built, bodies)?;
+        let starts = drawn.rotors.iter().zip(&drawn.omegas).zip(&drawn.centers);
+        let starts = starts.map(|((rotor, omega), [x, y, z, u, v, w])| Start {
+            time: self.time,
+            rotor: Rotor::from_unit_components(*rotor),
+            omega: Bivector(*omega),
+            center: Center { position: Vector([*x, *y, *z]), velocity: Vector([*u, *v, *w]) },
+        });
+        let laws = drawn.laws.into_iter().chain(self.thrust_torques(built.0).map(|torque| vec![torque]));
+        Ok(Ensemble {
+            inertias: Rows::new(drawn.inertias),
+            starts: starts.collect(),
+            laws: laws.map(Rows::new).collect(),
+            masses: Rows::new(vec![built.0.mass]),
+            forces: self.pushes(),
+        })
     }
 
     /// The origin of the axes of the scene in those of the built body, whose origin under gravity is the pivot.

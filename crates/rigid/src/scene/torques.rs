@@ -9,7 +9,9 @@
 
 use super::reader::{Reader, Table, Value};
 use super::{formulas, initial};
+use crate::describe::law_facts;
 use crate::error::TorqueError;
+use crate::facts::Facts;
 use crate::laws::registry::{Argument, Entry, Kernel, Shape, TORQUES};
 use crate::laws::torque::{self, Axes, Kind, Torque};
 use crate::units::Quantity;
@@ -28,6 +30,13 @@ pub struct Law {
     pub torque: Torque,
     /// The formula, whose numbers may have units.
     pub formula: Option<String>,
+}
+
+impl Law {
+    /// Its name and, as text, its formula or its numbers.
+    pub fn facts(&self) -> Facts {
+        law_facts(self.name, &self.torque, self.formula.as_deref())
+    }
 }
 
 /// The fields that are formulas, which may stand before the first table too.

@@ -1,31 +1,31 @@
-//! A value as JSON, and as it stands on paper.
+//! Values of formulas as JSON.
 
-use crate::json::Json;
 use polhode_ga::Graded;
 use polhode_ga::formula::Type;
 use polhode_ga::product::Grades;
+use serde_json::{Value, json};
 
-/// How far the norm of a rotor that was made by hand may be from 1.
+/// Largest distance from 1 of the norm of a rotor.
 const UNIT: f64 = 1e-9;
 
-/// Digits that are shown, as Python shows values.
+/// Digits of numbers, as Python prints values.
 const DIGITS: usize = 8;
 
 const BLADES: [&str; 8] = ["", "e1", "e2", "e3", "e2∧e3", "e3∧e1", "e1∧e2", "I"];
 
 /// Its components in the order of the basis, its grades, whether it is a rotor, and its text.
-pub fn valued(value: &Graded, ty: Type) -> Json {
+pub fn valued(value: &Graded, ty: Type) -> Value {
     let full = value.full();
-    let grades = (0..4).filter(|&k| ty.grades.contains(k)).map(|k| k as f64);
-    Json::Object(vec![
-        ("components", Json::list(full)),
-        ("grades", Json::list(grades)),
-        ("rotor", (ty.unit || is_rotor(&full, ty)).into()),
-        ("text", text(&full).into()),
-    ])
+    let grades: Vec<usize> = (0..4).filter(|&k| ty.grades.contains(k)).collect();
+    json!({
+        "components": full,
+        "grades": grades,
+        "rotor": ty.unit || is_rotor(&full, ty),
+        "text": text(&full),
+    })
 }
 
-/// Whether a value that is no rotor by the way it was made, `a b`, is one by its size.
+/// Whether an even value whose formula does not make it a rotor, such as `a b`, has norm 1.
 fn is_rotor(full: &[f64; 8], ty: Type) -> bool {
     let squared: f64 = full.iter().map(|x| x * x).sum();
     ty.grades == Grades::EVEN && (squared.sqrt() - 1.0).abs() <= UNIT

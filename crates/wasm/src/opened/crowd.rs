@@ -1,21 +1,20 @@
-//! The bodies of an ensemble, for looking at.
+//! Bodies of an ensemble, for display.
 
 use super::{GoOn, Opened};
 use crate::recorded::between;
-use polhode_ga::{Bivector, Rotor, Vector};
+use polhode_ga::Rotor;
 use polhode_rigid::SimulateError;
-use polhode_rigid::ensemble::{Ensemble, Rows, Start};
+use polhode_rigid::ensemble::Ensemble;
 use polhode_rigid::run::Motion;
-use polhode_rigid::state::center::Center;
 
-/// Frames that are kept of bodies that have to be stepped.
+/// Number of stored frames of bodies without a closed form.
 const FRAMES: usize = 241;
 
-/// Followed bodies.
+/// Computed bodies.
 pub enum Crowd {
     /// Known at any time.
     Exact(Vec<Motion>),
-    /// Rotors, frame by frame, at even times from the start on for a duration; NaN where a body could not be followed.
+    /// Rotors at equally spaced times from the start on; NaN for a body that failed.
     Stepped {
         /// In s.
         start: f64,
@@ -30,26 +29,11 @@ impl Crowd {
     /// The first bodies of the scene's ensemble, at most `count`.
     pub fn new(of: &Opened, count: usize, go_on: GoOn) -> Result<Crowd, String> {
         let Some(ensemble) = &of.scene.ensemble else {
-            return Err("this scene is one body, without a table [ensemble]".to_owned());
+            return Err("this scene has no table [ensemble]".to_owned());
         };
         let count = count.clamp(1, ensemble.number);
-        let drawn =
-            ensemble.draw(&of.scene, (&of.body, &of.laws), 0..count).map_err(|error| error.to_string())?;
-        let starts = drawn.rotors.iter().zip(&drawn.omegas).zip(&drawn.centers);
-        let starts = starts.map(|((rotor, omega), [x, y, z, u, v, w])| Start {
-            time: of.scene.time,
-            rotor: Rotor::from_unit_components(*rotor),
-            omega: Bivector(*omega),
-            center: Center { position: Vector([*x, *y, *z]), velocity: Vector([*u, *v, *w]) },
-        });
-        let laws = drawn.laws.into_iter().chain(of.scene.thrust_torques(&of.body).map(|torque| vec![torque]));
-        let bodies = Ensemble {
-            inertias: Rows::new(drawn.inertias),
-            starts: starts.collect(),
-            laws: laws.map(Rows::new).collect(),
-            masses: Rows::new(vec![of.body.mass]),
-            forces: of.scene.pushes(),
-        };
+        let bodies = of.scene.bodies(ensemble, (&of.body, &of.laws), 0..count);
+        let bodies = bodies.map_err(|error| error.to_string())?;
         if of.motion.horizons().is_some() {
             let options = of.scene.options();
             let times = [of.scene.time];
@@ -60,8 +44,7 @@ impl Crowd {
         Ok(Crowd::stepped(&bodies, of, go_on))
     }
 
-    /// One by one: a browser has no lanes in which many would be quicker. Those for which there is no time left are not
-    /// shown.
+    /// One by one, since a browser has no SIMD lanes for many. Bodies beyond the time limit are left out.
     fn stepped(bodies: &Ensemble, of: &Opened, go_on: GoOn) -> Crowd {
         let (start, duration) = (of.scene.time, of.scene.run.duration);
         let times: Vec<f64> =
@@ -77,7 +60,7 @@ impl Crowd {
         Crowd::Stepped { start, duration, rotors }
     }
 
-    /// The rotors at a time. Those of stepped bodies turn evenly between frames, which is for looking only.
+    /// The rotors at a time. Those of stepped bodies are interpolated between frames, for display only.
     pub fn at(&self, time: f64) -> Vec<[f64; 4]> {
         match self {
             Crowd::Exact(motions) => motions.iter().map(|motion| exactly(motion, time)).collect(),

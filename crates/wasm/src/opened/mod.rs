@@ -12,21 +12,21 @@ use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Files that scenes name, by their names there.
+/// Contents of files, by their names in a scene.
 pub type Files = HashMap<String, Vec<u8>>;
 
-/// Asked now and then while a motion is followed: whether to go on.
+/// Called regularly during a run; returns whether to go on.
 pub type GoOn<'a> = &'a mut dyn FnMut() -> bool;
 
-/// A scene whose motion has been followed.
+/// A scene with its computed motion.
 pub struct Opened {
-    /// What the scene says.
+    /// The scene.
     pub scene: Scene,
     /// The body; under gravity the fixed point is the origin of its axes.
     pub body: Body,
-    /// What turns it.
+    /// The torque laws.
     pub laws: Vec<Law>,
-    /// What was solved.
+    /// The problem that was solved.
     pub problem: Problem,
     /// The motion.
     pub motion: Motion,
@@ -35,34 +35,36 @@ pub struct Opened {
     crowd: OnceCell<Result<Crowd, String>>,
 }
 
-/// What is wrong, in words for people.
-fn told(problems: &[Diagnostic]) -> String {
+/// The diagnostics as text.
+fn texts(problems: &[Diagnostic]) -> String {
     let texts: Vec<String> = problems.iter().map(Diagnostic::to_string).collect();
     texts.join("\n")
 }
 
 impl Opened {
-    /// Reads the text of a scene and follows its motion at its output times, so that it is the one that other faces of
-    /// the core compute. An error says what is wrong, with places; or that the time allowed was not enough.
+    /// Reads a scene and computes its motion at its output times, with the same bits as Python. Errors have places in
+    /// the scene, or report that the time limit was exceeded.
     pub fn new(text: &str, name: &str, files: &Files, go_on: GoOn) -> Result<Opened, String> {
-        let scene = Scene::parse(text, Path::new(name)).map_err(|problems| told(&problems))?;
-        // Asked for to make the body and to draw it, and read once: a scene names one mesh.
+        let scene = Scene::parse(text, Path::new(name)).map_err(|problems| texts(&problems))?;
+        // A scene has at most one mesh; the body and its surface both need it.
         let read = OnceCell::new();
         let source = |path: &Path| read.get_or_init(|| mesh_among(files, path)).clone();
-        let (body, laws) = scene.build_with(&source).map_err(|problems| told(&problems))?;
+        let (body, laws) = scene.build_with(&source).map_err(|problems| texts(&problems))?;
         let surface = surface_of(&scene, &source);
         let problem = scene.problem(&body, &laws);
         let motion = problem.simulate(&scene.times(), scene.options(), &mut |_: Progress| go_on());
         let motion = motion.map_err(|error| match error {
-            SimulateError::Interrupted => "this motion takes too long to follow in the page. Shorten [run] duration or \
-                                           loosen [run] rtol; or follow it with `polhode run` or `polhode view`"
-                .to_owned(),
+            SimulateError::Interrupted => {
+                "this motion takes too long to compute in the page; shorten [run] duration, \
+                                           increase [run] rtol, or use `polhode run` or `polhode view`"
+                    .to_owned()
+            }
             error => error.to_string(),
         })?;
         Ok(Opened { scene, body, laws, problem, motion, surface, crowd: OnceCell::new() })
     }
 
-    /// Rows of states at any times; exact motions know them all within their horizon, others those of their run.
+    /// Rows of states at any times: within the horizon of an exact motion, else within the run.
     pub fn states(&self, times: &[f64]) -> Result<Vec<[f64; ROW]>, String> {
         let states = match self.motion.exactly(times) {
             Some(states) => states,
@@ -103,7 +105,7 @@ fn mesh_among(files: &Files, path: &Path) -> Result<TriangleMesh, MeshError> {
     match files.get(&name) {
         Some(bytes) => TriangleMesh::parse(bytes, format, &name),
         None => fail(MeshProblem::Unreadable(
-            "the page was not given this file; open it along with the scene".into(),
+            "the page does not have this file; open it together with the scene".into(),
         )),
     }
 }

@@ -1,4 +1,4 @@
-"""What is kept of an ensemble's bodies while blocks pass by, for its summary and its figures."""
+"""Records of an ensemble's bodies, collected block by block for summary and figures."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from polhode._figures.style import main_axis
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.result import Failure
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import kind_of, orbit_of, weight
+from polhode._report.describe import orbit_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 
-# Numbers of each body at each time, in single precision: seven digits are more than a quantile has.
+# Per body and time, in single precision: quantiles need fewer than seven digits.
 SERIES = ("from_nominal", "tilt", "rate")
-# Numbers of each body.
+# Per body.
 ENDS = ("energy", "angular_momentum")
 PERIODS = ("period", "precession_period")
 
-# Of what is passing by: the results, what is made of them, and what is being written. Bytes of the figures.
+# Copies of a block in memory at a time (results, derived arrays, file buffers), and bytes of the figures.
 _PASSING, _FIGURES = 4, 100 << 20
 
 
-class Gathered:
-    """What the bodies of a scene do, beside the one from which they differ.
+class EnsembleRecords:
+    """Records of the bodies of a scene's ensemble and of the nominal body.
 
     Attributes
     ----------
     scene, nominal
         The scene, and the motion of its own body.
     axis, axis_name
-        A direction fixed in the body (3,) that is watched, and what it is.
+        A direction fixed in the body (3,), and its name.
     tilt_name
-        From what the axis is tilted.
+        The direction from which the tilt of the axis is measured.
     complete
-        How many bodies there are yet; arrays have them first.
+        Number of bodies recorded so far, the first rows of arrays.
     series
         By name (number, n) in single precision: ``from_nominal``, the angle in rad between the attitude and
         that of `nominal`; ``tilt``, that of the axis from L, the vertical or up; ``rate``, ``|Ω|`` in rad/s.
@@ -48,19 +48,19 @@ class Gathered:
         The axis in space (number, 3, 3) at the three times `shown`: the first, the middle and the last.
     bodies
         By name (number,): energy and ``|L|`` at the start and at the end, and of free bodies the period of Ω
-        in the body and that of the precession; NaN where there is none.
+        in the body and that of the precession; NaN if undefined.
     regimes
-        How many free bodies there are in each.
+        Number of free bodies in each regime.
     methods
-        How many bodies were followed by each method.
+        Number of bodies computed by each method.
     steps
-        Of each body, (number,).
+        Steps of each body, (number,).
     error_estimates, norm_drifts
-        Of each body (number,), NaN where there is none.
+        Of each body (number,), NaN if undefined.
     drifts
-        By name (number,), NaN where a body does not conserve it or failed.
+        By name (number,), NaN if a body does not conserve the quantity or failed.
     failures
-        The bodies that could not be followed to the end; ``index`` is their number.
+        The bodies that failed; ``index`` is their number.
     """
 
     def __init__(self, scene: Scene, nominal: Trajectory) -> None:
@@ -84,14 +84,14 @@ class Gathered:
 
     @staticmethod
     def bytes_wanted(scene: Scene) -> int:
-        """The memory that a run takes: what is kept of all bodies, and the blocks that pass by."""
+        """Return the memory of a run in bytes: records of all bodies, and the current block."""
         assert scene.ensemble is not None
         number, n = scene.ensemble.number, len(scene.times)
         kept = 4 * (len(SERIES) * n + 9) + 8 * (2 * len(ENDS) + len(PERIODS) + 3 + 4)
         return _FIGURES + number * kept + _PASSING * scene.block * (scene.result_bytes // number + 1000)
 
     def add(self, rows: slice, trajectory: Trajectory) -> None:
-        """Take in the motions of the bodies that follow those before."""
+        """Record the motions of the next bodies."""
         turns = (trajectory.rotor * ~self.nominal.rotor)._data
         self.series["from_nominal"][rows] = 2 * np.arctan2(
             np.linalg.norm(turns[..., 1:], axis=-1), np.abs(turns[..., 0])
@@ -104,24 +104,24 @@ class Gathered:
         for end, k in (("start", 0), ("end", -1)):
             self.bodies[f"energy_{end}"][rows] = trajectory.energy[:, k]
             self.bodies[f"angular_momentum_{end}"][rows] = np.linalg.norm(momenta[:, k], axis=-1)
-        if kind_of(self.scene) == "free":
+        if self.scene.kind == "free":
             self._describe(rows, trajectory)
         self._certify(rows, trajectory)
         self.complete = rows.stop
 
     def _describe(self, rows: slice, trajectory: Trajectory) -> None:
-        """Tell of free motions what their starts tell."""
+        """Record regimes and periods of free motions."""
         starts = trajectory.omega_body._data[:, 0]
         known = np.flatnonzero(np.isfinite(starts).all(axis=-1))
         each = isinstance(trajectory.inertia, np.ndarray)
-        told = FreeMotion(
+        described = FreeMotion(
             trajectory.inertia[known] if each else trajectory.inertia,
             Rotor._from_rows(np.ascontiguousarray(trajectory.rotor._data[known, 0])),
             starts[known],
         ).describe()
         for name in PERIODS:
-            self.bodies[name][rows.start + known] = np.abs(told[name])
-        self.regimes.update(told["regime"].tolist())
+            self.bodies[name][rows.start + known] = np.abs(described[name])
+        self.regimes.update(described["regime"].tolist())
 
     def _certify(self, rows: slice, trajectory: Trajectory) -> None:
         proof = trajectory.certificate
@@ -139,10 +139,10 @@ class Gathered:
 
 
 def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
-    """Return a direction fixed in the body (3,) by which its motion is known, and what it is."""
+    """Return the direction fixed in the body (3,) that figures show, and its name."""
     if scene.held and (c := weight(scene.torque)).any():
         return c / np.linalg.norm(c), "the line from the fixed point to the centre of mass"
-    if kind_of(scene) == "satellite":
+    if scene.kind == "satellite":
         moments = nominal.inertia.principal_moments
         k = int(np.argmin(moments))
         frame: Array = nominal.inertia.principal_frame.to_matrix()
@@ -154,16 +154,16 @@ def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
 
 
 def _reference(scene: Scene, nominal: Trajectory) -> tuple[Array | None, str]:
-    """Return from which directions (n, 3) the axis is tilted, None for each body's own L; and their name."""
+    """Return the directions (n, 3) from which tilt is measured, None for each body's L, and their name."""
     if scene.held:
         return np.array([[0.0, 0.0, 1.0]]), "the vertical"
-    if kind_of(scene) == "satellite":
+    if scene.kind == "satellite":
         up = _native.orbit_directions(*orbit_of(scene.torque), np.ascontiguousarray(nominal.time))
         return up, "up"
     return None, "L"
 
 
 def _angle(a: Any, b: Any) -> Array:
-    """Return the angles between vectors (..., 3); NaN where one of them is 0."""
+    """Return the angles between vectors (..., 3); NaN if one of them is 0."""
     angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))
     return np.where((a != 0).any(axis=-1) & (b != 0).any(axis=-1), angle, np.nan)

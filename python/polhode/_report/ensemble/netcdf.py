@@ -1,4 +1,4 @@
-"""An ensemble's bodies as a netCDF file, written block by block as they come."""
+"""NetCDF file of an ensemble, written block by block."""
 
 from __future__ import annotations
 
@@ -12,29 +12,28 @@ from polhode import _native
 from polhode._mechanics.registry import TORQUES
 from polhode._mechanics.result import Failure
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import kind_of
 from polhode._report.netcdf import CONVENTIONS
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 
-# Bytes of a chunk, what is read or written at once.
+# Bytes of a chunk, the unit of reading and writing.
 _CHUNK = 1 << 20
 
 
 def bytes_of_file(scene: Scene) -> int:
-    """Return about how large the file of a scene's ensemble is."""
+    """Return the approximate size in bytes of the file of a scene's ensemble."""
     assert scene.ensemble is not None
-    numbers = 4 + 3 + (kind_of(scene) != "free") + 6 * (scene.force is not None)
+    numbers = 4 + 3 + (scene.kind != "free") + 6 * (scene.force is not None)
     return scene.ensemble.number * 8 * (numbers * len(scene.times) + 30)
 
 
 class EnsembleFile:
     """A netCDF file with a dimension `body` that grows.
 
-    What is constant, or follows from what is there, is not written at every time: momentum and energy of free
-    bodies once for each body, momenta of others not at all (``L = R I(Ω) ~R``, and a wheel's), places only
-    where forces move the bodies. The first of the times is that of the start.
+    Constant and redundant data are not written at every time: momentum and energy of free bodies are written
+    once for each body, momenta of others not at all (``L = R I(Ω) ~R``, plus the wheels'), positions only if
+    forces move the bodies. The first time is that of the start.
     """
 
     def __init__(self, path: Path, scene: Scene) -> None:
@@ -59,7 +58,7 @@ class EnsembleFile:
         self._file.close()
 
     def _begin(self) -> None:
-        """Write what is known before the first body."""
+        """Write dimensions, coordinates and attributes."""
         times = self._scene.times
         self._file.dimensions = {"time": len(times), "quaternion": 4, "axis": 3, "axis_": 3, "body": None}
         self._write("time", ("time",), times, "s", "time", axis="T")
@@ -86,15 +85,15 @@ class EnsembleFile:
     def _write(
         self, name: str, dims: tuple[str, ...], values: Any, units: str, text: str, **attributes: Any
     ) -> None:
-        """Write a variable that does not grow."""
+        """Write a variable of fixed size."""
         variable = self._file.create_variable(name, dims, np.asarray(values).dtype)
         variable[...] = values
         variable.attrs.update({"units": units, "long_name": text, **attributes})
 
     def add(self, rows: slice, trajectory: Trajectory) -> None:
-        """Write the bodies that follow those before."""
+        """Write the next bodies."""
         self._file.resize_dimension("body", rows.stop)
-        self._grow(rows, "body", (), np.arange(rows.start, rows.stop), "1", "number by which it was drawn")
+        self._grow(rows, "body", (), np.arange(rows.start, rows.stop), "1", "number of the body")
         self._motions(rows, trajectory)
         self._proofs(rows, trajectory)
         if any(name.startswith(("torque.", "gravity.")) for name in self._ensemble.varied):
@@ -108,7 +107,7 @@ class EnsembleFile:
     def _grow(
         self, rows: slice, name: str, dims: tuple[str, ...], values: Any, units: str, text: str
     ) -> None:
-        """Write these bodies' part of a variable; of one that comes late, earlier bodies have NaN."""
+        """Write some bodies' rows of a variable; earlier rows of a new variable are NaN."""
         variable = self._file.variables.get(name)
         if variable is None:
             shape = [self._file.dimensions[dim].size for dim in dims]
@@ -127,7 +126,7 @@ class EnsembleFile:
         omegas = trajectory.omega_body._data
         self._grow(rows, "omega_body", ("time", "axis"), omegas, "rad/s", "angular velocity in body axes")
         energy = "rotational kinetic and potential energy"
-        if kind_of(self._scene) == "free":
+        if self._scene.kind == "free":
             momenta = trajectory.momentum_space._data[:, 0]
             text = "angular momentum in space axes, constant"
             self._grow(rows, "momentum_space", ("axis",), momenta, "kg m^2/s", text)
@@ -142,7 +141,7 @@ class EnsembleFile:
             self._grow(rows, "inertia", ("axis", "axis_"), matrices, "kg m^2", text)
 
     def _centers(self, rows: slice, trajectory: Trajectory) -> None:
-        """Write where the centres of mass are, or whence and how fast they go if nothing moves them."""
+        """Write positions and velocities of the centres of mass; without forces those at the start."""
         if not (self._scene.force is not None or self._moves):
             return
         for name, units, text in (
@@ -166,36 +165,36 @@ class EnsembleFile:
         names = np.broadcast_to(proof.method, len(trajectory)).tolist()
         self._methods += sorted({*names} - {*self._methods})
         codes = np.array([self._methods.index(name) for name in names], np.int8)
-        self._grow(rows, "method", (), codes, "1", "how the motion was found")
+        self._grow(rows, "method", (), codes, "1", "method")
         self._grow(rows, "step", (), proof.step, "s", "longest step, 0 without steps")
         self._grow(rows, "steps", (), proof.steps, "1", "number of steps")
         text = "cautious estimate of the relative error in rotor and angular velocity"
         self._grow(rows, "error_estimate", (), proof.error_estimate, "1", text)
         self._grow(rows, "rotor_norm_drift", (), proof.norm_drift, "1", "largest deviation of |R| from 1")
         for name, drift in proof.drift.items():
-            told = np.where(np.isnan(proof.conserved[name]), np.nan, drift)
+            known = np.where(np.isnan(proof.conserved[name]), np.nan, drift)
             text = f"largest relative change of {name.replace('_', ' ')}"
-            self._grow(rows, f"{name}_drift", (), told, "1", text)
-        self._grow(rows, "failed", (), (~trajectory.ok).astype(np.int8), "1", "1 if it failed on the way")
+            self._grow(rows, f"{name}_drift", (), known, "1", text)
+        self._grow(rows, "failed", (), (~trajectory.ok).astype(np.int8), "1", "1 if the body failed")
         times = np.full(len(trajectory), np.nan)
         for failure in trajectory.failures:
             times[failure.index] = failure.time
-        self._grow(rows, "failure_time", (), times, "s", "up to when a body that failed was followed")
+        self._grow(rows, "failure_time", (), times, "s", "time up to which a failed body was computed")
 
     def _laws(self, rows: slice) -> None:
-        """Write what was drawn of the laws, which the motions do not tell."""
+        """Write the drawn parameters of torque laws."""
         for law in self._ensemble.draw(rows.start, rows.stop - rows.start)[2]:
             if isinstance(law, _native.Law):
                 continue
             name, arguments = law
             for argument, values in zip(TORQUES[name].arguments, arguments, strict=True):
                 dims = () if values.ndim == 1 else ("axis" if values.shape[1] == 3 else "quaternion",)
-                text = f"of the torque law {name}, as drawn"
+                text = f"parameter of the torque law {name}, as drawn"
                 label = "_".join(filter(None, (name, argument.field)))
                 self._grow(rows, label, dims, _wxyz(values), argument.unit, text)
 
     def end(self) -> None:
-        """Write what is known after the last body, be it the last of all or the last before a stop."""
+        """Write failures and the names of methods, after the last body or an interrupt."""
         attributes = self._file.variables["method"].attrs
         attributes["flag_values"] = np.arange(len(self._methods), dtype=np.int8)
         attributes["flag_meanings"] = " ".join(self._methods)
@@ -204,13 +203,13 @@ class EnsembleFile:
         if self._failures:
             self._file.dimensions["failure"] = len(self._failures)
             bodies = np.array([failure.index[0] for failure in self._failures])
-            self._write("failure_body", ("failure",), bodies, "1", "number of a body that failed")
+            self._write("failure_body", ("failure",), bodies, "1", "number of a failed body")
             messages = self._file.create_variable("failure_message", ("failure",), self._text)
             messages[:] = np.array([failure.message for failure in self._failures], dtype=object)
-            messages.attrs["long_name"] = "why it failed"
+            messages.attrs["long_name"] = "error of a failed body"
         self._file.attrs["bodies_complete"] = self._complete
 
 
 def _wxyz(values: Array) -> Array:
-    """Return rotors' components as quaternions; vectors as they are."""
+    """Return rotors as quaternions, and vectors unchanged."""
     return values * np.array([1.0, -1.0, -1.0, -1.0]) if values.ndim == 2 and values.shape[1] == 4 else values

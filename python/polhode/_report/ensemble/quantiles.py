@@ -17,7 +17,7 @@ LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 def quantiles(values: NDArray[Any]) -> Array:
     """Return the quantiles (5, ...) of values (bodies, ...) at `LEVELS`.
 
-    NaN, as of bodies that failed, is left out; they are NaN where nothing is left.
+    NaN, such as of failed bodies, is ignored; quantiles of nothing else are NaN.
     """
     columns = values.reshape(len(values), -1)
     found = np.stack([_of_column(columns[:, k]) for k in range(columns.shape[1])], axis=-1)
@@ -30,7 +30,7 @@ def _of_column(column: NDArray[Any]) -> Array:
 
 
 def first_above(times: Array, values: Array, bound: float) -> float | None:
-    """Return when values first pass a bound, by straight lines between the times; None if they do not."""
+    """Return the time at which values first pass a bound, interpolated linearly; None if they do not."""
     above = np.flatnonzero(values > bound)
     if not above.size:
         return None

@@ -1,4 +1,4 @@
-"""The summary of an ensemble's run as a page for people."""
+"""Summary of an ensemble's run as text for a terminal."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from polhode._report.text import QUANTITIES, Row, acting, body_rows, number, printable, time
 from polhode._support.memory import size
 
-# How wide names and quantiles are.
+# Widths of names and quantiles.
 _NAMES, _CELLS = 22, 11
 
 
@@ -54,7 +54,7 @@ def _drawn(ensemble: dict[str, Any], row: Row) -> None:
     for name, how in ensemble["varied"].items():
         row(name, how)
     if not ensemble["varied"]:
-        row("", "all alike: [ensemble] says nothing that differs")
+        row("", "identical: [ensemble] varies nothing")
 
 
 def _motion(motion: dict[str, Any], bodies: int, who: str, row: Row) -> None:
@@ -62,10 +62,10 @@ def _motion(motion: dict[str, Any], bodies: int, who: str, row: Row) -> None:
         row("regime", f"{regime}: {count} of {bodies} bodies")
     for entry in motion["horizons"]:
         until = "to the end" if entry["time"] is None else f"for {time(entry['time'], 4)}"
-        told = f"95 % of {who}, {until}, of the undisturbed one"
+        words = f"95 % of {who}, {until}, of the nominal one"
         row(
             f"within {np.degrees(entry['angle']):g}°",
-            told if entry["time"] != 0 else "fewer from the start on",
+            words if entry["time"] != 0 else "fewer than 95 % from the start",
         )
 
 
@@ -81,15 +81,15 @@ def _quantiles(motion: dict[str, Any], row: Row) -> None:
         if key in motion:
             _five(name, motion[key], _short_time, row)
     for key, name in (("energy", "energy, J"), ("angular_momentum", "|L|, kg m²/s")):
-        # Free bodies keep them.
+        # Free bodies conserve both.
         for end in ("start",) if motion["kind"] == "free" else ("start", "end"):
             _five(f"{name}, {end}", motion[key][end], _five_digits, row)
     row("", f"tilt: of {motion['axis']} from {motion['tilt_from']}")
 
 
-def _five(name: str, values: list[float] | None, told: Callable[[float], str], row: Row) -> None:
-    """Print five quantiles; a dash where there are none."""
-    cells = ["–"] * 5 if values is None else [told(x) for x in values]
+def _five(name: str, values: list[float] | None, text: Callable[[float], str], row: Row) -> None:
+    """Print five quantiles; dashes without any."""
+    cells = ["–"] * 5 if values is None else [text(x) for x in values]
     row(name, "".join(f"{cell:>{_CELLS}}" for cell in cells))
 
 
@@ -122,7 +122,7 @@ def _run(run: dict[str, Any], row: Row) -> None:
 def _failures(failures: dict[str, Any], bodies: int, row: Row) -> None:
     if not failures["count"]:
         return
-    row("FAILED", f"{failures['count']} of {bodies} bodies could not be followed to the end")
+    row("FAILED", f"{failures['count']} of {bodies} bodies failed before the end")
     for one in failures["first"]:
         row("", f"body {one['body']}, after {number(one['time'])} s: {one['message']}")
     if failures["count"] > len(failures["first"]):

@@ -1,4 +1,4 @@
-//! What the invariants of a free motion tell.
+//! Description of a free motion by its invariants.
 //!
 //! **Phase.** In one period T of the angular velocity m comes back once round d, and the body has turned about L.
 //! With the energy `2E = (G² + sP)/c` and ν of [`super`], `ν − 2E/G = −s A/T` with
@@ -7,7 +7,7 @@
 //! A = (TP/cG) (1 − ½ S(k²/n)) = 2π + T (G|b−a| S(n)/2ab − Q/aG),   νT = 2ET/G − s A:
 //! ```
 //!
-//! the angle is what energy and time tell, less the solid angle A that L sweeps round the encircled axis in the
+//! the angle follows from energy and time, less the solid angle A that L sweeps round the encircled axis in the
 //! body (Montgomery, Am. J. Phys. 59 (1991) 394).
 //!
 //! **Wobble.** Between L and that axis is the angle whose tangent is `√(m1² + m2²)/m3`, least where sn = 0,
@@ -23,18 +23,18 @@ use crate::state::phase::Gyrostat;
 use polhode_ga::Bivector;
 use std::f64::consts::PI;
 
-/// From so large a parameter 1 − k²/n on the other form of A is taken; A is nearly 2π there.
+/// Parameter 1 − k²/n above which the other form of A is used; A is nearly 2π there.
 const FAR: f64 = 1e4;
 
 impl FreeMotion {
-    /// Period of the angular velocity in the body, 4K/λ, in s; None where nothing repeats or changes.
+    /// Period of the angular velocity in the body, 4K/λ, in s; None if ω is constant or does not repeat.
     pub fn period(&self) -> Option<f64> {
         let orbit = self.orbit.as_ref()?;
         let turn = orbit.lambda * orbit.mean?;
         Some(2.0 * PI / turn.value() / self.scale).filter(|x| x.is_finite())
     }
 
-    /// What the invariants tell.
+    /// The description by the invariants.
     pub fn describe(&self) -> FreeDescription {
         let (i, w) = (self.moments, self.omega.0);
         let body = Gyrostat::rigid(i);
@@ -82,7 +82,7 @@ impl FreeMotion {
         }
     }
 
-    /// A.
+    /// The solid angle A.
     fn solid_angle(&self) -> Option<f64> {
         let orbit = self.orbit.as_ref()?;
         let mean = orbit.mean?;

@@ -1,17 +1,17 @@
-//! What kind of motion a heavy top is in, and its periods.
+//! The regime of a heavy symmetric top, and its periods.
 
 use super::{Form, LagrangeTop};
+use crate::facts;
+use crate::facts::Facts;
 use crate::numerics::wide::Wide;
 use crate::state::phase::Gyrostat;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// Tilts that differ by no more than this, in rad, and rates by no more relative to their terms, are equal: the start
-/// is rounded.
+/// Tilts in rad, and rates relative to their terms, that differ by at most this are equal: the start is rounded.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A top is nearly upright while its centre of mass is lower than that of the upright by at most this part of its height:
-/// at tilts up to 11.5 degrees.
+/// A top is nearly upright up to this relative loss of height of its centre of mass: at tilts up to 11.5 degrees.
 const NEARLY: f64 = 0.02;
 
 /// How a heavy top moves.
@@ -21,25 +21,25 @@ pub enum LagrangeRegime {
     Rest,
     /// Upright, with a spin of the critical rate or more: stable.
     Sleeping,
-    /// Nearly upright at all times, with such a spin: a sleeping top after a small push.
+    /// Nearly upright at all times, with at least the critical spin: a sleeping top after a small push.
     NearlySleeping,
-    /// Upright, with less spin or none: unstable.
+    /// Upright, with less than the critical spin: unstable.
     Upright,
     /// Upside down, with or without spin.
     Hanging,
     /// The tilt is constant.
     Steady,
-    /// The precession at the upper bound is against that at the lower.
+    /// The precession changes its sign between the bounds of the tilt.
     Loops,
     /// The precession has one sign.
     Waves,
-    /// The precession rests at the upper bound.
+    /// The precession is 0 at the upper bound.
     Cusps,
-    /// Without spin and precession, below the upright.
+    /// A pendulum that does not reach the upright.
     Swinging,
-    /// The same, across the upright.
+    /// A pendulum that passes the upright.
     Circulating,
-    /// It approaches the upright for ever.
+    /// The axis tends to the upright.
     Separatrix,
 }
 
@@ -62,16 +62,16 @@ impl fmt::Display for LagrangeRegime {
     }
 }
 
-/// What the invariants of a heavy top tell. The axis is that of symmetry, in the direction of the centre of mass.
+/// Description of a heavy top by its invariants. The axis is that of symmetry, towards the centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LagrangeDescription {
     /// The kind of motion.
     pub regime: LagrangeRegime,
-    /// Smallest and largest angle of the axis from up (e3), in rad.
+    /// Smallest angle of the axis from up (e3), in rad.
     pub tilt_min: f64,
-    /// The larger one.
+    /// Largest angle, in rad.
     pub tilt_max: f64,
-    /// Period of the tilt, 2K/λ, in s; None where it is constant or never comes back.
+    /// Period of the tilt, 2K/λ, in s; None if it is constant or not periodic.
     pub nutation_period: Option<f64>,
     /// Mean rate of precession about e3, in rad/s; None for the upright, hanging and separatrix.
     pub precession_rate: Option<f64>,
@@ -85,9 +85,9 @@ pub struct LagrangeDescription {
     pub axial_momentum: f64,
     /// Lz, the angular momentum about e3, in kg m²/s.
     pub vertical_momentum: f64,
-    /// Rate about the axis from which on an upright top is stable, `2 √(|c| i1)/i3`, in rad/s.
+    /// Least rate about the axis for which an upright top is stable, `2 √(|c| i1)/i3`, in rad/s.
     pub critical_spin: f64,
-    /// Whether a top with this spin would be stable upright.
+    /// Whether an upright top with this spin is stable.
     pub sleeps: bool,
 }
 
@@ -96,10 +96,21 @@ impl LagrangeDescription {
     pub fn precession_period(&self) -> Option<f64> {
         self.precession_rate.map(|rate| 2.0 * PI / rate.abs()).filter(|period| period.is_finite())
     }
+
+    /// The description by name.
+    pub fn facts(&self) -> Facts {
+        facts! {
+            regime: self.regime.to_string(), tilt_min: self.tilt_min, tilt_max: self.tilt_max,
+            nutation_period: self.nutation_period, precession_rate: self.precession_rate,
+            precession_period: self.precession_period(), spin_rate: self.spin_rate, modulus: self.modulus,
+            energy: self.energy, axial_momentum: self.axial_momentum, vertical_momentum: self.vertical_momentum,
+            critical_spin: self.critical_spin, sleeps: self.sleeps,
+        }
+    }
 }
 
 impl LagrangeTop {
-    /// What the invariants tell.
+    /// The description by the invariants.
     pub fn describe(&self) -> LagrangeDescription {
         let (axes, start) = (&self.axes, &self.start);
         let momentum = self.momentum();
@@ -162,7 +173,7 @@ impl LagrangeTop {
         };
         let moving = LagrangeDescription { regime, tilt_min, tilt_max, modulus: orbit.k2.sqrt(), ..still };
         let Some(mean) = orbit.mean else { return moving };
-        // The turns of the theta functions; one with real zeros turns nothing, it changes sign.
+        // The turns of the theta functions; one with real zeros changes sign instead.
         let turn = orbit.lambda * mean;
         let phase = |k: usize| {
             let zero = orbit.zeros[k];

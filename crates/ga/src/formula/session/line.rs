@@ -16,12 +16,14 @@ pub const NOT_FINITE: &str = "the value is beyond the range of floating point, a
 /// The error for `name = lhs == rhs`.
 pub const EQUATION_AS_VALUE: &str = "an equation is not a value that a name can have; compare with `==`";
 
+/// The places of quantities in a formula, and their values in SI units.
+pub type Quantities = Vec<(Range<usize>, f64)>;
+
 /// How a session reads quantities with units.
 #[derive(Clone, Copy)]
 pub struct Units {
-    /// The quantities in a formula with their values in SI units, from left to right; a unit that `is_name` knows is
-    /// ambiguous.
-    pub quantities: fn(&str, is_name: &dyn Fn(&str) -> bool) -> Result<Vec<(Range<usize>, f64)>, Error>,
+    /// The quantities in a formula, from left to right; a unit that `is_name` knows is ambiguous.
+    pub quantities: fn(&str, is_name: &dyn Fn(&str) -> bool) -> Result<Quantities, Error>,
     /// The unit that a word is or may stand for.
     pub near: fn(&str) -> Option<String>,
 }

@@ -83,9 +83,9 @@ fn definitions_cannot_call_themselves() {
 
 #[test]
 fn an_underscore_is_the_last_value() {
-    let found = outcomes("_\ne1 + e2\na_1 = 3 _\n_·a_1\n_ == 6\n⟨_ e1⟩_1\nf(x) = _ x\nq");
+    let found = outcomes("_\ne1 + e2\na_1 = 3 _\n_·a_1\n_ == 18\n⟨_ e1⟩_1\nf(x) = _ x\nq");
     assert_eq!(found[0], "!`_` is the last value; there is none yet");
-    assert_eq!(found[1..6], ["e1 + e2", "3 e1 + 3 e2", "6", "holds", "6 e1"]);
+    assert_eq!(found[1..6], ["e1 + e2", "3 e1 + 3 e2", "18", "holds", "18 e1"]);
     assert_eq!(found[6], "!a function cannot use `_`, the last value");
     assert!(!found[7].contains("last_value"), "{found:?}");
 }

@@ -16,12 +16,15 @@ pub const NOT_FINITE: &str = "the value is beyond the range of floating point, a
 /// The error for `name = lhs == rhs`.
 pub const EQUATION_AS_VALUE: &str = "an equation is not a value that a name can have; compare with `==`";
 
+/// Finds the quantities in a formula, from left to right: their places, and their values in SI units. A unit that the
+/// function knows as a name is ambiguous.
+pub type Quantities = fn(&str, &dyn Fn(&str) -> bool) -> Result<Vec<(Range<usize>, f64)>, Error>;
+
 /// How a session reads quantities with units.
 #[derive(Clone, Copy)]
 pub struct Units {
-    /// The quantities in a formula with their values in SI units, from left to right; a unit that `is_name` knows is
-    /// ambiguous.
-    pub quantities: fn(&str, is_name: &dyn Fn(&str) -> bool) -> Result<Vec<(Range<usize>, f64)>, Error>,
+    /// Finds quantities.
+    pub quantities: Quantities,
     /// The unit that a word is or may stand for.
     pub near: fn(&str) -> Option<String>,
 }

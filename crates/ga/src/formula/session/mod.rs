@@ -8,7 +8,7 @@
 mod line;
 mod source;
 
-pub use line::{EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE, Units};
+pub use line::{EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE, Quantities, Units};
 pub use source::Source;
 
 use super::{

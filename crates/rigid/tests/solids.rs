@@ -177,7 +177,10 @@ fn impossible_solids_say_why() {
             error(ball, Amount::Density(bad)),
             format!("density must be positive and finite, got {bad:?} kg/m³")
         );
-        assert!(error(ball, Amount::Mass(bad)).starts_with(&format!("a mass of {bad:?} kg")));
+        assert!(
+            error(ball, Amount::Mass(bad))
+                .starts_with(&format!("mass must be positive and finite, got {bad:?} kg"))
+        );
     }
     assert!(error(Solid::Sphere { radius: 1e200 }, mass).contains("i1 is inf"));
     assert!(error(Solid::Sphere { radius: 1e-200 }, mass).contains("below the range of floating point"));

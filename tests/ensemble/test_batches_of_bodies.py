@@ -180,7 +180,7 @@ def test_laws_of_batches_are_checked():
         ph.simulate([ASYMMETRIC, 3], START, T)
     with pytest.raises(ValueError, match=r"index \(1,\).*thickness"):
         ph.simulate([ASYMMETRIC, ph.Body.rod(1.0, mass=1.0)], START, T)
-    with pytest.raises(ValueError, match=r"batch of shape \(5,\)"):
+    with pytest.raises(ValueError, match=r"batch shape \(5,\)"):
         ph.simulate(BODIES, STATES, T, events=ph.event.spin(ph.e1 ^ ph.e2))
     for threads, error in ((0, ValueError), (1.5, TypeError)):
         with pytest.raises(error, match="threads"):

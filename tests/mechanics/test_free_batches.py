@@ -157,5 +157,5 @@ def test_errors_name_the_index():
         motions[0][0]
     with pytest.raises(TypeError, match="no length"):
         len(motions[0])
-    with pytest.raises(ValueError, match="single one, got batch"):
+    with pytest.raises(ValueError, match="one body, got batch"):
         ph.SymmetricTop(moments(1, 1, 2), R0, np.ones((2, 3)))

@@ -63,7 +63,7 @@ def test_a_wheel_leaves_a_body_at_rest(damping: float) -> None:
 
 def test_chaos_is_reported() -> None:
     state = ph.State(ph.Rotor.identity(), ph.bivector([0.1, 0.2, 0.5]))
-    with pytest.raises(ValueError, match=r"altogether different.*a shorter run"):
+    with pytest.raises(ValueError, match=r"differ completely.*a shorter time"):
         ph.simulate(BODY, state, [500.0], ph.torque.heavy([1.0, 0.2, 0.3]))
 
 

@@ -116,7 +116,7 @@ def test_it_reaches_the_event_that_ended_the_motion(torque):
     last = motion.at(ends)
     assert np.abs((last.rotor(ph.e1) | ph.e3).components).max() <= 1e-9
     for beyond in (ends[0] - 1e-9, ends[1] + 1e-9):
-        with pytest.raises(ValueError, match="outside the motion"):
+        with pytest.raises(ValueError, match="outside the computed motion"):
             motion.at(beyond)
 
 

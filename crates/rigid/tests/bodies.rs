@@ -319,7 +319,7 @@ fn impossible_bodies_say_why() {
 
     let points = |m: &[f64], x: &[Vector]| Body::from_points(m, x).unwrap_err().to_string();
     let origin = Vector::default();
-    assert_eq!(points(&[], &[]), "a body needs at least one point mass; none is given");
+    assert_eq!(points(&[], &[]), "a body needs at least one point mass, got none");
     assert_eq!(
         points(&[1.0], &[origin, origin]),
         "1 masses for 2 positions; give one mass for every position"

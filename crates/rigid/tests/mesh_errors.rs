@@ -150,7 +150,7 @@ fn indices_and_factors_of_meshes_in_memory() {
     }
     for factor in [1e-60, 1e60] {
         let message = mesh.scaled(factor).unwrap().body(Amount::Mass(1.0)).unwrap_err().to_string();
-        assert!(message.starts_with("mesh: the mesh is 3.46410161513775"), "{message}");
+        assert!(message.starts_with("mesh: the mesh extends over 3.46410161513775"), "{message}");
         assert!(
             message.ends_with(" m, outside the supported range of 1e-50 to 1e50 m; check the unit"),
             "{message}"
@@ -245,7 +245,7 @@ fn corrupt_and_truncated_ply() {
     );
     assert_eq!(
         ply(format!("{ascii}element face 1\nproperty int\n")),
-        at(4, "a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'")
+        at(4, "expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'")
     );
     assert_eq!(ply(format!("{ascii}colour red\n")), at(3, "'colour red' is not a header line"));
     assert_eq!(
@@ -318,8 +318,7 @@ fn repeated_triangles() {
     faces.push([b, c, a]);
     faces.extend(OCTAHEDRON);
     let message = body(octahedron(), faces);
-    let start =
-        "mesh: 9 repeated triangles, the first is triangle 8 (counted from 0), which is triangle 2 again";
+    let start = "mesh: 9 repeated triangles, the first is triangle 8 (counted from 0), a copy of triangle 2";
     assert!(message.starts_with(start), "{message}");
 }
 

@@ -110,7 +110,7 @@ fn what_no_body_can_have_is_reported_at_its_field() {
         ("solid = 'rod'\nlength = 1\ndensity = 1", "x.toml:4:11: error: a rod has no volume, "),
         (
             "solid = 'hollow_sphere'\nouter_radius = 1\ninner_radius = 2\nmass = 1",
-            "x.toml:4:16: error: inner_radius = 2.0 m does not fit ",
+            "x.toml:4:16: error: inner_radius must be between 0 and ",
         ),
         (
             "solid = 'torus'\nminor_radius = 2\nmajor_radius = 1\nmass = 1",

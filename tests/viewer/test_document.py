@@ -149,7 +149,7 @@ def test_the_method_is_written(tmp_path):
         ({"torque": T.damping(1) + T.damping(2)}, "two"),
         ({"torque": T.formula("k Ω", k=1) + T.formula("k Ω", k=2, frame="space")}, "`k` has two values"),
         ({"torque": T.formula("F(Ω)", F=MOMENTS)}, "linear map"),
-        ({"times": [-2.0, 0.0]}, "no later time"),
+        ({"times": [-2.0, 0.0]}, "needs an output time after its start"),
         ({"tolerance": 2.0}, "tolerance"),
     ],
 )
@@ -222,11 +222,12 @@ def test_the_format_is_that_of_the_viewer():
     assert sorted(about["body"]) == sorted(inner["body"])
     trajectory = ph.simulate(MOMENTS, START, [0, 1], method="rk4", step=0.1)
     about = json.loads(document.document(trajectory)["recorded"]["about"])
-    assert sorted(about["free"]) == sorted(inner["free"])
+    # The page uses some of the facts.
+    assert set(inner["free"]) <= set(about["free"])
     top = ph.Inertia.from_principal_moments(1, 1, 0.5)
     trajectory = ph.simulate(top, START, [0, 1], T.heavy([0, 0, 1]), method="rk4", step=0.1)
     about = json.loads(document.document(trajectory)["recorded"]["about"])
-    assert sorted(about["top"]) == sorted(inner["top"])
+    assert set(inner["top"]) <= set(about["top"])
     text = (ROOT / "viewer/src/core/core.ts").read_text()
     assert "export const ROW = 24;" in text
     offsets = dict(re.findall(r"^  (\w+): (\d+),$", text, flags=re.MULTILINE))
@@ -485,7 +486,7 @@ def test_other_files_are_refused(tmp_path):
     with pytest.raises(OSError, match=r"folder.nc: not a regular file"):
         ph.Trajectory.read(tmp_path / "folder.nc")
     (tmp_path / "noise.nc").write_bytes(b"noise")
-    with pytest.raises(OSError, match=r"noise.nc is no netCDF file"):
+    with pytest.raises(OSError, match=r"noise.nc cannot be read as a netCDF file"):
         ph.Trajectory.read(tmp_path / "noise.nc")
     with pytest.importorskip("h5py").File(tmp_path / "groups.nc", "w") as file:
         file.create_group("attitude")

@@ -15,6 +15,7 @@ mod member;
 mod output;
 mod scheduler;
 mod steppers;
+mod workers;
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;

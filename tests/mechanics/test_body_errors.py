@@ -31,7 +31,10 @@ from meshes import cube, write_binary_stl, write_obj
         (lambda: ph.Body.sphere(1, mass=-1), ["-1.0 kg"]),
         (lambda: ph.Body.sphere(1, density=0), ["0.0 kg/m³"]),
         (lambda: ph.Body.sphere(np.nan, mass=1), ["radius", "NaN"]),
-        (lambda: ph.Body.hollow_sphere(1, 2, mass=1), ["inner_radius must be", "2.0 m", "outer_radius = 1.0 m"]),
+        (
+            lambda: ph.Body.hollow_sphere(1, 2, mass=1),
+            ["inner_radius must be", "2.0 m", "outer_radius = 1.0 m"],
+        ),
         (lambda: ph.Body.hollow_sphere(1, 1, density=1), ["volume", "mass"]),
         (lambda: ph.Body.torus(1, 2, mass=1), ["minor_radius = 2.0 m", "major_radius = 1.0 m"]),
         (lambda: ph.Body(0.0, ph.Inertia.from_principal_moments(1, 1, 1)), ["0.0 kg"]),

@@ -13,7 +13,7 @@ import pytest
 import polhode as ph
 import processes
 from command_line import POLHODE, SCENE, polhode, summary_of
-from polhode._report.ensemble import run as _ensemble_run
+from polhode._cli import ensemble as _ensemble_run
 from polhode._report.ensemble.collect import EnsembleRecords
 from polhode._report.ensemble.quantiles import LEVELS, first_above, quantiles
 from polhode._support import memory

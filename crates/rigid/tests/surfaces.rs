@@ -117,7 +117,7 @@ fn solids_fill_a_box() {
     }
     for kind in ["sphere", "hollow_sphere", "rod", "disc", "torus"] {
         let solid = Solid::filling(kind, sides).unwrap();
-        assert_eq!(solid.sizes().0, kind);
+        assert_eq!(solid.facts()[0], ("kind", kind.into()));
         assert!(solid.body(Amount::Mass(1.0)).is_ok());
     }
     assert_eq!(Solid::filling("cube", sides), None);

@@ -38,7 +38,7 @@ def add(commands: Any) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     from polhode._cli.examples import examples
-    from polhode._cli.main import DRIFTED, OK
+    from polhode._cli.exit_codes import DRIFTED, OK
     from polhode._report.summary import summary
     from polhode._report.text import as_text
     from polhode._scene.scene import Scene

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from polhode._cli.arguments import file_name
+from polhode._cli.exit_codes import BAD_INPUT, DRIFTED, FAILED, INTERRUPTED, OK
 from polhode._native import SceneError, __version__
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
     from polhode._mechanics.trajectory import Trajectory
     from polhode._scene.scene import Scene
-
-OK, FAILED, USAGE, BAD_INPUT, DRIFTED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -291,7 +290,7 @@ def _run_many(
     scene: Scene, targets: list[Path], html: Path | None, options: argparse.Namespace
 ) -> dict[str, Any]:
     """Run an ensemble, print its summary and write its files; return the summary."""
-    from polhode._report.ensemble import run as _ensemble_run
+    from polhode._cli import ensemble as _ensemble_run
     from polhode._report.ensemble.summary import summary
     from polhode._report.ensemble.text import as_text
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from polhode._figures.camera import angles_of
 from polhode._figures.spheres import axis_figure, orbit_figure, polhode_figure
-from polhode._figures.style import main_axis, motion_figure, require_times
-from polhode._report.describe import long_axis, weight, wheel
+from polhode._figures.style import motion_figure, require_times
+from polhode._report.describe import long_axis, main_axis, weight, wheel
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.files import form_of, write_atomically

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ParamSpec
 import numpy as np
 
 from polhode._algebra.constructors import vector
+from polhode._report.describe import main_axis
 from polhode._report.text import QUANTITIES
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
@@ -159,13 +160,6 @@ def motion_figure(trajectory: Trajectory) -> Figure:
         "Rotor: a' = R a ~R takes body axes to space axes, R' = −½ R Ω_B.",
     )
     return figure
-
-
-def main_axis(trajectory: Trajectory) -> tuple[int, Array]:
-    """Return the number of the principal axis about which the body mostly turns, and its direction (3,)."""
-    rates = (~trajectory.inertia.principal_frame)(trajectory.omega_body).components
-    k = int(np.argmax(np.abs(rates).mean(axis=0)))
-    return k + 1, trajectory.inertia.principal_frame.to_matrix()[:, k]
 
 
 def _draw_attitude(axes: Axes, trajectory: Trajectory, t: Array) -> None:

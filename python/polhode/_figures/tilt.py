@@ -17,13 +17,12 @@ from polhode._figures.style import (
     entitle,
     explain,
     in_our_look,
-    main_axis,
     new_figure,
     title_of,
 )
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.smooth import rotor_at, samples
-from polhode._report.describe import long_axis
+from polhode._report.describe import long_axis, main_axis
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:

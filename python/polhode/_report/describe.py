@@ -19,6 +19,13 @@ def wheel(torque: Torque | None) -> Array:
     return _sum_of("gyrostat", torque)
 
 
+def main_axis(trajectory: Trajectory) -> tuple[int, Array]:
+    """Return the number of the principal axis about which the body mostly turns, and its direction (3,)."""
+    rates = (~trajectory.inertia.principal_frame)(trajectory.omega_body).components
+    k = int(np.argmax(np.abs(rates).mean(axis=0)))
+    return k + 1, trajectory.inertia.principal_frame.to_matrix()[:, k]
+
+
 def orbit_of(torque: Torque | None) -> tuple[float, float, float]:
     """Return mean motion, eccentricity and mean anomaly of a satellite's orbit."""
     laws = torque.laws if torque else ()

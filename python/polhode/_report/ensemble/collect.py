@@ -10,11 +10,10 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.constructors import vector
 from polhode._algebra.rotor import Rotor
-from polhode._figures.style import main_axis
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.result import Failure
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.describe import orbit_of, weight
+from polhode._report.describe import main_axis, orbit_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 

@@ -1,6 +1,6 @@
 //! One line of a session: whether it assigns, what is parsed, and where its errors are.
 
-use super::source::{Source, number};
+use super::source::{Source, Units, number};
 use crate::formula::{Error, Span, canonical, heading};
 use std::ops::Range;
 
@@ -15,19 +15,6 @@ pub const NOT_FINITE: &str = "the value is beyond the range of floating point, a
 
 /// The error for `name = lhs == rhs`.
 pub const EQUATION_AS_VALUE: &str = "an equation is not a value that a name can have; compare with `==`";
-
-/// Finds the quantities in a formula, from left to right: their places, and their values in SI units. A unit that the
-/// function knows as a name is ambiguous.
-pub type Quantities = fn(&str, &dyn Fn(&str) -> bool) -> Result<Vec<(Range<usize>, f64)>, Error>;
-
-/// How a session reads quantities with units.
-#[derive(Clone, Copy)]
-pub struct Units {
-    /// Finds quantities.
-    pub quantities: Quantities,
-    /// The unit that a word is or may stand for.
-    pub near: fn(&str) -> Option<String>,
-}
 
 /// The left side of `a = …` or `V(x) = …`.
 #[derive(Clone, Debug, PartialEq, Eq)]

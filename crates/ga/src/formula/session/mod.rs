@@ -8,8 +8,8 @@
 mod line;
 mod source;
 
-pub use line::{EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE, Quantities, Units};
-pub use source::Source;
+pub use line::{EQUATION_AS_VALUE, Head, LAST_VALUE, Line, NO_LAST_VALUE, NOT_FINITE};
+pub use source::{Quantities, Source, Units};
 
 use super::{
     Agreement, Definition, Error, Given, Kind, Meaning, Names, Node, Program, Runner, Space, Span, Style,

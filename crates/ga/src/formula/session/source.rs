@@ -1,8 +1,20 @@
 //! Text of which pieces are replaced before it is parsed, with the original place of each piece.
 
-use super::Units;
 use crate::formula::Error;
 use std::ops::Range;
+
+/// Finds the quantities in a formula, from left to right: their places, and their values in SI units. A unit that the
+/// function knows as a name is ambiguous.
+pub type Quantities = fn(&str, &dyn Fn(&str) -> bool) -> Result<Vec<(Range<usize>, f64)>, Error>;
+
+/// How a session reads quantities with units.
+#[derive(Clone, Copy)]
+pub struct Units {
+    /// Finds quantities.
+    pub quantities: Quantities,
+    /// The unit that a word is or may stand for.
+    pub near: fn(&str) -> Option<String>,
+}
 
 /// A formula as it is parsed, `(0.7853981633974483) e1∧e2` for `45 deg e1∧e2`.
 #[derive(Clone, Debug, PartialEq)]

@@ -236,7 +236,7 @@ def test_overflowing_derivatives_are_rejected():
     for i, w in (((1, 2, 3), (0, 1, 0)), ((1, 2, 2.25), (0.375, 0.5, 0.5))):
         motion = motion_of(i, w)
         assert np.isfinite(motion.derivatives(200.0).d_omega_d_omega).all()
-        with pytest.raises(ValueError, match=r"derivatives at times\[1\] = 1e6 s are beyond"):
+        with pytest.raises(ValueError, match=r"derivatives at times\[1\] = 1e6 s overflow"):
             motion.derivatives([0.0, 1e6])
     with pytest.raises(ValueError, match="time NaN"):
         motion_of((1, 2, 3), (0, 1, 0)).derivatives(np.nan)

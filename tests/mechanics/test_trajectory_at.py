@@ -1,13 +1,13 @@
 """`Trajectory.at` between the output times, against motions with outputs there."""
 
 import pickle
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 
 import polhode as ph
+import processes
 from motions import ASYMMETRIC, EPS, METHODS, R0, SLOPES, START, moments, random_walk
 
 BODY = ph.Body.box([1, 2, 3], mass=2.0)
@@ -166,5 +166,5 @@ def test_an_unpickled_motion_has_its_methods_in_a_new_process():
     motion = ph.simulate(BODY, START, [0.0, 1.0])
     read = "import pickle, sys; motion = pickle.load(sys.stdin.buffer); print(motion.view, motion.save)"
     run = [sys.executable, "-c", read]
-    said = subprocess.run(run, input=pickle.dumps(motion), capture_output=True, check=True).stdout
-    assert b"save" in said
+    done = processes.run(run, input=pickle.dumps(motion), encoding=None)
+    assert b"save" in done.stdout

@@ -398,7 +398,7 @@ def test_a_run_interrupted_early_leaves_no_file(write, tmp_path):
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate()
-    assert process.returncode == 130
+    assert process.returncode == 130, errors
     assert "interrupted; no file was changed" in errors
     assert list(tmp_path.iterdir()) == [path]
 

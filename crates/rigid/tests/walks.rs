@@ -79,6 +79,6 @@ fn what_fails_is_told_with_its_time() {
         let options = Options { method: Method::from_name(name), ..Options::default() };
         let motion =
             problem().with_center(Center::default(), 1.0, &drag).simulate(&[1.0], options, &mut |_| true);
-        assert!(motion.unwrap_err().to_string().contains("centre of mass"), "{name}");
+        assert!(motion.unwrap_err().to_string().contains("forces"), "{name}");
     }
 }

@@ -51,7 +51,7 @@ fn a_late_scene_is_known_from_its_start_on() {
     let rows = of.states(&[5.0, 7.0]).unwrap();
     // Momentum over moment is the rate to a rounding.
     assert!([0.1, 1.0, 0.2].iter().zip(&rows[0][5..8]).all(|(w, x)| (x - w).abs() <= f64::EPSILON));
-    assert!(of.states(&[4.0]).unwrap_err().contains("computed from 5 s to 7 s"));
+    assert!(of.states(&[4.0]).unwrap_err().contains("outside the computed motion, 5 s to 7 s"));
     let swarm =
         opened(&format!("{late}{}", SWARM.replace("attitude = 'uniform'\n", "").replace("0.1", "1e-12")));
     for (time, row) in [5.0, 7.0].into_iter().zip(&rows) {

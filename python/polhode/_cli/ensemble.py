@@ -41,7 +41,10 @@ def run(
     with contextlib.ExitStack() as stack:
         part = stack.enter_context(unfinished(targets[0])) if targets else None
         stopped = False
-        with contextlib.nullcontext() if part is None else EnsembleFile(part, scene) as file:
+        with contextlib.ExitStack() as opened:
+            # HDF5 may swallow an interrupt while it creates a file.
+            with _uninterrupted():
+                file = None if part is None else opened.enter_context(EnsembleFile(part, scene))
             try:
                 _run_bodies(records, file, threads)
             except KeyboardInterrupt:

@@ -176,7 +176,8 @@ impl Scene {
         match end {
             Some(end) => Ok((ensemble, first..end)),
             None => Err(bad(format!(
-                "first = {first} and count = {count} are out of bounds for {number} bodies; take one body at least"
+                "range {first}..{} is out of bounds for {number} bodies",
+                first.saturating_add(count)
             ))),
         }
     }

@@ -120,7 +120,7 @@ fn what_no_body_can_have_is_reported_at_its_field() {
             "solid = 'sphere'\nradius = 1e200\ndensity = 1",
             "x.toml:4:11: error: mass must be positive and finite, got inf kg",
         ),
-        ("solid = 'sphere'\nradius = 1e-200\nmass = 1", "x.toml:2:9: error: the largest moment of inertia "),
+        ("solid = 'sphere'\nradius = 1e-200\nmass = 1", "x.toml:2:9: error: the largest moment of inertia, "),
     ];
     for (body, message) in table {
         let error = body_error(&scene(body));

@@ -7,7 +7,7 @@
 //! Rooms: [`body`] (mass, centre of mass, the inertia map; solids, triangle meshes and their files), [`state`] (a point
 //! of a motion), [`laws`] (torques, forces, formulas, events, and what is conserved), [`exact`] (motions in closed form),
 //! [`methods`] (steps), [`run`] (one motion at given times, with a certificate of what was conserved), [`ensemble`] (many
-//! bodies at once), [`describe`] (properties of a motion as [`facts`]), [`numerics`] (arithmetic of twice the
+//! bodies at once), [`describe`] (properties of a motion as [`mod@facts`]), [`numerics`] (arithmetic of twice the
 //! precision, elliptic integrals), [`error`]; [`units`] and [`scene`] (scene files).
 //!
 //! SI units; inertia is about the centre of mass, in body axes, unless a name says otherwise.

@@ -133,7 +133,7 @@ def test_damping_reports_the_free_motion_and_its_pace(tmp_path):
     assert result["motion"]["halved_after"] == pytest.approx(np.log(2) / 0.5)
     assert result["run"]["method"] == "exact"
     assert result["motion"]["changes"]["rate"]["end"] < result["motion"]["changes"]["rate"]["start"]
-    assert "half of ω" in polhode("run", tmp_path / "a.toml").stdout
+    assert "half-life of ω" in polhode("run", tmp_path / "a.toml").stdout
 
 
 # A closed form, a dissipative torque, a wheel and a held body; the other laws have the same kinds of reports.

@@ -302,7 +302,7 @@ def test_the_summary_as_text(write):
     for words in (
         "Ensemble",
         "Body",
-        "Acting",
+        "Torques and forces",
         "Motion",
         "Over the bodies",
         "Conserved",

@@ -62,7 +62,7 @@ def studio(
     size
         Width and height of the pictures, in pixels.
     view
-        Azimuth and elevation to look from, in degrees; None for those of the viewer.
+        Azimuth and elevation of the camera in degrees; None for those of the viewer.
     what
         What needs the browser, for errors: ``"a film"``.
 

@@ -415,7 +415,7 @@ def test_progress_increases_and_its_exceptions_propagate():
 
 
 @pytest.mark.parametrize("method", ["rk4", "kahan_li8"])
-def test_control_c_stops_a_run(method):
+def test_ctrl_c_stops_a_run(method):
     program = (
         "import numpy as np, polhode as ph; print('go', flush=True)\n"
         "ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3), ph.State(ph.Rotor.identity(),"

@@ -103,6 +103,6 @@ def test_sizes_have_three_digits(count, text):
     assert _memory.size(count) == text
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="Linux tells")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports it")
 def test_memory_of_this_machine():
     assert _memory.available() > 0

@@ -479,7 +479,7 @@ def test_figure_3_shows_B_and_its_momentum():
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), np.linalg.norm(points[0]), rtol=1e-9)
 
 
-def test_figure_3_hides_what_is_behind_or_inside_the_box():
+def test_figure_3_hides_lines_behind_or_inside_the_box():
     """Rays through the box show which points of a disc it hides."""
     view, half = View(32, 20), np.array([0.3, 0.2, 0.8])
     rim = _handout._rim(0.3 * (ph.e2 ^ ph.e3) + 0.8 * (ph.e1 ^ ph.e2), 1.4)

@@ -381,7 +381,7 @@ def test_any_terminal_encoding_gets_an_answer():
     assert (done.returncode, done.stdout) == (0, "e1?e2\n")
 
 
-def test_it_is_quick_to_start():
+def test_eval_imports_little():
     """``eval`` imports neither mechanics nor SciPy."""
     code = (
         "import sys; from polhode._cli.main import main; main(['eval', 'e1']); "

@@ -215,7 +215,7 @@ def test_definitions():
 # --- names
 
 
-def test_marks_are_composed_or_apart():
+def test_accents_are_composed_or_combining():
     for text in ("ẋ", "x\u0307"):
         assert ph.evaluate(text, ẋ=2.0) == ph.evaluate(text, {"x\u0307": 2.0}) == 2
         assert ph.formula(text).latex == r"\dot{x}"

@@ -282,7 +282,7 @@ def _turned(law, F):
 
 
 def test_gains_along_body_axes_in_a_body_whose_principal_axes_are_others():
-    """`viscous_damping` and `pd_control` act along body axes, whatever the inertia."""
+    """`viscous_damping` and `pd_control` act along body axes, for any inertia."""
     F = ph.Rotor.from_components([1, 2, 3, 4])
     body = ph.Body(1.0, BODY).moved(F).inertia
     assert not np.allclose(body.principal_frame.components, [1, 0, 0, 0])

@@ -1,4 +1,4 @@
-"""Type hints: mypy accepts the code of README and guides, and knows the types that users rely on."""
+"""Type hints: mypy accepts the code of README and guides, and infers the types of results."""
 
 import re
 import sys

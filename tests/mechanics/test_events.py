@@ -253,7 +253,7 @@ def test_across_a_break_of_a_table():
     sphere, state = moments(1, 1, 1), ph.State(IDENTITY, [0, 0, 0])
     events = [E.spin(ph.e1 ^ ph.e2, rate) for rate in (1.0, 0.25, 1.75)]
     motion = ph.simulate(sphere, state, [3.0], law, events=events)
-    # ω = t² up to 1, and then 1 + 2(t−1) − (t−1)²; whether it is 1 again at the end, at 3, depends on rounding.
+    # ω = t² up to 1, and then 1 + 2(t−1) − (t−1)²; whether it is 1 at the end, at 3, depends on rounding.
     expected = [[1.0], [0.5], [1.5, 2.5]]
     for event, times in zip(motion.events, expected, strict=True):
         np.testing.assert_allclose(event.time[: len(times)], times, rtol=0, atol=1e-9)

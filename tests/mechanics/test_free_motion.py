@@ -133,7 +133,7 @@ def test_agrees_with_steps(moments, omega):
 
 @pytest.mark.parametrize(("moments", "omega"), list(bodies()))
 def test_energy_and_momentum_stay(moments, omega):
-    """L in space and E at any time: rotor and rates have errors of a few roundings, weighted by the moments."""
+    """L in space and E at any time: errors are a few roundings, weighted by the moments."""
     motion = motion_of(moments, omega, (4, -2, 1, 2))
     times = np.concatenate([[0.0], np.geomspace(1e-3, 1e12, 60), -np.geomspace(1e-3, 1e12, 60)])
     state = motion.at(times)

@@ -175,7 +175,7 @@ def test_times_beyond_the_horizon_are_rejected():
         ValueError, match=r"at index \(1, 0, 1\): time 1e\+15 s of body \(0, 1\) is beyond 1.3e\+12"
     ):
         motions.at_each(np.reshape([1e15, 0, 1e15, 1e15], (2, 1, 2)) * np.reshape([0, 1], (2, 1, 1)))
-    # Bodies that turn more slowly are known for longer.
+    # Bodies that turn more slowly have a later horizon.
     times = np.array([[1e15, 1e9], [1e15, 1e15]])
     assert motions.at_each(times).rotor[1, 0] == motions[1, 0].at(1e15).rotor
     with pytest.raises(ValueError, match=r"time nan at index \(1, 0\) is not finite"):

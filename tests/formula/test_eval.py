@@ -301,7 +301,7 @@ WRONG_LETS = {
 @pytest.mark.parametrize("name", WRONG_LETS)
 def test_invalid_assignments_have_places(name):
     let, expected = WRONG_LETS[name]
-    # The formula stands for itself: it does not need the name.
+    # The formula does not need the name.
     done = evaluate("1", "--let", let)
     assert (done.returncode, done.stdout) == (3, "1\n")
     assert expected in done.stderr

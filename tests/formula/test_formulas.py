@@ -16,7 +16,7 @@ RNG = np.random.default_rng(7)
 GRADES = {"A": (0, 1, 2, 3), "a": (1,), "b": (1,), "c": (1,), "B": (2,), "t": (3,), "s": (0,)}
 INDICES = {0: [0], 1: [1, 2, 3], 2: [4, 5, 6], 3: [7]}
 
-# The text, the names in it, and the same by calls; J is I in the precision of the values.
+# Text, its names, and the same by method calls; J is I in the precision of the values.
 POLYNOMIAL = {
     "½(a b + b a)": ("ab", lambda a, b, J: (a * b + b * a) / 2),
     "a b - a·b - a∧b + A": ("abA", lambda a, b, A, J: a * b - a.dot(b) - a.wedge(b) + A),

@@ -157,11 +157,11 @@ def test_a_planet_passes_its_apsides_and_nodes():
     motion = ph.simulate(BALL, state, [5.25 * period], force=ph.force.central(mu), events=events)
     tolerance = 1000 * motion.certificate.error_estimate
     for event in motion.events:
-        # At time 0 it is there already.
+        # It is already there at time 0.
         np.testing.assert_allclose(event.time, 0.5 * period * np.arange(1, 11), rtol=0, atol=tolerance)
 
 
-# --- none missed, none invented
+# --- completeness
 
 
 FORMULAS = ["(R e1 ~R)·e3 - 0.3", "Ω_B·(e2e3) + 0.2", "(R e1 ~R)·e2 (R e2 ~R)·e3", "norm(Ω_S) - 1.16"]

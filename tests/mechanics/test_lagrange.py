@@ -206,7 +206,7 @@ def test_a_top_pushed_from_the_upright_sleeps(turn, w, regime):
     # The height of the centre of mass, as a part of that of the upright.
     nearly = bool(np.cos(found["tilt_max"]) >= 0.98)
     assert (nearly and found["sleeps"]) is (regime == "sleeping, nearly upright")
-    # Without weight nothing falls asleep.
+    # Without weight no top sleeps.
     assert "sleeping" not in ph.LagrangeTop(TOP, r, w, [0, 0, 0]).describe()["regime"]
 
 

@@ -121,7 +121,7 @@ def growth(inertia, state, t, torque):
 def assert_reaches(inertia, state, t, torque, R, omega):
     """Truncation is bounded by the certificate's estimate, rounding by a random walk times the growth."""
     motion = ph.simulate(inertia, state, [t], torque, method=STEPS)
-    # The last of the passes took at most two thirds of all steps.
+    # The last pass took at most two thirds of all steps.
     rounding = random_walk(motion.certificate.steps) * growth(inertia, state, t, torque)
     error = apart(motion, np.array([R]), np.array([omega]))
     assert error <= rounding + motion.certificate.error_estimate

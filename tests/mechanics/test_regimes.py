@@ -59,7 +59,7 @@ def test_descriptions_equal_those_of_the_reference_file():
             continue
         i, w = ([float(x) for x in case[key]] for key in ("inertia", "omega0"))
         found = ph.describe_free(moments(*i), w)
-        # Decimal inputs are rounded: where 1 − k is small the period feels it by 1/(1 − k).
+        # Decimal inputs are rounded: where 1 − k is small, 1/(1 − k) amplifies this.
         tolerance = 32 * EPS / min(1.0, float(info["one_minus_k"]))
         assert found["period"] == pytest.approx(float(info["period"]), rel=tolerance), case["name"]
         assert found["modulus"] == pytest.approx(float(info["k"]), rel=1e3 * tolerance), case["name"]

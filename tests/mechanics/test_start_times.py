@@ -362,7 +362,7 @@ def test_a_scene_has_a_start_time(tmp_path):
     batch = scene.run()
     for one, start in zip(batch, state, strict=True):
         alone = ph.simulate(inertias[0], start, scene.times, torque)
-        # Both by their default tolerance, 1e-10.
+        # Both have the default tolerance, 1e-10.
         assert differences(one.final, alone.final) <= 1e-9
 
 

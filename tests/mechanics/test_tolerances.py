@@ -117,6 +117,6 @@ def test_tolerances_are_met_and_estimates_are_honest(name, method):
         if motion.certificate.method == "exact":
             continue
         assert motion.certificate.error_estimate <= rtol
-        # Below 1e-11 both runs are led by the same rounding, which their difference does not show.
+        # Below 1e-11 the same rounding dominates both runs, which their difference does not show.
         floor = 0 if decade < 11 else 1e-11
         assert error <= 10 * motion.certificate.error_estimate + floor, (rtol, error)

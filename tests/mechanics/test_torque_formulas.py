@@ -118,7 +118,7 @@ def test_the_manufactured_precession_of_the_reference():
         np.testing.assert_allclose(found, expected, rtol=0, atol=16 * EPS * (1 + s * t))
 
 
-# --- what is refused, and where
+# --- rejected formulas and places
 
 
 @pytest.mark.parametrize(

@@ -297,7 +297,7 @@ def test_laws_add_up():
     together = sum(laws)
     assert len(together.laws) == len(laws)
     wheel = together.laws[list(LAWS).index("gyrostat")].arguments[0]
-    # L of the others includes the wheel where they ask for it.
+    # L includes the wheel for laws that depend on it.
     h = ph.bivector(wheel)
     separate = ph.bivector([0.0, 0, 0])
     for law in laws:

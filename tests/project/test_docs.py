@@ -40,7 +40,7 @@ def test_scenes_run(text, tmp_path):
 def test_the_pages_run_and_print_their_comments(name, tmp_path):
     for needed in ("jax", "sympy", "anywidget"):
         pytest.importorskip(needed)
-    # Pages read the examples, and write what they write here.
+    # Pages read the examples, and write their files here.
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     blocks = blocks_of(ROOT / f"docs/{name}.md")
     code = "\n".join(text for language, text in blocks if language == "python")

@@ -139,5 +139,5 @@ def test_toutatis_is_predictable_for_months(tmp_path):
         assert 0.01 < (high - low) / 3.29 < 0.03
     within_10, within_90 = (entry["time"] / 86400 for entry in motion["horizons"])
     assert 10 < within_10 < 100 < within_90 < 1000
-    # At the end its phase about L is unknown.
+    # At the end its phase about L is lost.
     assert np.degrees(motion["from_nominal"][-1]["quantiles"][2]) > 90

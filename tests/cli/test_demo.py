@@ -71,7 +71,7 @@ def test_the_demo_in_a_folder_that_is_missing(tmp_path, capsys):
     assert main.main(["demo", "-o", str(tmp_path / "absent")]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert f"there is no directory {tmp_path / 'absent'}; make it first" in captured.err
+    assert f"no such directory: {tmp_path / 'absent'}; create it first" in captured.err
 
 
 # --- examples

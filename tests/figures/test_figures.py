@@ -549,7 +549,7 @@ def test_the_command_draws_figures(scene, tmp_path):
         (["scene", "none.toml", "-o", "a.svg", "--view", "nan,2"], 1, "view is (nan, 2.0); it must be"),
         (["scene", "small.toml", "-o", "a.svg", "--view", "-30,-20", "--time", "-1"], 1, "time is -1 s"),
         (["polhode", "none.toml", "-o", "a.svg"], 3, "none.toml"),
-        (["polhode", "small.toml", "-o", "none/a.svg"], 1, "there is no directory none"),
+        (["polhode", "small.toml", "-o", "none/a.svg"], 1, "no such directory: none"),
     ],
 )
 def test_the_command_refuses(arguments, code, message, scene):

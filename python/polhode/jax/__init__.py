@@ -2,9 +2,9 @@
 
 `free` is the exact free flow, `simulate` takes steps under the laws of `polhode.jax.torque`, and `advance`
 takes steps of large ensembles, on a GPU in one kernel. All are functions of arrays with components in the
-last axis: rotors over ``(1, e2e3, e3e1, e1e2)`` from body
-axes to space, angular velocities in body axes over ``(e2e3, e3e1, e1e2)``. Unless ``jax_enable_x64`` is set,
-JAX computes in single precision, and results are float32.
+last axis: rotors over ``(1, e2e3, e3e1, e1e2)`` from body axes to space, angular velocities in body axes over
+``(e2e3, e3e1, e1e2)``. Unless ``jax_enable_x64`` is set, JAX computes in single precision, and results are
+float32.
 """
 
 from polhode.jax import torque as torque

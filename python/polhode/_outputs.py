@@ -1,6 +1,6 @@
-"""Methods that plot, show and save motions, joined to the classes of mechanics.
+"""Methods that plot, show and save motions, attached to the classes of mechanics and scenes.
 
-Classes of `_mechanics` and `_scene` do not import figures, files and the viewer; this module imports both.
+`_mechanics` and `_scene` do not import figures, files and the viewer; this module imports all of them.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def save(self: Trajectory, path: str | os.PathLike[str]) -> None:
 
 
 def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: float | None = None) -> Figure:
-    """Return a matplotlib figure for paper, of one body.
+    """Return a matplotlib figure of the motion of one body.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ def plot(self: Trajectory, kind: str = "motion", *, view: Any = None, time: floa
         conserved quantities; ``"phase"``, the phase portrait; ``"scene"``, the body and its bivectors,
         captured from the viewer in a headless browser.
     view
-        Azimuth and elevation to look from, in degrees, for kinds that have depth; None for the default.
+        Azimuth and elevation of the camera in degrees, for figures in 3-d; None for the default.
     time
-        Time of the scene in s; None for the last one.
+        Time of the figure ``"scene"`` in s; None for the last output time.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def film(
     view: Any = None,
     progress: Callable[[float], object] | None = None,
 ) -> None:
-    """Write a film of the motion of one body, whole or not at all: FILE.mp4, by ffmpeg, or FILE.gif.
+    """Write a film of the motion of one body: FILE.mp4, by ffmpeg, or FILE.gif.
 
     The frames are captured from the viewer in a headless browser, at equally spaced times from the first
     output time on.
@@ -139,7 +139,7 @@ def film(
     -----
     UserWarning
         If the body turns by more than a quarter turn between frames, so that it appears to turn at
-        another rate; with the speed up to which the film is faithful.
+        another rate; the warning gives the largest speed at which the film is faithful.
     """
     self._require_one("film")
     from polhode._figures.film import write
@@ -153,7 +153,7 @@ def view_of(self: Any, duration: float | None = None) -> Viewer:
     Parameters
     ----------
     duration
-        In s, for solutions in closed form; None for 20 turns at the initial rate.
+        Duration in s, for closed forms only; None for 20 turns at the initial rate.
     """
     return view(self, duration=duration)
 

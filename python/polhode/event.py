@@ -96,7 +96,7 @@ def formula(text: str, /, *, direction: int = 0, terminal: bool = False, **value
     The formula is checked at once: its value must be a scalar. The motion defines the names of
     `polhode.force.formula`: ``R``, ``t``, ``x``, ``v``, ``Ω_B``, ``Ω_S``, ``m`` and others; `values` are
     single multivectors, rotors, linear maps and numbers for other names. `direction` is 1 for rising values;
-    the rest as for `angle`. A FormulaError says what is not a formula or not a scalar, and where.
+    the rest as for `angle`. A FormulaError gives the place of what is not a formula or not a scalar.
     """
     return law_of_formula(lambda given: _event("formula", direction, terminal, text, given), text, values)
 

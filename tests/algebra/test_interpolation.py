@@ -18,7 +18,7 @@ def test_slerp_turns_at_a_constant_rate():
         assert (ph.slerp(start, end, t) - expected).norm() <= 8 * EPS * (1 + abs(t))
 
 
-def test_slerp_goes_the_shorter_way_whatever_the_signs():
+def test_slerp_takes_the_shorter_way_for_any_signs():
     rotors = ph.Rotor.random(50, rng=2)
     a, b = rotors[:25], rotors[25:]
     half = ph.slerp(a, b, 0.5)

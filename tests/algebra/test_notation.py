@@ -84,7 +84,7 @@ def test_formulas_read_the_text_back(value, text):
 @pytest.mark.parametrize(
     "value", [2 * e1 + 3 * e2 * e3, -e1 - I, 0.3 - 1.5e-7 * e3 * e1, 1e20 * I, 0 * e1, 3 - e1], ids=repr
 )
-def test_values_are_set_as_the_formulas_that_make_them(value):
+def test_latex_of_a_value_is_that_of_its_formula(value):
     assert value._repr_latex_() == f"${ph.formula(repr(value)).latex}$"
 
 

@@ -144,7 +144,7 @@ def test_a_missing_hypothesis_is_named(monkeypatch):
         import polhode.strategies  # noqa: F401
 
 
-def test_e3_is_untouched_by_turns_in_e12():
+def test_rotations_in_e12_leave_e3_unchanged():
     @given(ga.angles())
     def law(angle):
         R = ph.Rotor.from_plane_angle(e1 ^ e2, angle)

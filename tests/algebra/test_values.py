@@ -112,7 +112,7 @@ def test_indexing():
 )
 @pytest.mark.parametrize("grades", GRADE_SETS)
 def test_indexed_values_compute_like_others(index, grades):
-    # Whatever the memory order of the selection.
+    # For any memory order of the selection.
     eight = numbers((2, 3, 8), 20)
     eight[..., 0] += 40
     A = ph_value(eight, grades)[index]

@@ -212,7 +212,7 @@ def test_a_closed_pipe_is_not_an_error(scene):
     assert done.stderr == ""
 
 
-def test_head_gets_its_line():
+def test_output_piped_to_head():
     command = f'"{POLHODE}" run "{EXAMPLES / "symmetric-top.toml"}" | head -1'
     done = processes.run(command, shell=True)
     assert done.stdout == "Free symmetric top\n"

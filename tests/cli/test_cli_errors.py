@@ -152,7 +152,7 @@ def test_too_many_steps_are_refused_at_once(tmp_path):
 @pytest.mark.parametrize(
     ("output", "parts"),
     [
-        ("nowhere/out.nc", ["nowhere/out.nc", "there is no directory nowhere"]),
+        ("nowhere/out.nc", ["nowhere/out.nc", "no such directory: nowhere"]),
         ("folder.nc", ["folder.nc", "not a regular file"]),
         ("full.nc", ["full.nc", "not a regular file"]),
     ],

@@ -45,7 +45,7 @@ def test_the_sketch_has_the_flips(bundle, tmp_path, capsys):
     assert {len(row) for row in rows} == {72}
     signs = [1 if top == "*" else -1 for top, bottom in zip(rows[0], rows[-1], strict=True) if top != bottom]
     assert np.count_nonzero(np.diff(signs)) == 9
-    assert "sampled: 9" in printed
+    assert "9 in this run" in printed
 
 
 def test_the_demo_needs_numpy_only(bundle, tmp_path, monkeypatch, capsys):
@@ -71,7 +71,7 @@ def test_the_demo_in_a_folder_that_is_missing(tmp_path, capsys):
     assert main.main(["demo", "-o", str(tmp_path / "absent")]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert f"there is no directory {tmp_path / 'absent'}; make it first" in captured.err
+    assert f"no such directory: {tmp_path / 'absent'}; create it first" in captured.err
 
 
 # --- examples

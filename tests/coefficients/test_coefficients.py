@@ -136,7 +136,7 @@ def test_roots_of_squares_are_exact(x):
     assert isinstance(root, int | F)
 
 
-def test_elements_functions_are_exact_where_they_can_be():
+def test_functions_are_exact_where_possible():
     assert [elements.call(name, 0) for name in ("sin", "cos", "exp", "sinh", "cosh", "atan")] == [
         0,
         1,
@@ -212,7 +212,7 @@ def test_products_of_fractions_are_exact():
         assert list(z) == naive.components(naive.geometric(naive.of_components(x), naive.of_components(y)))
 
 
-def test_products_of_large_algebras_are_gathered_to_the_same_numbers(floating):
+def test_products_of_large_algebras_give_the_same_numbers(floating):
     terms, rng = signature_terms(4, 1, 0), np.random.default_rng(4)
     a, b = (rng.integers(-9, 10, (3, 32)).astype(float) for _ in range(2))
     expected = np.zeros((3, 32))

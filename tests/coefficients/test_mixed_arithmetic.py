@@ -236,7 +236,7 @@ def test_fractions_stay_exact_from_either_side():
     assert types(np.array([F(1, 2), F(1, 3)]) * e1) <= {int, F}
 
 
-def test_whole_numbers_are_exact_when_asked_to_be():
+def test_whole_numbers_are_exact_on_request():
     a = ph.vector([1, 2, 3], dtype=object)
     assert types(a) == {int}
     assert types(e1.astype(object)) == {int}

@@ -62,7 +62,7 @@ def test_batch_members_equal_single_runs(how):
             # Side by side the same steps are rounded in another order.
             apart = 64 * 4 * EPS * 10
         else:
-            # In lanes by dop853, alone by what fits best; each within its own estimate.
+            # In lanes by dop853, alone by the method of `auto`; each within its estimate.
             assert proof.method == how.get("method", "dop853")
             apart = proof.error_estimate + own.error_estimate
         assert_same(motion[k], alone, apart * largest(alone))
@@ -103,7 +103,7 @@ def test_all_shapes_broadcast():
         i, j, k = index
         state = ph.State(rotors[j, 0], rates[k], places[i, 0, 0])
         alone = ph.simulate(BODIES[j], state, T, ph.torque.heavy(C[k]))
-        # Each is within the 1e-10 that is aimed at.
+        # Each meets the tolerance 1e-10.
         assert_same(motion[index], alone, 2e-10 * largest(alone))
     one = ph.simulate([ASYMMETRIC], START, T)
     assert one.shape == (1,)
@@ -415,7 +415,7 @@ def test_progress_increases_and_its_exceptions_propagate():
 
 
 @pytest.mark.parametrize("method", ["rk4", "kahan_li8"])
-def test_control_c_stops_a_run(method):
+def test_ctrl_c_stops_a_run(method):
     program = (
         "import numpy as np, polhode as ph; print('go', flush=True)\n"
         "ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3), ph.State(ph.Rotor.identity(),"

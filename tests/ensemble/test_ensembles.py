@@ -128,7 +128,7 @@ def test_order_and_neighbours_do_not_matter():
 
 
 @pytest.mark.parametrize(("bodies", "each"), [(20_000, 1), (5_000, 4), (300, 70), (3, 9_001)])
-def test_threads_do_not_matter(monkeypatch, bodies, each):
+def test_results_do_not_depend_on_threads(monkeypatch, bodies, each):
     rng = np.random.default_rng(bodies)
     together, _ = mixed(bodies, rng)
     times = rng.uniform(-1e6, 1e6, (bodies, each))
@@ -175,7 +175,7 @@ def test_times_beyond_the_horizon_are_rejected():
         ValueError, match=r"at index \(1, 0, 1\): time 1e\+15 s of body \(0, 1\) is beyond 1.3e\+12"
     ):
         motions.at_each(np.reshape([1e15, 0, 1e15, 1e15], (2, 1, 2)) * np.reshape([0, 1], (2, 1, 1)))
-    # Bodies that turn more slowly are known for longer.
+    # Bodies that turn more slowly have a later horizon.
     times = np.array([[1e15, 1e9], [1e15, 1e15]])
     assert motions.at_each(times).rotor[1, 0] == motions[1, 0].at(1e15).rotor
     with pytest.raises(ValueError, match=r"time nan at index \(1, 0\) is not finite"):
@@ -223,10 +223,10 @@ def test_an_interrupt_stops_the_states(monkeypatch):
 def test_batch_methods_equal_those_of_single_motions():
     """Other results equal those of a single motion."""
     together, alone = mixed(40, np.random.default_rng(7))
-    told, curves, changes = together.describe(), together.polhode(5), together.derivatives(3.0)
+    facts, curves, changes = together.describe(), together.polhode(5), together.derivatives(3.0)
     for k, (motion, same) in enumerate(zip(together, alone, strict=True)):
         one = same.describe()
-        assert told["regime"][k] == motion.describe()["regime"] == one["regime"]
-        assert told["energy"][k] == one["energy"]
+        assert facts["regime"][k] == motion.describe()["regime"] == one["regime"]
+        assert facts["energy"][k] == one["energy"]
         assert np.array_equal(curves[k].components, same.polhode(5).components)
         assert np.array_equal(changes.d_rotor_d_omega[k], same.derivatives(3.0).d_rotor_d_omega)

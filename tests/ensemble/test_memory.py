@@ -80,7 +80,7 @@ def test_cgroups_v1(system):
             "cgroup__memory__job__memory.limit_in_bytes": f"{9 * GB}\n",
             "cgroup__memory__job__memory.usage_in_bytes": f"{4 * GB}\n",
             "cgroup__memory__job__memory.stat": f"inactive_file 7\ntotal_inactive_file {GB}\n",
-            # What the kernel writes for no limit.
+            # No limit, as the kernel writes it.
             "cgroup__memory__memory.limit_in_bytes": "9223372036854771712\n",
             "cgroup__memory__memory.usage_in_bytes": f"{5 * GB}\n",
         },
@@ -103,6 +103,6 @@ def test_sizes_have_three_digits(count, text):
     assert _memory.size(count) == text
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="Linux tells")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports it")
 def test_memory_of_this_machine():
     assert _memory.available() > 0

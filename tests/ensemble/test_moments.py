@@ -1,4 +1,4 @@
-"""Running moments equal those of all numbers, whatever the blocks."""
+"""Running moments equal those of all numbers, for any blocks."""
 
 import numpy as np
 import pytest
@@ -55,8 +55,8 @@ def test_nan_is_counted_apart():
     assert moments.minimum == np.nanmin(values)
     nothing = ph.Moments().add([np.nan, np.nan])
     assert nothing.missing == 2
-    for told in (nothing.mean, nothing.variance, nothing.minimum, nothing.maximum):
-        assert np.isnan(told)
+    for result in (nothing.mean, nothing.variance, nothing.minimum, nothing.maximum):
+        assert np.isnan(result)
     assert (nothing + moments).mean == moments.mean
     assert (moments + nothing).variance == moments.variance
 

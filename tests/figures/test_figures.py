@@ -479,7 +479,7 @@ def test_figure_3_shows_B_and_its_momentum():
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), np.linalg.norm(points[0]), rtol=1e-9)
 
 
-def test_figure_3_hides_what_is_behind_or_inside_the_box():
+def test_figure_3_hides_lines_behind_or_inside_the_box():
     """Rays through the box show which points of a disc it hides."""
     view, half = View(32, 20), np.array([0.3, 0.2, 0.8])
     rim = _handout._rim(0.3 * (ph.e2 ^ ph.e3) + 0.8 * (ph.e1 ^ ph.e2), 1.4)
@@ -549,7 +549,7 @@ def test_the_command_draws_figures(scene, tmp_path):
         (["scene", "none.toml", "-o", "a.svg", "--view", "nan,2"], 1, "view is (nan, 2.0); it must be"),
         (["scene", "small.toml", "-o", "a.svg", "--view", "-30,-20", "--time", "-1"], 1, "time is -1 s"),
         (["polhode", "none.toml", "-o", "a.svg"], 3, "none.toml"),
-        (["polhode", "small.toml", "-o", "none/a.svg"], 1, "there is no directory none"),
+        (["polhode", "small.toml", "-o", "none/a.svg"], 1, "no such directory: none"),
     ],
 )
 def test_the_command_refuses(arguments, code, message, scene):

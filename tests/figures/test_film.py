@@ -135,7 +135,7 @@ def test_a_stroboscopic_film_names_the_faithful_speed(rate, duration, fps):
     assert f"by up to {turns:.3g} turns between frames" in message
     speed = float(re.search(r"faithful at up to (\S+) s of motion per second of film", message)[1])
     seconds = float(re.search(r"seconds=(\S+) or more", message)[1])
-    # A quarter turn per frame; both are rounded to three digits, to the safe side.
+    # A quarter turn per frame; both are rounded to three digits, towards safety.
     assert 0.99 * np.pi / 2 < rate * speed / fps <= np.pi / 2
     assert problem(seconds) is None
     assert problem(0.98 * seconds) is not None
@@ -173,7 +173,7 @@ def test_a_stroboscopic_film_is_written_with_a_warning(tmp_path, painted):
         ),
         ({"size": 640}, ValueError, "size is 640; it must be width and height"),
         ({"view": "up"}, (ValueError, TypeError), "view"),
-        ({"path": "none/a.gif"}, OSError, "there is no directory none"),
+        ({"path": "none/a.gif"}, OSError, "no such directory: none"),
     ],
 )
 def test_invalid_films_are_refused(options, error, message, tmp_path, monkeypatch):

@@ -301,7 +301,7 @@ WRONG_LETS = {
 @pytest.mark.parametrize("name", WRONG_LETS)
 def test_invalid_assignments_have_places(name):
     let, expected = WRONG_LETS[name]
-    # The formula stands for itself: it does not need the name.
+    # The formula does not need the name.
     done = evaluate("1", "--let", let)
     assert (done.returncode, done.stdout) == (3, "1\n")
     assert expected in done.stderr
@@ -381,7 +381,7 @@ def test_any_terminal_encoding_gets_an_answer():
     assert (done.returncode, done.stdout) == (0, "e1?e2\n")
 
 
-def test_it_is_quick_to_start():
+def test_eval_imports_little():
     """``eval`` imports neither mechanics nor SciPy."""
     code = (
         "import sys; from polhode._cli.main import main; main(['eval', 'e1']); "

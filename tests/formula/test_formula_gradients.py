@@ -123,7 +123,7 @@ def test_gradients_of_arrays_of_jax_are_theirs():
     batch = ph.vector(jnp.asarray(RNG.standard_normal((4, 3))))
     mapped = jax.vmap(lambda x: f.grad("x")(x=x))(batch)
     assert np.array_equal(mapped.components, batch.components)
-    # What jax.grad makes of the formula itself is of the same form.
+    # jax.grad of the formula itself has the same form.
     direct = jax.grad(lambda x: f(x=x).components[0])(x)
     assert np.array_equal(direct.components, slope.components)
 

@@ -55,8 +55,8 @@ def test_grades_and_steps_without_values():
         ph.formula("a").grades(a=None)
 
 
-def test_values_that_it_does_not_use_change_nothing():
-    """Neither the first time nor when the call is known."""
+def test_unused_values_change_nothing():
+    """Neither in the first call nor in later ones."""
     f = ph.formula("a + 1")
     for _ in range(3):
         assert f(a=1.0, b=5.0) == 2

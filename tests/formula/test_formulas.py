@@ -16,7 +16,7 @@ RNG = np.random.default_rng(7)
 GRADES = {"A": (0, 1, 2, 3), "a": (1,), "b": (1,), "c": (1,), "B": (2,), "t": (3,), "s": (0,)}
 INDICES = {0: [0], 1: [1, 2, 3], 2: [4, 5, 6], 3: [7]}
 
-# The text, the names in it, and the same by calls; J is I in the precision of the values.
+# Text, its names, and the same by method calls; J is I in the precision of the values.
 POLYNOMIAL = {
     "½(a b + b a)": ("ab", lambda a, b, J: (a * b + b * a) / 2),
     "a b - a·b - a∧b + A": ("abA", lambda a, b, A, J: a * b - a.dot(b) - a.wedge(b) + A),
@@ -215,7 +215,7 @@ def test_definitions():
 # --- names
 
 
-def test_marks_are_composed_or_apart():
+def test_accents_are_composed_or_combining():
     for text in ("ẋ", "x\u0307"):
         assert ph.evaluate(text, ẋ=2.0) == ph.evaluate(text, {"x\u0307": 2.0}) == 2
         assert ph.formula(text).latex == r"\dot{x}"

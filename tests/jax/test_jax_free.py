@@ -84,7 +84,7 @@ def test_axes_of_a_body_that_are_not_principal():
     assert np.abs(found - states_of(motion, TIMES)).max() < 8 * EPS
 
 
-def test_where_there_is_no_motion():
+def test_motions_that_do_not_exist_are_nan():
     for moments, rotor, omega, t in (
         ([1, 0, 3], ROTOR, OMEGA, 1.0),
         (MOMENTS, 0 * ROTOR, OMEGA, 1.0),
@@ -99,22 +99,24 @@ def test_where_there_is_no_motion():
 
 
 def test_derivatives_are_those_of_the_closed_form():
-    told = motion_of(MOMENTS, ROTOR, OMEGA).derivatives(20.0)
+    exact = motion_of(MOMENTS, ROTOR, OMEGA).derivatives(20.0)
     by_moments, by_rotor, by_omega, by_time = _forward(MOMENTS, ROTOR, OMEGA, 20.0)
-    assert np.abs(by_moments - np.concatenate([told.d_rotor_d_moments, told.d_omega_d_moments])).max() < 1e-13
-    assert np.abs(by_omega - np.concatenate([told.d_rotor_d_omega, told.d_omega_d_omega])).max() < 1e-13
-    assert np.abs(by_time - np.concatenate([told.d_rotor_dt, told.d_omega_dt])).max() < 1e-14
+    assert (
+        np.abs(by_moments - np.concatenate([exact.d_rotor_d_moments, exact.d_omega_d_moments])).max() < 1e-13
+    )
+    assert np.abs(by_omega - np.concatenate([exact.d_rotor_d_omega, exact.d_omega_d_omega])).max() < 1e-13
+    assert np.abs(by_time - np.concatenate([exact.d_rotor_dt, exact.d_omega_dt])).max() < 1e-14
     # exp(−½ε) R: the tangent −½ ε R of the start.
     start = ph.Rotor.from_components(ROTOR)
     for k, epsilon in enumerate(np.eye(3)):
         tangent = (-0.5 * (ph.bivector(epsilon) * start)).components
-        assert np.abs(by_rotor[:4] @ tangent - told.d_rotor_d_attitude[:, k]).max() < 8 * EPS
+        assert np.abs(by_rotor[:4] @ tangent - exact.d_rotor_d_attitude[:, k]).max() < 8 * EPS
     assert np.abs(by_rotor @ ROTOR).max() < 8 * EPS  # nothing along the rotor
     assert np.array_equal(by_rotor[4:], np.zeros((3, 4)))
 
 
 @pytest.mark.parametrize("scale", [1.0, 3.0])
-def test_they_are_slopes_off_the_unit_sphere_too(scale):
+def test_derivatives_hold_for_rotors_of_any_norm(scale):
     at = [MOMENTS, scale * ROTOR, OMEGA, np.array(20.0)]
     for k, slope in enumerate(_forward(*at)):
         for j, unit in enumerate(np.eye(at[k].size).reshape(-1, *at[k].shape)):
@@ -149,7 +151,7 @@ def test_batches_of_gradients():
     assert np.allclose(found, whole, rtol=1e-13, atol=1e-11)
 
 
-def test_second_derivatives_say_what_to_do():
+def test_second_derivatives_name_the_remedy():
     with pytest.raises(NotImplementedError, match='method="jax"'):
         jax.hessian(lambda t: seven(MOMENTS, ROTOR, OMEGA, t)[0])(1.0)
 

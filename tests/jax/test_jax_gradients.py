@@ -1,4 +1,4 @@
-"""Derivatives through whole motions, by whatever is an array; where formulas are singular too."""
+"""Derivatives through whole motions, by every array argument; where formulas are singular too."""
 
 import numpy as np
 import pytest
@@ -92,7 +92,7 @@ def test_gradients_in_reverse_are_slopes():
     assert abs(by_g - (value(at[0], at[1] + h) - value(at[0], at[1] - h)) / (2 * h)) < 1e-8
 
 
-def test_a_function_may_close_over_what_is_differentiated():
+def test_a_function_may_close_over_traced_values():
     def loss(k):
         spring = ph.jax.simulate(
             [1.5, 2.0, 2.5], ROTOR, OMEGA, [TIME], lambda t, R, w: -k * w, "rk4", steps=4
@@ -123,6 +123,6 @@ def test_times_have_derivatives():
 
     slope = jax.jacfwd(end)(jnp.asarray(TIME))
     inertia = ph.Inertia.from_principal_moments(1.5, 2, 2.5)
-    told = ph.FreeMotion(inertia, ph.Rotor.from_components(ROTOR), OMEGA).derivatives(TIME)
+    exact = ph.FreeMotion(inertia, ph.Rotor.from_components(ROTOR), OMEGA).derivatives(TIME)
     # The method's own slope differs by its error, of order 4 in steps of 0.04.
-    assert np.abs(slope - np.concatenate([told.d_rotor_dt, told.d_omega_dt])).max() < 1e-6
+    assert np.abs(slope - np.concatenate([exact.d_rotor_dt, exact.d_omega_dt])).max() < 1e-6

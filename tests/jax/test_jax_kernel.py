@@ -1,4 +1,4 @@
-"""The kernel with the loop over time within: the steps of `simulate`, in blocks of bodies."""
+"""The kernel of `advance`: the steps of `simulate`, in blocks of bodies."""
 
 import numpy as np
 import pytest

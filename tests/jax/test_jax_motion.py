@@ -63,7 +63,7 @@ def apart(found, expected):
 @pytest.mark.parametrize("name", [*ATTITUDE, *RATE])
 def test_torques_are_those_of_the_laws(name):
     law = {**ATTITUDE, **RATE}[name]
-    # Nothing but wheels leaves the whole turn to Euler's equations: one tiny step tells the torque.
+    # Nothing but wheels leaves the whole turn to Euler's equations: one tiny step gives the torque.
     h = 2.0**-20
     state = ph.State(R0, OMEGA)
     torque = law.at(INERTIA, state)
@@ -117,7 +117,7 @@ def test_times_on_both_sides_of_the_start():
         ),
     ],
 )
-def test_a_motion_starts_at_its_time(method, name):
+def test_a_motion_starts_at_the_time_of_the_state(method, name):
     law, state = ATTITUDE[name], ph.State(R0, OMEGA, time=0.5)
     expected = ph.simulate(INERTIA, state, TIMES, law, method=method, step=STEP)
     found = ph.jax.simulate(INERTIA, R0, OMEGA, TIMES, law, method, step=STEP, start_time=0.5)
@@ -134,7 +134,7 @@ def test_a_motion_starts_at_its_time(method, name):
         assert np.abs(a - b).max() < 4 * COUNT * EPS
 
 
-def test_a_motion_goes_on_where_it_stopped():
+def test_a_motion_can_be_continued():
     law = ATTITUDE["formula"]
     whole = ph.jax.simulate(INERTIA, R0, OMEGA, [1.0, 2.0], law, step=STEP)
     start = whole[0][0], whole[1][0]

@@ -254,7 +254,7 @@ def test_points_against_their_sums():
 
 
 def test_points_far_from_the_origin_lose_no_digits():
-    """At 2²⁰ m the coordinates here are still exact, and so must the sums be."""
+    """At 2²⁰ m these coordinates are exact, and the sums must be."""
     m, x = points()
     x = np.round(x * 2**20) / 2**20
     far = ph.Inertia.from_points(m, x + 2.0**20)

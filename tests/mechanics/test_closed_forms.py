@@ -47,7 +47,7 @@ def test_a_torque_constant_in_space_adds_to_L():
 
 
 def test_a_torque_constant_in_a_sphere_adds_to_its_rate():
-    """I(Ω_B') = N: a sphere's Ω_B grows evenly."""
+    """I(Ω_B') = N: Ω_B of a sphere grows linearly."""
     t, N = np.linspace(-5, 5, 21), np.array([0.3, -0.2, 0.1])
     motion = ph.simulate(moments(2, 2, 2), START, t, ph.torque.constant_body(N), step=1 / 64)
     expected = START.omega_body.components + np.outer(t, N) / 2

@@ -24,7 +24,7 @@ def test_free_motion_conserves_to_rounding(method):
     assert np.abs(motion.rotor.norm() - 1).max() <= 2 * EPS
     L = motion.momentum_space
     size = START.omega_body.components * [1, 2, 3]
-    # Of the result's own rounding a few ulps, of 1e5 steps' nothing: each restores it.
+    # A few ulps for the result; the 1e5 steps add nothing, because each restores it.
     assert np.abs(L.norm() / np.linalg.norm(size) - 1).max() <= 4 * EPS
     drift = np.abs(motion.energy / motion.energy[0] - 1)
     early, late = drift[:100].max(), drift[-100:].max()

@@ -7,7 +7,7 @@ import polhode as ph
 from extended_precision import Case, final_states
 from motions import moments
 
-# A right answer is within ten times the larger of what was asked for and of what is reported.
+# Bound of the error: ten times the larger one of tolerance and estimate.
 MARGIN = 10
 TOLERANCES = [None, 1e-3, 1e-6, 1e-9, 1e-12]
 COUNT = 12
@@ -29,7 +29,7 @@ def attitude(rng):
 
 
 def top(rng):
-    """Chaotic, most of them."""
+    """Mostly chaotic motions."""
     return {"heavy": drawn(rng, 2)}, rng.uniform(5, 100)
 
 
@@ -151,7 +151,7 @@ def test_a_motion_dominated_by_rounding_is_rejected():
 
 
 def test_chaotic_motion_is_rejected_or_reported():
-    """The default call returned an error of 3e-5 as 7e-11."""
+    """The default call reported an error of 3e-5 as 7e-11."""
     state, law = ph.State(ONE, [3, 2, -1]), ph.torque.heavy([-0.5, 2, 1.5])
     with pytest.raises(ValueError, match=r"amplifies rounding"):
         ph.simulate(ASYMMETRIC, state, [100.0], law)
@@ -282,7 +282,7 @@ def test_max_steps_is_enforced():
 
 @pytest.mark.parametrize("many", [False, True])
 def test_stiff_damping_uses_the_midpoint_rule(many):
-    """With d/i ≫ 1/s the rate is that at which the torque of gravity and the damping balance: ω = N/d."""
+    """With d/i ≫ 1/s gravity and damping balance: ω = N/d."""
     d = 1e5
     law = ph.torque.heavy([0, 1, 0]) + ph.torque.viscous_damping(d)
     omega = [[1, 2, 3], [3, 2, 1]] if many else [1, 2, 3]

@@ -51,7 +51,7 @@ def test_repr_of_events():
 
 
 def test_events_count_evaluations_but_not_steps():
-    """Looking costs evaluations; steps are those of the motion."""
+    """Sampling needs evaluations; steps are those of the motion."""
     given = {"times": [10.0], "torque": ph.torque.heavy([0.5, 0.25, 1.0]), "step": 0.125}
     plain = ph.simulate(ASYMMETRIC, START, **given)
     calls = []
@@ -63,7 +63,7 @@ def test_events_count_evaluations_but_not_steps():
     watched = ph.simulate(ASYMMETRIC, START, events=E.function(look), **given)
     assert watched.certificate.steps == plain.certificate.steps == 80
     each = plain.certificate.evaluations / 80
-    # All looks but those at the start and at the ends of the 80 steps are steps of their own.
+    # Samples other than those at the start and the ends of the 80 steps are separate steps.
     assert watched.certificate.evaluations == plain.certificate.evaluations + each * (len(calls) - 81)
     assert watched.rotor[0] == plain.rotor[0]
 

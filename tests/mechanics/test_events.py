@@ -92,7 +92,7 @@ def test_a_lagrange_top_turns_every_half_nutation():
 
 
 def test_two_close_crossings_of_an_angle_are_found():
-    """Two crossings as close as √ε: 0.2 rad apart no look would see them."""
+    """Two crossings as close as √ε, which samples 0.2 rad apart miss."""
     inertia, c = moments(1, 1, 0.5), [0, 0, 2.0]
     state = ph.State(ph.Rotor.from_components([4, 2, 1, 0]), [0.25, -0.5, 6])
     top = ph.LagrangeTop(inertia, state.rotor, state.omega_body, c).describe()
@@ -127,7 +127,7 @@ def test_a_damped_sphere_reaches_a_rate_at_its_time():
 @pytest.mark.parametrize("torque", [None, ph.torque.constant_space([0.5, 0, 0])], ids=["exact", "stepped"])
 @pytest.mark.parametrize("below", [1e-9, 1e-3, 1.0, 5.0])
 def test_a_ball_passes_a_height_twice(torque, below):
-    """However little below its top, and though it does not turn: at ``v/g ± √(2d/g)``."""
+    """At any distance below its top, without rotation: at ``v/g ± √(2d/g)``."""
     top = 10.0**2 / (2 * G)
     motion = ph.simulate(
         BALL,
@@ -157,11 +157,11 @@ def test_a_planet_passes_its_apsides_and_nodes():
     motion = ph.simulate(BALL, state, [5.25 * period], force=ph.force.central(mu), events=events)
     tolerance = 1000 * motion.certificate.error_estimate
     for event in motion.events:
-        # At time 0 it is there already.
+        # It is already there at time 0.
         np.testing.assert_allclose(event.time, 0.5 * period * np.arange(1, 11), rtol=0, atol=tolerance)
 
 
-# --- none missed, none invented
+# --- completeness
 
 
 FORMULAS = ["(R e1 ~R)·e3 - 0.3", "Ω_B·(e2e3) + 0.2", "(R e1 ~R)·e2 (R e2 ~R)·e3", "norm(Ω_S) - 1.16"]
@@ -177,7 +177,7 @@ FORMULAS = ["(R e1 ~R)·e3 - 0.3", "Ω_B·(e2e3) + 0.2", "(R e1 ~R)·e2 (R e2 ~R
     ],
 )
 def test_events_agree_with_dense_sampling(method, torque, step):
-    """Each change of sign between 40,000 looks is an event there, and each event is one."""
+    """Changes of sign between 40,000 samples are the events."""
     times = [-15.0, 25.0]
     events = [E.formula(text) for text in FORMULAS]
     motion = ph.simulate(ASYMMETRIC, START, times, torque, method=method, step=step, events=events)
@@ -253,7 +253,7 @@ def test_across_a_break_of_a_table():
     sphere, state = moments(1, 1, 1), ph.State(IDENTITY, [0, 0, 0])
     events = [E.spin(ph.e1 ^ ph.e2, rate) for rate in (1.0, 0.25, 1.75)]
     motion = ph.simulate(sphere, state, [3.0], law, events=events)
-    # ω = t² up to 1, and then 1 + 2(t−1) − (t−1)²; whether it is 1 again at the end, at 3, rounding says.
+    # ω = t² up to 1, and then 1 + 2(t−1) − (t−1)²; whether it is 1 at the end, at 3, depends on rounding.
     expected = [[1.0], [0.5], [1.5, 2.5]]
     for event, times in zip(motion.events, expected, strict=True):
         np.testing.assert_allclose(event.time[: len(times)], times, rtol=0, atol=1e-9)

@@ -115,7 +115,7 @@ def reference_cases():
 
 @pytest.mark.parametrize("case", reference_cases())
 def test_derivatives_agree_with_differences(case):
-    """Of the free motion itself: in time, attitude, angular velocity, and in moments that a body can have."""
+    """Of the free motion: by time, attitude, angular velocity and moments."""
     i, w, c = (np.array([float(x) for x in case[key]]) for key in ("inertia", "omega0", "R0"))
     spin, rotor = np.linalg.norm(w) or 1.0, ph.Rotor.from_components(c)
     t, unit = 4.0 / spin, units(i, w)
@@ -152,7 +152,7 @@ LONG = np.array([0.0, 3.0, -50.0, 1e4, 1e6, 1e12])
 
 @every_case
 def test_scaling_laws(i, w):
-    """Faster is the same in less time; heavier is the same; a later start is the same later."""
+    """The motion scales with rates and times, does not depend on mass, and shifts with the start."""
     motion = motion_of(i, w)
     times = LONG if "separatrix" not in motion.describe()["regime"] and w[1] != 1.0 else LONG[:3]
     d, full, state = motion.derivatives(times), jacobian(motion, times), motion.at(times)
@@ -191,8 +191,8 @@ def test_conservation_laws(i, w):
 
 
 @every_case
-def test_derivatives_follow_one_another(i, w):
-    """From 0 to t + τ is from 0 to t, and from there to t + τ: the chain rule, also across many periods."""
+def test_derivatives_obey_the_chain_rule(i, w):
+    """From 0 to t, then to t + τ: the chain rule, also across many periods."""
     motion, part = motion_of(i, w), 1.75
     for t in (2.0, -40.0, 1e6):
         if t == 1e6 and ("separatrix" in motion.describe()["regime"] or w[1] == 1.0):

@@ -66,7 +66,7 @@ def test_repr_of_forces():
     ids=["exact", "splitting", "dop853"],
 )
 def test_under_a_constant_force_the_centre_is_in_closed_form(torque):
-    """``x + v t + ½ a t²`` to its rounding, at any time and whatever turns the body."""
+    """``x + v t + ½ a t²`` to rounding, at any time and under any torque."""
     x, v, force = [1.0, -2.0, 0.5], [0.1, 3.0, -7.0], [0.3, 0.0, -19.62]
     times = np.array([-5.0, 0.0, 0.1, 20.0] if torque else [-1e6, -0.3, 0.0, 1e3, 12345678.9])
     motion = ph.simulate(BODY, start(x, v), times, torque, force)
@@ -90,7 +90,7 @@ def test_constant_forces_add_up_and_a_vector_is_one():
 
 
 def close(motion, position, velocity, factor=1.0):
-    """Within the certificate's estimate, relative to the farthest and the swiftest."""
+    """Within the certificate's estimate, relative to the largest distance and speed."""
     estimate = factor * motion.certificate.error_estimate
     x, v = np.array(position), np.array(velocity)
     assert np.abs(motion.position.components - x).max() <= estimate * np.linalg.norm(x, axis=1).max()
@@ -175,7 +175,7 @@ def test_a_thruster_that_turns_with_the_body():
     close(other, position, velocity)
 
 
-def test_a_thrust_beside_the_centre_of_mass_turns_the_body():
+def test_an_off_centre_thrust_turns_the_body():
     at, push = [0.5, -0.25, 1.0], ph.vector([0.25, 0.5, -0.125])
     body = ph.Body(M, BODY.inertia, center_of_mass=[0.125, 0, 0.25])
     motion = ph.simulate(body, start(), [4.0], force=F.thrust(push, at=at))

@@ -63,7 +63,7 @@ def test_empty_batches():
 
 
 @pytest.mark.parametrize(("bodies", "times"), [(20_000, 1), (2_500, 5), (300, 70), (3, 9_001)])
-def test_threads_do_not_matter(monkeypatch, bodies, times):
+def test_results_do_not_depend_on_threads(monkeypatch, bodies, times):
     rng = np.random.default_rng(bodies)
     inertias = [moments(1, 1 + x, 1.5 + x / 2) for x in rng.uniform(0, 1, 7)]
     inertias = [inertias[k % 7] for k in range(bodies)]
@@ -85,12 +85,12 @@ def test_threads_do_not_matter(monkeypatch, bodies, times):
 
 def test_descriptions_are_arrays():
     motions = ph.FreeMotion([BODIES, BODIES], R0, OMEGAS)
-    told = motions.describe()
+    facts = motions.describe()
     for index in np.ndindex(2, 4):
         for name, value in motions[index].describe().items():
-            found = told[name][index]
+            found = facts[name][index]
             assert np.isnan(found) if value is None else found == value, name
-    assert list(told["regime"][0]) == [
+    assert list(facts["regime"][0]) == [
         "short-axis mode",
         "symmetric top, regular precession",
         "steady rotation about a fixed axis",

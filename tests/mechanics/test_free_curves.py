@@ -19,19 +19,19 @@ STEADY = [((1, 2, 3), [0, 0, -2.0]), ((2, 2, 2), [1.0, 2, 3]), ((1, 2, 3), [0, 0
 @pytest.mark.parametrize(("inertia", "omega"), TUMBLING.values(), ids=TUMBLING.keys())
 def test_the_polhode_is_closed_and_conserves(inertia, omega):
     motion = ph.FreeMotion(inertia, R0, omega)
-    told, curve = motion.describe(), motion.polhode(65)
+    facts, curve = motion.describe(), motion.polhode(65)
     assert curve.shape == (65,)
     assert curve[0] == curve[64]
-    times = np.arange(65) * (told["period"] / 64)
+    times = np.arange(65) * (facts["period"] / 64)
     # A time is rounded, and the spin changes by as much as it turns in it.
     exact = motion.at(times[:-1]).omega_body
-    assert np.abs((curve[:64] - exact).norm()).max() <= 1e2 * EPS * (1 + told["period"])
+    assert np.abs((curve[:64] - exact).norm()).max() <= 1e2 * EPS * (1 + facts["period"])
     momentum = inertia(curve)
     # |a·b| is −a·b of bivectors.
-    np.testing.assert_allclose(-curve.dot(momentum)._data[..., 0], 2 * told["energy"], rtol=64 * EPS)
-    np.testing.assert_allclose(momentum.norm(), told["angular_momentum"], rtol=64 * EPS)
+    np.testing.assert_allclose(-curve.dot(momentum)._data[..., 0], 2 * facts["energy"], rtol=64 * EPS)
+    np.testing.assert_allclose(momentum.norm(), facts["angular_momentum"], rtol=64 * EPS)
     # Half way round the spin about the middle axis is turned over.
-    if told["flip_time"] is not None:
+    if facts["flip_time"] is not None:
         F = inertia.principal_frame
         middle = (~F)(curve).components[:, 1]
         np.testing.assert_allclose(middle[:33], -middle[32:], atol=1e-6)
@@ -41,16 +41,16 @@ def test_the_polhode_is_closed_and_conserves(inertia, omega):
 def test_the_herpolhode_lies_in_the_invariable_plane(inertia, omega):
     """Poinsot: ``Ω_S·L = −2E``."""
     motion = ph.FreeMotion(inertia, R0, omega)
-    told, curve = motion.describe(), motion.herpolhode(101, 3.5)
+    facts, curve = motion.describe(), motion.herpolhode(101, 3.5)
     L = R0(inertia(ph.bivector(omega)))
-    np.testing.assert_allclose(curve.dot(L)._data[..., 0], -2 * told["energy"], rtol=64 * EPS)
-    state = motion.at(3.5 * told["period"])
-    assert (curve[100] - state.rotor(state.omega_body)).norm() <= 1e2 * EPS * (1 + told["period"])
+    np.testing.assert_allclose(curve.dot(L)._data[..., 0], -2 * facts["energy"], rtol=64 * EPS)
+    state = motion.at(3.5 * facts["period"])
+    assert (curve[100] - state.rotor(state.omega_body)).norm() <= 1e2 * EPS * (1 + facts["period"])
     # After a period it is turned about L, by the phase.
-    turn = (-0.5 * told["phase_per_period"] * L / L.norm()).exp()
+    turn = (-0.5 * facts["phase_per_period"] * L / L.norm()).exp()
     later = motion.herpolhode(2)
     turned = turn * later[0] * ~turn
-    assert (turned - later[1]).norm() <= 1e2 * EPS * (1 + told["period"])
+    assert (turned - later[1]).norm() <= 1e2 * EPS * (1 + facts["period"])
 
 
 @pytest.mark.parametrize(("i", "omega"), STEADY)

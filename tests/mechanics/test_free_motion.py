@@ -86,13 +86,13 @@ def test_reference_periods(case):
     info = case.get("info", {})
     if "period" not in info:
         pytest.skip("no periods for this kind of motion")
-    told = motion_of(numbers(case["inertia"]), numbers(case["omega0"])).describe()
+    facts = motion_of(numbers(case["inertia"]), numbers(case["omega0"])).describe()
     decimal = 1e-13 if "001" in case["name"] else 0.0
-    assert told["period"] == pytest.approx(float(info["period"]), rel=8 * EPS + decimal)
-    assert told["precession_rate"] == pytest.approx(
+    assert facts["period"] == pytest.approx(float(info["period"]), rel=8 * EPS + decimal)
+    assert facts["precession_rate"] == pytest.approx(
         float(info["mean_precession_rate"]), rel=8 * EPS + decimal
     )
-    assert told["modulus"] == pytest.approx(float(info["k"]), rel=8 * EPS + decimal)
+    assert facts["modulus"] == pytest.approx(float(info["k"]), rel=8 * EPS + decimal)
 
 
 def bodies():
@@ -121,7 +121,7 @@ def bodies():
 
 @pytest.mark.parametrize(("moments", "omega"), list(bodies()))
 def test_agrees_with_steps(moments, omega):
-    """Steps of order 8 to t = 6, forwards and backwards: their own error there is below 1e-12."""
+    """Steps of order 8 to t = 6, forwards and backwards: their error there is below 1e-12."""
     inertia = ph.Inertia.from_principal_moments(*moments)
     state = ph.State(ph.Rotor.from_components([4, -2, 1, 2]), ph.bivector(omega))
     times = np.array([-6.0, -0.7, 0.0, 1.3, 6.0])
@@ -133,7 +133,7 @@ def test_agrees_with_steps(moments, omega):
 
 @pytest.mark.parametrize(("moments", "omega"), list(bodies()))
 def test_energy_and_momentum_stay(moments, omega):
-    """L in space and E at any time: rotor and rates err by a few roundings, which moments weigh."""
+    """L in space and E at any time: errors are a few roundings, weighted by the moments."""
     motion = motion_of(moments, omega, (4, -2, 1, 2))
     times = np.concatenate([[0.0], np.geomspace(1e-3, 1e12, 60), -np.geomspace(1e-3, 1e12, 60)])
     state = motion.at(times)
@@ -225,8 +225,8 @@ def test_the_spin_tends_to_the_middle_axis_on_the_separatrix():
 
 @pytest.mark.parametrize("tiny", [1e-13, 1e-16, 1e-20, 1e-60, 1e-140])
 @pytest.mark.parametrize("pattern", [(1, 0, 0), (0, 0, 1), (1, 0, 1)])
-def test_flips_come_however_small_the_disturbance(tiny, pattern):
-    """Half a period away the spin has reversed, however close to the separatrix."""
+def test_any_disturbance_causes_flips(tiny, pattern):
+    """Half a period away the spin has reversed, at any distance from the separatrix."""
     motion = motion_of((1, 2, 3), [p * tiny + m for p, m in zip(pattern, (0, 1, 0), strict=True)])
     period = motion.describe()["period"]
     # K = ln(4/k') to the accuracy of k'², and k' is proportional to the disturbance: λ is 1/√3.
@@ -237,7 +237,7 @@ def test_flips_come_however_small_the_disturbance(tiny, pattern):
 
 def test_the_phase_is_known_up_to_the_horizon():
     motion = motion_of((1, 1, 1.5), (0.1, 1, 0.2))
-    # |L| is an integral of the motion at 1e16 as at 0; at 1e30 nobody knows the phase.
+    # |L| is an integral of the motion at 1e16 as at 0; at 1e30 the phase is lost.
     assert np.isfinite(motion.at(1e16).rotor.components).all()
     for t in (1e30, -1e300):
         with pytest.raises(ValueError, match=r"times\[0\] = .* is beyond"):
@@ -265,7 +265,7 @@ def test_batches_of_times():
         assert batch.rotor[index] == motion.at(times[index]).rotor
         assert batch.omega_body[index] == motion.at(times[index]).omega_body
     assert motion.at(np.zeros(0)).rotor.shape == (0,)
-    # More than go between two looks for Ctrl-C, shared by threads.
+    # More states than between two checks for Ctrl-C, over all threads.
     many = np.linspace(-1e6, 1e6, 600_000)
     batch = motion.at(many)
     for index in (0, 1, 299_999, 524_287, 524_288, 599_999):

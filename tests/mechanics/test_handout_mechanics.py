@@ -1,4 +1,4 @@
-"""Sections 3 and 4 of the handout, as far as the algebra alone can say them, by their numbers."""
+"""Sections 3 and 4 of the handout, as far as the algebra alone expresses them, by number."""
 
 from itertools import product
 

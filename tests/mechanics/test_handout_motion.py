@@ -73,7 +73,7 @@ TORQUES = pytest.mark.parametrize("torque", [None, GRAVITY], ids=["free", "heavy
 
 
 class Moment:
-    """What there is at one moment of a motion, with its rates."""
+    """Quantities at one time of a motion, with their rates."""
 
     def __init__(self, torque=None, t=1.5, **options):
         motion = moving(around(t), torque, **options)

@@ -1,4 +1,4 @@
-"""Motions at the edges: strong damping, springs past half a turn, wheels at rest, chaos, close times."""
+"""Difficult motions: strong damping, springs past half a turn, wheels at rest, chaos, close times."""
 
 from __future__ import annotations
 

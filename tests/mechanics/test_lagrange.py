@@ -1,4 +1,4 @@
-"""Lagrange's heavy top: reference states, its laws at any time, limits, and what it tells of itself."""
+"""Lagrange's heavy top: reference states, conservation at any time, limits, description."""
 
 import json
 
@@ -78,7 +78,7 @@ def test_description_of_reference(case):
 
 @kinds
 def test_agrees_with_steps(kind):
-    """Steps of order 8 to t = 6 either way; asked for 1e-11, which they reach as the bound here says."""
+    """Steps of order 8 to t = 6 either way, with a tolerance of 1e-11."""
     i, c, r, w = kind
     times = np.array([-6.0, -0.7, 0.0, 1.3, 6.0])
     exact = top_of(*kind).at(times)
@@ -142,7 +142,7 @@ def test_regime_names(r, w, regime):
 
 
 def test_regular_precession():
-    """With u = 3/5 and rate ν the weight asks c = L3 ν − i1 ν² u; the axis turns at ν for ever."""
+    """With u = 3/5 and rate ν, c = L3 ν − i1 ν² u: the axis precesses steadily at ν."""
     r, rate = rotor(2, 1, 0, 0), 0.5
     spin = (1 + rate**2 * 0.6) / rate / 0.5
     omega = ((~r)(ph.e3) * rate).components + np.array([0, 0, spin - 0.6 * rate])
@@ -167,7 +167,7 @@ def test_a_fast_gyroscope_precesses_at_c_over_momentum():
 
 
 def test_the_separatrix_is_homoclinic():
-    """Hanging pendulum thrown at the critical rate: it approaches the upright, as sin ½θ = 1/cosh λt."""
+    """Hanging pendulum started at the critical rate: it approaches the upright, sin ½θ = 1/cosh λt."""
     top = top_of((1, 1, 0.5), (0, 0, 1), (0, 1, 0, 0), (2, 0, 0))
     for t in (-500.0, -40.0, -3.0, 0.0, 1.0, 5.0, 40.0, 1e9):
         state = top.at(t)
@@ -180,7 +180,7 @@ def test_the_separatrix_is_homoclinic():
 
 @pytest.mark.parametrize(("spin", "stable"), [(3.9, False), (4.1, True), (-4.1, True)])
 def test_sleeping(spin, stable):
-    """2 √(c i1)/i3 = 4 here: below it a disturbance of 1e-6 grows to a fall, above it stays."""
+    """2 √(c i1)/i3 = 4 here: below it a disturbance of 1e-6 grows, above it stays small."""
     top = top_of((1, 1, 0.5), (0, 0, 1), (1, 5e-7, 0, 0), (0, 0, spin))
     found = top.describe()
     assert found["critical_spin"] == 4.0
@@ -206,7 +206,7 @@ def test_a_top_pushed_from_the_upright_sleeps(turn, w, regime):
     # The height of the centre of mass, as a part of that of the upright.
     nearly = bool(np.cos(found["tilt_max"]) >= 0.98)
     assert (nearly and found["sleeps"]) is (regime == "sleeping, nearly upright")
-    # Without weight nothing falls asleep.
+    # Without weight no top sleeps.
     assert "sleeping" not in ph.LagrangeTop(TOP, r, w, [0, 0, 0]).describe()["regime"]
 
 
@@ -246,7 +246,7 @@ TILTS = [5e-324, 1e-300, 1e-160, 1e-60, 1e-40, 1e-30, 1e-21, 1e-12, 1e-8]
 @pytest.mark.parametrize("tilt", TILTS)
 @pytest.mark.parametrize("spin", [0.0, 3.0, 8.0])
 def test_beside_the_vertical(tilt, spin):
-    """Without spin the tilt δ goes as δ cos t where it hangs, and upright as δ cosh t."""
+    """Without spin the tilt is δ cos t hanging, and δ cosh t upright."""
     times = [0.0, 1.0, 2.0, 5.0]
     for r in ((0, 1, 0, tilt), (1, tilt, 0, 0)):
         motion = ph.simulate(TOP, ph.State(rotor(*r), [0, 0, spin]), times, ph.torque.heavy([0, 0, 1]))

@@ -121,7 +121,7 @@ def growth(inertia, state, t, torque):
 def assert_reaches(inertia, state, t, torque, R, omega):
     """Truncation is bounded by the certificate's estimate, rounding by a random walk times the growth."""
     motion = ph.simulate(inertia, state, [t], torque, method=STEPS)
-    # The last of the passes took at most two thirds of all steps.
+    # The last pass took at most two thirds of all steps.
     rounding = random_walk(motion.certificate.steps) * growth(inertia, state, t, torque)
     error = apart(motion, np.array([R]), np.array([omega]))
     assert error <= rounding + motion.certificate.error_estimate
@@ -157,7 +157,7 @@ def test_the_reference_file(case, result):
 
 
 def test_a_motion_that_amplifies_rounding_is_rejected_or_accurate():
-    """Along a separatrix 1e-12 away, t = 100 magnifies by 1e11: an error that says so, or digits."""
+    """Along a separatrix 1e-12 away, t = 100 magnifies by 1e11: an error, or an accurate result."""
     inertia = moments(1, 2, 2.25)
     state = ph.State(ph.Rotor.identity(), [0.375, 0.5, 0.5 + 2.0**-40])
     with pytest.raises(ValueError, match=r"rtol = 1\.0e-10 was not reached.*shorter time"):
@@ -170,7 +170,7 @@ def test_a_motion_that_amplifies_rounding_is_rejected_or_accurate():
 
 @pytest.mark.parametrize("case", CASES[:3], ids=[case[0] for case in CASES[:3]])
 def test_the_error_estimate_is_no_smaller_than_the_error(case):
-    """It may be too cautious; where rounding rules it must not claim less than there is."""
+    """It may be too large; where rounding dominates it must not be too small."""
     _, i, torque, omega0, rotor, t, R, omega = case
     state = ph.State(ph.Rotor.from_components(rotor), omega0)
     motion = ph.simulate(moments(*i), state, [t], torque, method=STEPS)
@@ -212,7 +212,7 @@ def test_every_method_has_its_order(name, method):
     assert abs(slope - order_of(method, name)) < margin, (slope, errors)
 
 
-def test_a_method_that_is_not_fit_says_so():
+def test_a_method_that_does_not_fit_raises():
     with pytest.raises(ValueError, match=r"rkn6 .* damping; use kahan_li8"):
         ph.simulate(ASYMMETRIC, START, [1.0], ph.torque.damping(1), method="rkn6")
     with pytest.raises(ValueError, match=r"step of 4.* s.*use steps of at most"):
@@ -222,7 +222,7 @@ def test_a_method_that_is_not_fit_says_so():
 @pytest.mark.parametrize("method", SYMMETRIC)
 @pytest.mark.parametrize("name", ["free", "heavy", "Lagrange"])
 def test_a_run_backward_returns(name, method):
-    """In steps of the same length, to what the motion makes of two runs' rounding."""
+    """In steps of the same length, to the amplified rounding of both runs."""
     inertia, state, torque, t = SLOPES[name]
     there = ph.simulate(inertia, state, [t], torque, method=method, step=t / 64)
     end = ph.State(there.rotor[0], there.omega_body[0])

@@ -1,4 +1,4 @@
-"""What a free motion is: its regime, flips, periods and rates, for bodies that are known."""
+"""Descriptions of free motions: regime, flips, periods and rates of known bodies."""
 
 import json
 
@@ -51,7 +51,7 @@ def test_toutatis():
     assert found["precession_period"] == pytest.approx(7.34971262077109, rel=32 * EPS)
 
 
-def test_the_reference_file_describes_alike():
+def test_descriptions_equal_those_of_the_reference_file():
     seen = 0
     for case in json.loads(REFERENCE.read_text())["free_top"]:
         info = case.get("info", {})
@@ -59,7 +59,7 @@ def test_the_reference_file_describes_alike():
             continue
         i, w = ([float(x) for x in case[key]] for key in ("inertia", "omega0"))
         found = ph.describe_free(moments(*i), w)
-        # Decimal inputs are rounded: where 1 − k is small the period feels it by 1/(1 − k).
+        # Decimal inputs are rounded: where 1 − k is small, 1/(1 − k) amplifies this.
         tolerance = 32 * EPS / min(1.0, float(info["one_minus_k"]))
         assert found["period"] == pytest.approx(float(info["period"]), rel=tolerance), case["name"]
         assert found["modulus"] == pytest.approx(float(info["k"]), rel=1e3 * tolerance), case["name"]
@@ -145,7 +145,7 @@ def test_wobble_and_phase(i, omega):
 
 
 def test_small_wobbles():
-    """A steady rotation tells the period of a wobble that it does not have; Feynman's plate wobbles twice."""
+    """A steady rotation has the period of small wobbles; Feynman's plate wobbles twice per turn."""
     for i, omega, wobble in (
         ((1, 2, 2.5), (0, 0, -2.0), np.pi / np.sqrt(1.5 * 0.5 / 2)),
         ((1, 2, 2.5), (0.5, 0, 0), 4 * np.pi / np.sqrt(1.5 * 1 / 5)),

@@ -1,4 +1,4 @@
-"""What `simulate` takes and gives: times, steps and tolerances, what it refuses, progress and stopping."""
+"""`simulate`: times, steps, tolerances, invalid arguments, progress and interrupts."""
 
 import signal
 import sys
@@ -215,7 +215,7 @@ def test_states_and_laws_refuse_wrong_grades():
         ph.torque.constant_body(np.eye(2))
 
 
-def test_what_is_not_a_number_is_not_described():
+def test_nan_is_rejected():
     with pytest.raises(ValueError):
         ph.describe_free(ASYMMETRIC, [np.nan, 0, 0])
     with pytest.raises(TypeError):
@@ -246,7 +246,7 @@ def test_progress_rises_over_both_signs_of_time():
     assert seen[-1] > 0.6
 
 
-def test_what_progress_raises_comes_out():
+def test_exceptions_of_progress_propagate():
     class EnoughError(Exception):
         pass
 
@@ -257,7 +257,7 @@ def test_what_progress_raises_comes_out():
         ph.simulate(ASYMMETRIC, START, [1e6], step=1e-3, progress=report)
 
 
-def test_control_c_stops_a_run():
+def test_ctrl_c_stops_a_run():
     program = (
         "import polhode as ph; print('go', flush=True)\n"
         "ph.simulate(ph.Inertia.from_principal_moments(1, 2, 3),"

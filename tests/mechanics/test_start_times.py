@@ -1,4 +1,4 @@
-"""Motions that do not start at time 0: a motion continued from any of its states is the motion itself."""
+"""Start times: a motion continued from any of its states is the motion itself."""
 
 import json
 
@@ -19,12 +19,12 @@ TABLE_TIMES = [-4, -2.5, 0.25, 2, 8]
 
 
 def pushed(t, rotor, omega):
-    """A torque that depends on all that a Python function is given."""
+    """A torque that depends on all arguments of a Python function."""
     return 0.5 * np.sin(2 * t) * ph.bivector([1, 0, 0.5]) - 0.1 * omega
 
 
 def driven(t, position, velocity, rotor):
-    """A force that depends on time and place."""
+    """A force that depends on time and position."""
     return ph.vector([np.cos(t), 0, 0]) - position
 
 
@@ -70,7 +70,7 @@ def states(motion):
 
 
 def tolerance(*motions):
-    """Ten times the sum of the estimates, for an error at the start grows on the way; and rounding."""
+    """Ten times the sum of the estimates, because an error at the start grows; and rounding."""
     estimates = sum(motion.certificate.error_estimate or 0.0 for motion in motions)
     # In closed form some 20 roundings, which eight seconds of turning at 1 rad/s magnify as many times.
     return 10 * estimates + 200 * EPS
@@ -97,7 +97,7 @@ def test_a_motion_continued_from_any_state_is_the_motion(name, at):
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", ["circular orbit", "table", "heavy", "constant and orbit"])
-def test_equal_steps_go_on_as_they_were(method, name):
+def test_continued_runs_take_the_same_steps(method, name):
     """Steps from an output time on are the steps of the whole run, to the rounding of their times."""
     inertia = SYMMETRIC if method == "rkn6" else ASYMMETRIC
     torque, step = GIVEN[name]["torque"], 1 / 64
@@ -160,7 +160,7 @@ def test_the_clock_does_not_restart():
     again = ph.simulate(SPHERE, whole.at(1.0), [2.0], torque)
     exact = (1 - np.cos(2)) / 2
     for motion in (whole, again):
-        # By 1e-10 asked for.
+        # The tolerance is 1e-10.
         assert motion.final.omega_body.components[2] == pytest.approx(exact, abs=1e-10)
 
 
@@ -172,7 +172,7 @@ def test_a_start_at_time_0_changes_no_bit():
         assert (motion.omega_body == expected.omega_body).all()
 
 
-def test_a_torque_is_told_at_the_time_of_a_state():
+def test_a_torque_is_evaluated_at_the_time_of_the_state():
     for name in ("formula", "elliptic orbit", "table"):
         torque, state = GIVEN[name]["torque"], ph.State(R0, [0.25, -0.5, 1.0], time=0.75)
         assert torque.at(ASYMMETRIC, state) == torque.at(ASYMMETRIC, START, 0.75)
@@ -182,7 +182,7 @@ def test_a_torque_is_told_at_the_time_of_a_state():
 # --- closed forms
 
 
-def test_closed_forms_tell_the_time_of_their_states():
+def test_states_of_closed_forms_have_their_times():
     given = ASYMMETRIC, R0, [0.25, -0.5, 1.0]
     many = ph.FreeMotion([ASYMMETRIC, SPHERE], R0, [0.25, -0.5, 1.0])
     top = ph.LagrangeTop(SYMMETRIC, R0, [0.25, -0.5, 1.0], [0, 0, 2])
@@ -221,7 +221,7 @@ def test_times_beyond_the_horizon_count_from_the_start():
 
 
 def test_events_are_met_at_their_own_times():
-    """A spin that is zero at the start has not passed it there, whenever the start is."""
+    """A spin that is zero at the start does not cross zero there, at any start time."""
     torque = ph.torque.formula("cos(t) e12")
     spin = ph.event.spin(ph.e1 ^ ph.e2)
     rest = ph.State(ph.Rotor.identity(), [0, 0, 0])
@@ -233,7 +233,7 @@ def test_events_are_met_at_their_own_times():
         assert met.states[1].time == met.time[1]
 
 
-def test_a_motion_that_an_event_ended_goes_on_from_there():
+def test_a_motion_ended_by_an_event_can_be_continued():
     torque, inertia = GIVEN["formula"]["torque"], ASYMMETRIC
     event = ph.event.spin(ph.e3 ^ ph.e1, terminal=True)
     whole = ph.simulate(inertia, START, [5.0], torque)
@@ -319,7 +319,7 @@ def test_shapes_of_times_that_do_not_fit_are_named():
 # --- files
 
 
-def test_a_motion_that_was_read_goes_on(tmp_path):
+def test_a_motion_read_from_a_file_can_be_continued(tmp_path):
     torque = GIVEN["formula"]["torque"]
     whole = ph.simulate(ASYMMETRIC, START, [2.0, 5.0], torque)
     half = ph.simulate(ASYMMETRIC, START, [1.0, 2.0], torque)
@@ -344,7 +344,7 @@ samples = 3
 """
 
 
-def test_a_scene_says_when_it_starts(tmp_path):
+def test_a_scene_has_a_start_time(tmp_path):
     path = tmp_path / "late.toml"
     path.write_text(SCENE, encoding="utf-8")
     scene = ph.Scene.read(path)
@@ -362,7 +362,7 @@ def test_a_scene_says_when_it_starts(tmp_path):
     batch = scene.run()
     for one, start in zip(batch, state, strict=True):
         alone = ph.simulate(inertias[0], start, scene.times, torque)
-        # Both by their default tolerance, 1e-10.
+        # Both have the default tolerance, 1e-10.
         assert differences(one.final, alone.final) <= 1e-9
 
 

@@ -1,4 +1,4 @@
-"""What a tolerance is worth: the error reached, and the estimate of it, over all decades above rounding."""
+"""Tolerances: the error reached and its estimate, over all decades above rounding."""
 
 import json
 from dataclasses import dataclass, field
@@ -31,7 +31,7 @@ class Problem:
         return apart(motion, *(self.truth or self.strict_run(motion.certificate.method)))
 
     def strict_run(self, method):
-        """By a method of another kind, in steps so short that rounding rules."""
+        """By a method of another kind, in steps so short that rounding dominates."""
         other = "kahan_li8" if method == "dop853" else "dop853"
         if other not in self.strict:
             fastest = np.linalg.norm(self.state.omega_body.components)
@@ -99,7 +99,7 @@ CASES = [(name, method) for name, p in PROBLEMS.items() for method in METHODS if
 
 @pytest.mark.parametrize(("name", "method"), CASES)
 def test_tolerances_are_met_and_estimates_are_honest(name, method):
-    """The error is at most ten times the tolerance and the estimate; near rounding it may be refused."""
+    """The error is at most ten times the tolerance and the estimate; near rounding it may be rejected."""
     problem = PROBLEMS[name]
     # The exact free motions between the kicks are rounded by some ulps each: 1e-12 is below
     # what thousands of them leave.
@@ -117,6 +117,6 @@ def test_tolerances_are_met_and_estimates_are_honest(name, method):
         if motion.certificate.method == "exact":
             continue
         assert motion.certificate.error_estimate <= rtol
-        # Below 1e-11 both runs are led by the same rounding, which their difference does not show.
+        # Below 1e-11 the same rounding dominates both runs, which their difference does not show.
         floor = 0 if decade < 11 else 1e-11
         assert error <= 10 * motion.certificate.error_estimate + floor, (rtol, error)

@@ -14,7 +14,7 @@ T = ph.torque
 C = ph.vector([0.5, 0.25, 1.0])
 REST = ph.Rotor.from_components([1, 0.2, 0.3, -0.1])
 
-# A built-in law, and the formula that says it.
+# A built-in law and its formula.
 SAME = {
     "heavy": (T.heavy(C), T.formula("(~R e3 R) ∧ c", c=C)),
     "heavy, as the axial vector": (T.heavy(C), T.formula("-(c ⨯ (~R e3 R)) I", c=C)),
@@ -52,7 +52,7 @@ def test_a_formula_equals_the_built_in_law(name):
 
 
 def test_a_motion_under_a_formula_is_that_of_the_law():
-    """The same steps, to the rounding of the torque, which the motion magnifies little in this time."""
+    """The same steps, to the rounding of the torque, which the motion amplifies little in this time."""
     law, formula = SAME["heavy"]
     t = np.linspace(0, 5, 11)
     expected = ph.simulate(BODY, START, t, law, step=1 / 64)
@@ -118,7 +118,7 @@ def test_the_manufactured_precession_of_the_reference():
         np.testing.assert_allclose(found, expected, rtol=0, atol=16 * EPS * (1 + s * t))
 
 
-# --- what is refused, and where
+# --- rejected formulas and places
 
 
 @pytest.mark.parametrize(
@@ -245,7 +245,7 @@ def test_invalid_return_values_raise(answer, parts):
 
 
 class SensorError(Exception):
-    """An exception that nobody else raises."""
+    """An exception that only these tests raise."""
 
 
 def broken(t, rotor, omega):

@@ -282,7 +282,7 @@ def _turned(law, F):
 
 
 def test_gains_along_body_axes_in_a_body_whose_principal_axes_are_others():
-    """`viscous_damping` and `pd_control` act along body axes, whatever the inertia."""
+    """`viscous_damping` and `pd_control` act along body axes, for any inertia."""
     F = ph.Rotor.from_components([1, 2, 3, 4])
     body = ph.Body(1.0, BODY).moved(F).inertia
     assert not np.allclose(body.principal_frame.components, [1, 0, 0, 0])
@@ -297,7 +297,7 @@ def test_laws_add_up():
     together = sum(laws)
     assert len(together.laws) == len(laws)
     wheel = together.laws[list(LAWS).index("gyrostat")].arguments[0]
-    # L of the others includes the wheel where they ask for it.
+    # L includes the wheel for laws that depend on it.
     h = ph.bivector(wheel)
     separate = ph.bivector([0.0, 0, 0])
     for law in laws:

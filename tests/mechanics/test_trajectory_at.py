@@ -68,8 +68,8 @@ def test_it_agrees_with_outputs_there(given):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_every_method_goes_on_from_the_nearest_output(method):
-    """With steps no longer than the run's: the method's own error, as measured from half the step."""
+def test_every_method_continues_from_the_nearest_output(method):
+    """With steps no longer than the run's: the error of the method, measured with half the step."""
     inertia, state, torque, _ = SLOPES["heavy"]
     step = 1 / 256 if METHODS[method] < 4 else 1 / 32
     motion = ph.simulate(inertia, state, TIMES, torque, method=method, step=step)
@@ -137,7 +137,7 @@ def test_without_outputs_the_start_is_known(torque):
         ([0.0, np.inf], ["inf", "1"]),
     ],
 )
-def test_outside_nothing_is_known(t, parts):
+def test_times_outside_the_motion_raise(t, parts):
     motion = ph.simulate(ASYMMETRIC, START, [-1.0, 5.0])
     with pytest.raises(ValueError) as error:
         motion.at(t)
@@ -145,7 +145,7 @@ def test_outside_nothing_is_known(t, parts):
         assert part in str(error.value)
 
 
-def test_what_a_law_raises_on_the_way_comes_out():
+def test_exceptions_of_a_law_propagate():
     class OwnError(Exception):
         pass
 

@@ -1,4 +1,4 @@
-"""The benchmarks measure the same work, and say what they could not measure."""
+"""The benchmarks measure the same work, and report what they could not measure."""
 
 import json
 import os
@@ -24,7 +24,7 @@ TINY = Pace(span=1e-5, rounds=1, batch=2 * batches.OBJECTS, limit=0.1)
 
 
 @pytest.mark.parametrize("topic", [single, batches, compiled, algebras], ids=lambda topic: topic.__name__)
-def test_all_that_is_installed_agrees(topic, monkeypatch):
+def test_installed_libraries_agree(topic, monkeypatch):
     # JAX starts threads, and from then on warns of every fork.
     monkeypatch.setitem(sys.modules, "jax", None)
     for row in topic.rows(np.random.default_rng(1), TINY):
@@ -51,7 +51,7 @@ def test_the_truth_is_that_of_the_reference(top, name):
         assert np.abs(rotors[0] - expected).max() < 200 * 100 * EXTENDED
 
 
-def test_the_truth_says_when_its_step_is_too_long():
+def test_the_reference_rejects_a_step_that_is_too_long():
     fast = truth.Top("fast", (1, 2, 3), (0, 0, 0), (30, 20, 10), (1, 0, 0, 0))
     with pytest.raises(ValueError, match="take a smaller step"):
         truth.rotors([fast], [1.0])
@@ -140,7 +140,7 @@ def test_wrong_and_missing_peers_are_notes():
     }
 
 
-def test_we_may_not_disagree():
+def test_results_that_disagree_raise():
     row = Row("3", expected=np.array(3.0))
     with pytest.raises(ValueError, match="disagrees"):
         row.enter(OURS, "4", {}, lambda x: x)

@@ -41,7 +41,7 @@ def outside(path: Path, text: str) -> list[str]:
     return found
 
 
-# Paths that tests make up.
+# Paths that exist only in tests.
 MADE_UP = {"tests/project/test_clone.py", "tests/viewer/test_document.py", "tests/viewer/test_view.py"}
 
 

@@ -37,22 +37,22 @@ def test_scenes_run(text, tmp_path):
 @pytest.mark.parametrize(
     "name", ["algebra", "formulas", "motion", "jax", pytest.param("viewer", marks=needs_bundle)]
 )
-def test_the_pages_run_and_print_what_they_say(name, tmp_path):
+def test_the_pages_run_and_print_their_comments(name, tmp_path):
     for needed in ("jax", "sympy", "anywidget"):
         pytest.importorskip(needed)
-    # Pages read the examples, and write what they write here.
+    # Pages read the examples, and write their files here.
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     blocks = blocks_of(ROOT / f"docs/{name}.md")
     code = "\n".join(text for language, text in blocks if language == "python")
     done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    told = []
+    expected = []
     for language, text in blocks:
         if language == "python":
-            told += re.findall(r"^print\(.*\)  # (.*)$", text, flags=re.MULTILINE)
+            expected += re.findall(r"^print\(.*\)  # (.*)$", text, flags=re.MULTILINE)
         elif language == "text":
-            told += text.splitlines()
-    assert done.stdout.splitlines() == told
+            expected += text.splitlines()
+    assert done.stdout.splitlines() == expected
 
 
 def test_the_shell_answers_as_the_page_says():
@@ -93,8 +93,8 @@ def test_the_page_of_figures_runs(tmp_path):
     (code,) = (text for language, text in blocks if language == "python")
     done = processes.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    told = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
-    assert [line.strip() for line in done.stdout.splitlines()] == told
+    expected = re.findall(r"^ *print\(.*\)  # (.*)$", code, flags=re.MULTILINE)
+    assert [line.strip() for line in done.stdout.splitlines()] == expected
     written = {"polhode.svg", "scene.pdf", "turned.svg", "plate.gif", "locus.pdf"}
     assert {path.name for path in tmp_path.iterdir()} == {"examples", *written}
 

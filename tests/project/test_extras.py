@@ -1,4 +1,4 @@
-"""What needs an optional library says which extra installs it."""
+"""Functions that need an optional library name the extra that installs it."""
 
 import sys
 from pathlib import Path
@@ -36,7 +36,7 @@ def test_the_extra_is_named(module, extra, use, trajectory, tmp_path, monkeypatc
 
 
 @pytest.mark.parametrize("module", ["xarray", "h5netcdf", "matplotlib"])
-def test_the_command_says_so_before_the_run(module, tmp_path, monkeypatch, capsys):
+def test_the_command_names_the_extra_before_the_run(module, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, module, None)
     assert main.main(["run", str(EXAMPLE), "-o", str(tmp_path / "a.nc")]) == 1
     captured = capsys.readouterr()

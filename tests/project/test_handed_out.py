@@ -39,7 +39,7 @@ ARRAYS = {
 
 
 @pytest.mark.parametrize("name", ARRAYS)
-def test_an_array_is_the_callers_to_change(name):
+def test_returned_arrays_can_be_changed(name):
     value, attribute = ARRAYS[name]
     array = getattr(value, attribute)
     before = array.copy()
@@ -66,7 +66,7 @@ METHODS = {
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_so_is_what_methods_return(name):
+def test_arrays_returned_by_methods_are_copies(name):
     array = METHODS[name]()
     before = array.copy()
     assert array.flags.writeable

@@ -1,4 +1,4 @@
-"""What the README says is so."""
+"""README: its code, scenes, commands and output are current."""
 
 import re
 import shlex
@@ -43,7 +43,7 @@ def test_the_torques_are_those_of_a_scene(tmp_path):
     assert "torque_body       m ∧ (~R B R)" in done.stdout
 
 
-def test_the_mistake_is_shown_as_printed(tmp_path):
+def test_the_error_is_shown_as_printed(tmp_path):
     text = (ROOT / "examples/t-handle.toml").read_text().replace("duration", "durration")
     (tmp_path / "t-handle.toml").write_text(text)
     done = processes.run([POLHODE, "check", "t-handle.toml"], cwd=tmp_path)
@@ -55,9 +55,9 @@ def test_the_summary_is_that_of_the_demo(tmp_path):
     done = processes.run([POLHODE, "demo", "-o", tmp_path], check=True)
     (shown,) = (block for block in blocks("text") if "principal moments" in block)
     # Rounding drifts differ between machines.
-    told = [line for line in shown.splitlines() if "drift" not in line and "|R|" not in line]
+    expected = [line for line in shown.splitlines() if "drift" not in line and "|R|" not in line]
     printed = done.stdout.splitlines()
-    assert [line for line in told if line not in printed] == []
+    assert [line for line in expected if line not in printed] == []
 
 
 def test_the_commands_are_commands():

@@ -33,7 +33,7 @@ def test_a_body_picked_from_a_batch_is_shown():
 
 
 @pytest.mark.parametrize("name", ["at", "drifts"])
-def test_what_a_picked_body_does_not_have_it_is_simulated_for(name):
+def test_methods_of_picked_bodies_name_the_remedy(name):
     with pytest.raises(ValueError, match="simulate that body alone"):
         getattr(GRID, name)(*([0.3] if name == "at" else []))
 

@@ -24,7 +24,7 @@ def ours():
 
 @pytest.fixture(scope="module")
 def theirs():
-    """The names of each peer's set-up, made when asked for."""
+    """The names of each peer's set-up, computed on access."""
     made = {}
 
     def names(library):
@@ -62,7 +62,7 @@ def test_every_operation_is_translated(library):
     assert [line.operation for line in TABLES[library] if line.operation in wanted] == wanted
 
 
-def test_lines_are_told_apart():
+def test_operations_of_a_table_are_unique():
     for table in TABLES.values():
         operations = [line.operation for line in table]
         assert len(operations) == len(set(operations)) > 20

@@ -1,4 +1,4 @@
-"""Type hints: mypy accepts the code of README and guides, and knows the types that users rely on."""
+"""Type hints: mypy accepts the code of README and guides, and infers the types of results."""
 
 import re
 import sys
@@ -105,5 +105,5 @@ def test_a_star_import_has_everything_but_helpers(tmp_path):
     assert {"State", "simulate", "Rotor", "e1", "I", "torque"} <= set(ph.__all__)
     assert all(hasattr(ph, name) for name in ph.__all__)
     public = {name for name in dir(ph) if not name.startswith("_")}
-    # JAX and Hypothesis are optional, and IPython asks for its own by name.
+    # JAX and Hypothesis are optional; IPython calls its function by name.
     assert set(ph.__all__) == public - {"jax", "strategies", "load_ipython_extension"}

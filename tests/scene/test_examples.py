@@ -111,7 +111,7 @@ def test_feynmans_plate_wobbles_twice_per_turn():
     assert "2.000025 for each turn" in polhode("run", EXAMPLES / "feynman-plate.toml").stdout
 
 
-def test_the_earths_period_is_eulers():
+def test_the_earth_has_eulers_period():
     motion = summary_of(EXAMPLES / "earth.toml")["motion"]
     day = SIDEREAL_DAY / np.cos(np.radians(0.3 / 3600))
     assert motion["period"] / day == pytest.approx(1 / 0.00327379 - 1, rel=1e-9)
@@ -139,5 +139,5 @@ def test_toutatis_is_predictable_for_months(tmp_path):
         assert 0.01 < (high - low) / 3.29 < 0.03
     within_10, within_90 = (entry["time"] / 86400 for entry in motion["horizons"])
     assert 10 < within_10 < 100 < within_90 < 1000
-    # At the end its phase about L is unknown.
+    # At the end its phase about L is lost.
     assert np.degrees(motion["from_nominal"][-1]["quantiles"][2]) > 90

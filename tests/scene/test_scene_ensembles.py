@@ -115,5 +115,5 @@ def test_errors_have_their_place(tmp_path):
     done = polhode("check", path)
     assert done.returncode == 3
     assert "unknown table `moment`, expected `moments`" in done.stderr
-    # All at once: the laws are not there either.
+    # All errors are reported at once.
     assert "which has no `damping` in [torque]" in done.stderr

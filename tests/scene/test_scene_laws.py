@@ -126,14 +126,14 @@ def test_a_controller_reports_its_distance(tmp_path):
     assert "pd_control        kp = 4 N m; kd = 6 N m s; target = 0.707107, 0, 0, -0.707107" in page
 
 
-def test_damping_reports_the_free_motion_and_its_pace(tmp_path):
+def test_damping_reports_the_free_motion_and_its_half_life(tmp_path):
     read(tmp_path, with_tables("[torque]\ndamping = 0.5"))
     result = summary_of(tmp_path / "a.toml")
     assert result["motion"]["regime"] == "short-axis mode"
     assert result["motion"]["halved_after"] == pytest.approx(np.log(2) / 0.5)
     assert result["run"]["method"] == "exact"
     assert result["motion"]["changes"]["rate"]["end"] < result["motion"]["changes"]["rate"]["start"]
-    assert "half of ω" in polhode("run", tmp_path / "a.toml").stdout
+    assert "half-life of ω" in polhode("run", tmp_path / "a.toml").stdout
 
 
 # A closed form, a dissipative torque, a wheel and a held body; the other laws have the same kinds of reports.
@@ -176,7 +176,7 @@ def test_an_error_in_a_formula_is_shown_at_its_place(command, tmp_path):
     assert caret.index("^") == done.stderr.splitlines()[2].index("b)")
 
 
-# Steps that are too long for a conserved quantity. Those of rk4 keep L where its torque is none.
+# Steps that are too long for a conserved quantity. Those of rk4 keep L where the torque is zero.
 DRIFTING = [
     ("energy", "heavy = [3, 2, 1]"),
     ("energy", "magnetic = { dipole = [3, 2, 1], field = [1, 0, 0] }"),
@@ -208,9 +208,9 @@ def test_the_bound_applies_to_every_quantity(name, drift, tmp_path):
     proof = trajectory.certificate
     drifts = {"first": 0.0, name: drift, "last": 0.0}
     wrong = replace(trajectory, certificate=replace(proof, conserved={name: 1.0}, drift=drifts))
-    told = summary(scene, wrong)
-    assert not told["run"]["drift_within_bound"]
-    assert "FAILED" in as_text(told)
+    failed = summary(scene, wrong)
+    assert not failed["run"]["drift_within_bound"]
+    assert "FAILED" in as_text(failed)
 
 
 def test_a_method_that_does_not_fit_exits_with_1(tmp_path):

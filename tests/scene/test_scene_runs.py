@@ -302,7 +302,7 @@ def test_the_summary_as_text(write):
     for words in (
         "Ensemble",
         "Body",
-        "Acting",
+        "Torques and forces",
         "Motion",
         "Over the bodies",
         "Conserved",
@@ -330,7 +330,7 @@ def test_a_horizon_is_where_the_quantile_passes_the_angle(write):
         assert entry["time"] == (pytest.approx(expected, rel=1e-5) if expected < 20 else None)
 
 
-def test_failed_bodies_are_reported_and_the_others_go_on(write, tmp_path):
+def test_failed_bodies_are_reported_and_the_others_continue(write, tmp_path):
     path = write(FAILING)
     done = polhode("run", path, "-o", tmp_path / "out.nc", "--json")
     assert done.returncode == 0, done.stderr

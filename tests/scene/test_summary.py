@@ -26,7 +26,7 @@ def summary_with(name, tmp_path, **changes):
     return summary(scene, scene.run())
 
 
-def test_precession_is_unknown_if_samples_are_too_far_apart(tmp_path):
+def test_precession_is_unknown_for_sparse_samples(tmp_path):
     # Off the axis of symmetry the top has no closed form, whose precession is known without samples.
     beside = {"heavy": "[0.05, 0, 3]", "duration": 5}
     followed = summary_with("kovalevskaya.toml", tmp_path, **beside)
@@ -37,7 +37,7 @@ def test_precession_is_unknown_if_samples_are_too_far_apart(tmp_path):
     assert "too far apart" in as_text(sparse)
 
 
-def test_flips_are_not_counted_if_samples_are_too_far_apart(tmp_path):
+def test_flips_are_not_counted_in_sparse_samples(tmp_path):
     assert summary_with("t-handle.toml", tmp_path)["motion"]["reversals"]["count"] == 9
     sparse = summary_with("t-handle.toml", tmp_path, samples=12)
     assert sparse["motion"]["reversals"] is None

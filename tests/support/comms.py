@@ -18,13 +18,13 @@ class Comm:
     def close(self, *_, **__):
         pass
 
-    def says(self, **state):
+    def sends(self, **state):
         data = {"method": "update", "state": state, "buffer_paths": []}
         # As after transport.
         self.callback({"content": {"data": json.loads(json.dumps(data))}, "buffers": []})
 
     @property
-    def told(self):
+    def received(self):
         """The last sent values, by name."""
         values = {}
         for message in self.sent:

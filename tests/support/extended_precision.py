@@ -20,7 +20,7 @@ CYCLES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 @dataclass(frozen=True)
 class Case:
-    """A rigid body and what turns it; vectors in body axes unless they say so, constants in SI units."""
+    """A rigid body and its torques; vectors in body axes unless named otherwise, constants in SI units."""
 
     moments: tuple
     omega: tuple

@@ -260,7 +260,7 @@ def _inertia(x):
 
 
 def heavy_body(v):
-    """A body in its principal frame under a torque, which changes Ω_B as Euler's equations say."""
+    """A body in its principal frame under a torque, which changes Ω_B by Euler's equations."""
     return _body(v, _moments(v), v.each(3))
 
 

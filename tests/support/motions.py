@@ -8,7 +8,7 @@ import polhode as ph
 
 EPS = np.finfo(float).eps
 REFERENCE = Path(__file__).parents[1] / "reference" / "motion_cases.json"
-# Without a name a free body moves exactly; this asks for the steps that torques need.
+# By default a free body moves exactly; this selects steps.
 STEPS = "kahan_li8"
 METHODS = {
     "strang": 2,

@@ -8,10 +8,10 @@ from subprocess import DEVNULL, PIPE
 
 __all__ = ["DEVNULL", "PIPE", "interrupted", "limited", "run", "start"]
 
-# Seconds after which a program is taken to hang: the slowest takes 20 on an idle machine.
+# Time limit in s: the slowest program takes 20 s on an idle machine.
 LIMIT = 180.0
 
-# A background job of a shell ignores Ctrl-C, and so does all that it starts. With a handler here, programs
+# A background job of a shell ignores Ctrl-C, and so do its children. With a handler here, programs
 # that are started have the default action.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)

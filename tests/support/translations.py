@@ -11,7 +11,7 @@ from naive import eight_of
 
 PAGE = (Path(__file__).parents[2] / "docs/translations.md").read_text()
 
-# Where a blade, as the bits of its vectors, stands in our basis, and its sign: e13 = −e3e1.
+# Index in our basis of a blade, as the bits of its vectors, and its sign: e13 = −e3e1.
 PLACES = {0b000: 0, 0b001: 1, 0b010: 2, 0b100: 3, 0b110: 4, 0b101: 5, 0b011: 6, 0b111: 7}
 SIGNS = {bits: -1 if bits == 0b101 else 1 for bits in PLACES}
 CANONICAL = [0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111]

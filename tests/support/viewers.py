@@ -12,5 +12,5 @@ needs_bundle = pytest.mark.skipif(
     not (BUNDLE.is_file() and BUNDLE.stat().st_size), reason="the viewer was not built: make viewer"
 )
 
-# In place of the bundle in tests that do not run it.
+# Replaces the bundle in tests that do not run it.
 SCRIPT = 'const text = "</script><b>"; export default { render() {} };\n'

@@ -86,7 +86,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_laws_are_read_back_as_the_same_values(law, tmp_path):
+def test_laws_are_read_back_as_equal_values(law, tmp_path):
     assert read_back(problem(torque=law), tmp_path).torque == law
 
 

@@ -1,4 +1,4 @@
-"""The look of a page: pictures, themes, small screens, and the time per frame."""
+"""Appearance of a page: pictures, themes, small screens, and the time per frame."""
 
 import io
 

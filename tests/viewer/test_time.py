@@ -96,7 +96,7 @@ def test_space_plays_and_arrows_step(opened):
 def test_playback_has_the_shown_speed(opened, new_page, tmp_path):
     opened("t-handle")
     page = new_page()
-    # A clock that advances only when the test says so.
+    # A clock that only the test advances.
     page.page.clock.install()
     page.open(next(tmp_path.glob("*.html")))
     page.page.get_by_role("button", name="Faster").click()

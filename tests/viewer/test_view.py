@@ -49,7 +49,7 @@ def answer(server, path, method="GET", host=None):
     return response.status, response.headers, content
 
 
-def test_three_things_are_served(served):
+def test_page_document_and_bundle_are_served(served):
     status, headers, content = answer(served, "/")
     assert status == 200
     assert headers["Content-Type"] == "text/html; charset=utf-8"

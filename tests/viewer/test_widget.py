@@ -36,7 +36,7 @@ def test_the_page_gets_the_document_and_the_bundle(line, bundle):
     assert given["shown"] == {}
 
 
-def test_the_page_gets_what_python_sets(line):
+def test_values_set_by_python_reach_the_page(line):
     viewer = ph.view(INERTIA, START)
     values = {
         "time": 1.25,
@@ -49,21 +49,21 @@ def test_the_page_gets_what_python_sets(line):
     }
     for name, value in values.items():
         setattr(viewer, name, value)
-    assert line(viewer).told == values
+    assert line(viewer).received == values
     viewer.time = 3
-    assert line(viewer).told["time"] == 3
+    assert line(viewer).received["time"] == 3
 
 
-def test_python_gets_what_the_page_sends(line):
+def test_messages_of_the_page_reach_python(line):
     viewer = ph.view(INERTIA, START)
     heard = []
     viewer.observe(lambda change: heard.append((change["name"], change["new"])), ["time", "scene", "problem"])
     page = line(viewer)
-    page.says(time=0.1, playing=True, camera="along e1", shown={"body": False}, speed=2)
+    page.sends(time=0.1, playing=True, camera="along e1", shown={"body": False}, speed=2)
     assert (viewer.time, viewer.playing, viewer.camera, viewer.speed) == (0.1, True, "along e1", 2)
     assert viewer.shown == {"body": False}
-    page.says(scene="new", problem="scene.toml:1:1: error")
-    page.says(problem=None)
+    page.sends(scene="new", problem="scene.toml:1:1: error")
+    page.sends(problem=None)
     assert heard == [
         ("time", 0.1),
         ("scene", "new"),
@@ -77,7 +77,7 @@ def test_python_gets_what_the_page_sends(line):
 def test_the_state_of_the_page_is_a_state(line):
     viewer = ph.view(INERTIA, START)
     state = ph.FreeMotion(INERTIA, START.rotor, START.omega_body).at(0.7)
-    line(viewer).says(
+    line(viewer).sends(
         time=0.7,
         state={
             "time": 0.7,
@@ -92,7 +92,7 @@ def test_the_state_of_the_page_is_a_state(line):
     assert viewer.state.position == ph.vector([1.0, 2, 3])
     assert viewer.state.velocity.components[2] == 1e-300
     assert viewer.state.time == 0.7
-    line(viewer).says(state=None)
+    line(viewer).sends(state=None)
     assert viewer.state is None
 
 
@@ -109,7 +109,7 @@ def test_the_state_is_that_of_the_time_that_was_set(line):
     assert viewer.state is None
     page = line(viewer)
     at_start = {"time": 0.0, "rotor": [1, 0, 0, 0], "omega_body": [0.01, 1, 0.01]}
-    page.says(time=0.0, state={**at_start, "position": [0, 0, 0], "velocity": [0, 0, 0]})
+    page.sends(time=0.0, state={**at_start, "position": [0, 0, 0], "velocity": [0, 0, 0]})
     agree(viewer.state, START)
     # A closed form is known before its start and after its end.
     for time in (0.7, 1.9, 12.5, -3.0):
@@ -119,7 +119,7 @@ def test_the_state_is_that_of_the_time_that_was_set(line):
     other = ph.FreeMotion(ph.Inertia.from_principal_moments(1, 2, 2.5), START.rotor, START.omega_body)
     agree(viewer.state, other.at(-3.0), 1e-15)
     # A report of another time is not taken for the state of this one.
-    page.says(camera="along e1")
+    page.sends(camera="along e1")
     agree(viewer.state, other.at(-3.0), 1e-15)
     viewer.scene = viewer.scene.replace("duration", "durration")
     with pytest.raises(ph.SceneError, match="missing field `duration`"):
@@ -127,7 +127,7 @@ def test_the_state_is_that_of_the_time_that_was_set(line):
     # A reloaded page asks for all values but the state, which it knows.
     page.sent.clear()
     viewer.send_state()
-    assert page.told["state"] is None
+    assert page.received["state"] is None
     viewer.show(INERTIA, START)
     assert viewer.state is None
 
@@ -209,7 +209,7 @@ def shown_in(text):
 
 
 @pytest.mark.usefixtures("line")
-def test_a_saved_page_shows_what_the_widget_shows(tmp_path):
+def test_a_saved_page_shows_the_state_of_the_widget(tmp_path):
     trajectory = ph.simulate(INERTIA, START, [0, 1], ph.torque.viscous_damping(0.1))
     viewer = trajectory.view()
     assert shown_in(viewer.html()) == {**viewer.document, "view": {}}

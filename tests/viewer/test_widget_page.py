@@ -82,7 +82,7 @@ class Notebook:
             if message["method"] == "update":
                 self.page.page.evaluate("state => hears(state)", message["state"])
         for state in self.page.page.evaluate("() => sent.splice(0)"):
-            self.line.says(**state)
+            self.line.sends(**state)
 
     def quiet(self):
         """Pass on messages until there are none for longer than the interval of the page."""
@@ -107,7 +107,7 @@ def shown(browser, new_page, monkeypatch, tmp_path):
     return lambda *given, **named: Notebook(ph.view(*given, **named), new_page(), tmp_path / "notebook.html")
 
 
-def test_the_page_gets_what_python_sets(shown):
+def test_values_set_by_python_reach_the_page(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     notebook.agree()
@@ -125,7 +125,7 @@ def test_the_page_gets_what_python_sets(shown):
     assert (viewer.state.omega_body - free.omega_body).norm() < 1e-14
 
 
-def test_python_gets_what_changes_in_the_page(shown):
+def test_changes_in_the_page_reach_python(shown):
     notebook = shown(INERTIA, START, duration=60)
     viewer = notebook.viewer
     before = viewer.shown["polhode"]

@@ -61,7 +61,7 @@ def kind_of(*values: Any) -> Any:
 
 
 def duplicate(array: Any) -> Any:
-    """Return a copy; JAX's arrays, which nobody can write to, are returned as they are."""
+    """Return a copy; JAX arrays, which are immutable, are returned as they are."""
     if isinstance(array, np.ndarray):
         return np.array(array, order="C")
     # Other libraries differentiate a product, but not a copy.

@@ -47,7 +47,7 @@ def _half_turn(components: Any) -> float:
 
 
 def mean(R: Rotor, weights: Any = None) -> Rotor:
-    """Return the mean attitude of a batch (n,), whatever the signs: the Q that minimises ``Σ w |R − Q|²``.
+    """Return the mean attitude of a batch (n,), for any signs: the Q that minimises ``Σ w |R − Q|²``.
 
     The eigenvector of the largest eigenvalue of ``Σ w r rᵀ`` over components r (Markley, Cheng, Crassidis &
     Oshman, J. Guid. Control Dyn. 30 (2007)); its scalar part is >= 0. `weights` (n,) are >= 0. A ValueError

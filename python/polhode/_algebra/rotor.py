@@ -107,7 +107,7 @@ class Rotor(_native.Rotor, Multivector):
 
     @staticmethod
     def from_quaternion(q: Any, *, order: QuaternionOrder) -> Rotor:
-        """From quaternions (..., 4), Hamilton's and active, divided by their norm; the order must be said."""
+        """From quaternions (..., 4), Hamilton's and active, divided by their norm; `order` is required."""
         given = _components(q, 4, "quaternion")
         return Rotor._from_rows(_computed("from_quaternion", taken(given, _to_wxyz(order))))
 
@@ -219,7 +219,7 @@ class Rotor(_native.Rotor, Multivector):
         return Multivector._of(pairs[..., :3], _BIVECTOR), pairs[..., 3][()]
 
     def distance(self, other: Rotor) -> Any:
-        """Return the angle in [0, π] of the turn from this attitude to the other, whatever their signs.
+        """Return the angle in [0, π] of the rotation from this attitude to the other.
 
         A float, or an array of the batch shape; accurate for close attitudes, too. Derivatives at 0, where
         there are none, are 0; ``4 * (~R * S).log().norm_squared()`` is the square, smooth at 0.

@@ -54,7 +54,7 @@ def join(value: Multivector, other: Multivector) -> Multivector:
     """Return the unit blade of the smallest subspace that contains both blades.
 
     Directions within 1e-10 (in single precision 3e-5) of a subspace count as lying in it. Components are
-    compared as lengths, the basis vectors as orthonormal, whatever the metric. For the sign see `meet`. A
+    compared as lengths, the basis vectors as orthonormal, in any metric. For the sign see `meet`. A
     ValueError for a value that is not a blade.
     """
     return _join_or_meet(value, other, "join")

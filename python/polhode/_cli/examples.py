@@ -16,7 +16,7 @@ def add(commands: Any) -> None:
     examples = commands.add_parser(
         "examples",
         help="list or copy the example scenes",
-        description="List the example scenes, or copy those that are named. Existing files are not replaced.",
+        description="List the example scenes, or copy the named ones. Existing files are not replaced.",
     )
     examples.add_argument(
         "names", metavar="NAME", nargs="*", help="name of an example; without one, list all"

@@ -42,33 +42,27 @@ def add(commands: Any, shown: Shown) -> None:
         "-o", "--output", metavar="FILE", type=file_name("a figure"), required=True,
         help="FILE.svg, FILE.pdf or FILE.png",
     )  # fmt: skip
-    figure.add_argument(
-        "--view", metavar="A,E", type=_view, help="azimuth and elevation to look from, in degrees"
-    )
-    figure.add_argument(
-        "--time", metavar="T", type=float, help="time of the scene in s; the last one if left out"
-    )
+    figure.add_argument("--view", metavar="A,E", type=_view, help="camera azimuth and elevation in degrees")
+    figure.add_argument("--time", metavar="T", type=float, help="time of the figure in s, default the last")
     figure.set_defaults(command=lambda options: _figure(options, shown, figure))
 
     film = commands.add_parser(
         "film",
         help="film a scene: MP4 (by ffmpeg) or GIF",
-        description="Film a scene's motion as the viewer draws it. It needs polhode[film] and Chromium or "
-        "Chrome, which runs without a window.",
+        description="Film a scene's motion as the viewer draws it. Needs polhode[film] and Chromium, Chrome "
+        "or Edge, which runs without a window.",
     )
     film.add_argument("scene", metavar="SCENE.toml", help="the scene file")
     film.add_argument(
         "-o", "--output", metavar="FILE", type=file_name("a film"), required=True,
         help="FILE.mp4 or FILE.gif",
     )  # fmt: skip
-    film.add_argument("--seconds", metavar="N", type=float, help="length of the film; true speed if left out")
-    film.add_argument("--fps", metavar="N", type=float, default=25.0, help="frames per second; 25")
+    film.add_argument("--seconds", metavar="N", type=float, help="length in s, default that of the motion")
+    film.add_argument("--fps", metavar="N", type=float, default=25.0, help="frames per second, default 25")
     film.add_argument(
-        "--size", metavar="WxH", type=_size, help="size in pixels; 1280x720 if left out, of a GIF 640x360"
+        "--size", metavar="WxH", type=_size, help="size in pixels, default 1280x720, for a GIF 640x360"
     )
-    film.add_argument(
-        "--view", metavar="A,E", type=_view, help="azimuth and elevation to look from, in degrees"
-    )
+    film.add_argument("--view", metavar="A,E", type=_view, help="camera azimuth and elevation in degrees")
     film.set_defaults(command=lambda options: _film(options, shown))
 
 

@@ -43,7 +43,7 @@ def main(arguments: list[str] | None = None) -> int:
     except SceneError as error:
         code = _complain(str(error), BAD_INPUT)
     except BrokenPipeError:
-        code = FAILED  # nobody reads the output any more
+        code = FAILED  # the reader of the output has closed it
     except (OSError, ValueError, ImportError, MemoryError) as error:
         code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
     _drop_output()
@@ -119,7 +119,7 @@ def _parser() -> argparse.ArgumentParser:
         "--threads",
         metavar="N",
         type=_whole_number("number of threads", 1, math.inf),
-        help="threads for an ensemble's bodies, default all cores; results do not depend on it",
+        help="number of threads for ensembles, default all cores; results do not depend on it",
     )
     run.set_defaults(command=_run)
 
@@ -181,7 +181,8 @@ def _add_formulas(commands: Any) -> None:
     form.add_argument("--latex", action="store_true", help="print formulas and values as LaTeX")
     evaluate.set_defaults(command=_eval)
 
-    repl = commands.add_parser("repl", help="evaluate formulas as you type them")
+    words = "evaluate formulas as you type them"
+    repl = commands.add_parser("repl", help=words, description=f"{words.capitalize()}; :help lists commands.")
     repl.set_defaults(command=_repl)
 
 

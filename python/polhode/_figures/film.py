@@ -25,20 +25,20 @@ if TYPE_CHECKING:
 
 _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
 _SMALLEST, _LARGEST, _MOST = 16, 7680, 100_000
-# A longer motion, in s, is not filmed at true speed unless the caller says so.
+# The longest motion, in s, that is filmed at true speed by default.
 _LONGEST = 100.0
-# A body that turns further than this between two frames, in rad, appears to turn at another rate.
+# Largest turn between two frames, in rad; beyond it the body appears to turn at another rate.
 _QUARTER = np.pi / 2
 # Programs show a frame of a GIF that lasts less than 1/50 s for longer.
 _GIF_FPS = 50.0
-# So many frames of a GIF have a say in its colours.
+# Number of frames from which the palette of a GIF is made.
 _SAMPLED = 6
 
 Progress = Callable[[float], object]
 
 
 class Plan(NamedTuple):
-    """A film to be made: form, frames per second, size in pixels, length in s; None for true speed."""
+    """Form, frames per second, size in pixels and length in s of a film; None for true speed."""
 
     form: str
     fps: float
@@ -55,7 +55,7 @@ def write(
     view: Any = None,
     progress: Progress | None = None,
 ) -> None:
-    """Write a film, whole or not at all; see `Trajectory.film`."""
+    """Write a film; see `Trajectory.film`."""
     plan = planned(path, seconds, fps, size, view)
     require_times(trajectory)
     times = frame_times(trajectory, plan)
@@ -69,7 +69,7 @@ def write(
 
 
 def planned(path: Path, seconds: float | None, fps: float, size: Any, view: Any) -> Plan:
-    """Return the plan of a film; everything that can be refused without its motion is refused here."""
+    """Return the plan of a film, after all checks that do not need its motion."""
     form = form_of(path, "a film")
     rate = _positive(fps, "fps")
     if form == "gif" and rate > _GIF_FPS:

@@ -77,7 +77,7 @@ class Formula:
     def spelled(self, style: str, /, **kinds: Any) -> str:
         """Return the formula in canonical spelling, "unicode", "ascii" or "latex".
 
-        `kinds`, as for `tree`, tell adjacent names from one long name; without any, each word is one name.
+        `kinds`, as for `tree`, distinguish adjacent names from one long name. By default a word is one name.
         """
         return self._core.spelled(style, *kinds_of(self._core.algebra, kinds))
 

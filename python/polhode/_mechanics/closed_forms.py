@@ -95,8 +95,8 @@ class LagrangeTop(ClosedForm):
     def describe(self) -> dict[str, Any]:
         """Return the regime, periods and invariants of the motion.
 
-        The axis is the axis of symmetry, pointing to the centre of mass. ``regime``; ``tilt_min`` and
-        ``tilt_max``, angles of the axis from up in rad; ``nutation_period`` in s; ``precession_rate`` and
+        The axis is the axis of symmetry, towards the centre of mass. ``regime``; ``tilt_min``, ``tilt_max``,
+        its angles from the vertical in rad; ``nutation_period`` in s; ``precession_rate`` and
         ``spin_rate``, the mean rates of φ about e3 and of ψ about the axis in rad/s, ``precession_period``;
         ``modulus`` of the elliptic functions; ``energy`` in J, ``axial_momentum`` L3 and
         ``vertical_momentum`` Lz in kg m²/s; ``critical_spin = 2 √(|c| i1)/i3`` in rad/s and ``sleeps``,

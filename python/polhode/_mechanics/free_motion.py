@@ -49,7 +49,7 @@ class FreeMotion:
         Angular velocity in body axes at time 0, a bivector or an array (..., 3), in rad/s.
 
     Batch shapes broadcast to `shape`; ``m[i]`` indexes the batch as in NumPy. The bodies of a batch are
-    computed in SIMD lanes, whatever their regimes.
+    computed in SIMD lanes, in any regimes.
 
     Raises
     ------

@@ -13,20 +13,20 @@ from polhode.torque import Torque
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """The motion of one body as `polhode.simulate` was asked for it.
+    """The arguments of `polhode.simulate` for one body.
 
     Attributes
     ----------
     body
-        A `Body`, or the `Inertia` that rules its motion.
+        A `Body`, or the `Inertia` that determines its motion.
     state
         The single state at the start.
     torque, force
-        What turns and moves it; None where nothing does.
+        Torque and force; None without.
     times
         Output times in s, (n,).
     method, step, tolerance
-        As for `polhode.simulate`; the larger one of rtol and atol.
+        As for `polhode.simulate`; the tolerance is the larger one of rtol and atol.
     limits
         `max_step`, `max_steps` and `breaks`.
     """

@@ -256,7 +256,7 @@ def _ensemble(
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
     return Ensemble(
         shape_of(bodies, state, torque.shape if torque else ()),
-        mapped_objects(lambda one: _ruling_inertia(one, held), bodies),
+        mapped_objects(lambda one: _inertia_of(one, held), bodies),
         np.array(state.time),
         as_coefficients(state.rotor._data, "the rotor", float),
         state.omega_body._data,
@@ -314,7 +314,7 @@ def _tolerance(rtol: float | None, atol: float | None) -> float | None:
     return max(given.values(), default=None)
 
 
-def _ruling_inertia(body: Body | Inertia, held: bool) -> Inertia:
+def _inertia_of(body: Body | Inertia, held: bool) -> Inertia:
     """Return the inertia about the fixed point, the origin of the body's axes, if the body is held."""
     if isinstance(body, Inertia):
         return body

@@ -114,7 +114,7 @@ def _bodies(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, A
 
 
 def _events(trajectory: Trajectory, variable: Callable[..., Any]) -> dict[str, Any]:
-    """Return all events, one after another."""
+    """Return all events in one dimension."""
     events, along, axes = trajectory.events, ("event",), ("event", "axis")
 
     def joined(part: Callable[[Crossings], Any]) -> Any:

@@ -44,7 +44,7 @@ def summary(scene: Scene, trajectory: Trajectory) -> dict[str, Any]:
 
 
 def body_of(scene: Scene, inertia: Inertia) -> dict[str, Any]:
-    """Return the body, with the inertia that rules its motion."""
+    """Return the body, with the inertia that determines its motion."""
     moments = inertia.principal_moments
     return {
         "mass": scene.body.mass if scene.tells_mass else None,

@@ -38,10 +38,10 @@ def as_text(summary: dict[str, Any]) -> str:
         lines.append(f"  {name:<{_COLUMNS - 1}} {value}")
 
     lines.append("Body")
-    body_rows(summary["body"], motion["kind"] in ("free", "damped"), row)
+    body_rows(summary["body"], row)
     if summary["torques"] or summary["forces"]:
-        lines.append("Acting")
-        acting(summary, row)
+        lines.append("Torques and forces")
+        law_rows(summary, row)
     lines.append("Motion")
     _KINDS[motion["kind"]](motion, row)
     _changes(motion, row)
@@ -60,18 +60,18 @@ def printable(title: str) -> str:
     return "".join(c if c.isprintable() else "\ufffd" for c in title)
 
 
-def body_rows(body: dict[str, Any], free: bool, row: Row) -> None:
+def body_rows(body: dict[str, Any], row: Row) -> None:
     """Print the rows of the body."""
-    ignored = "free motion ignores it" if free else "the motion does not depend on it"
-    row("mass", f"not given, and {ignored}" if body["mass"] is None else f"{number(body['mass'])} kg")
+    mass = body["mass"]
+    row("mass", "not given; the motion does not depend on it" if mass is None else f"{number(mass)} kg")
     row("centre of mass", f"{_listed(body['center_of_mass'])} m")
     about = " about the fixed point" if body["held"] else ""
     row("principal moments", f"{_listed(body['principal_moments'])} kg m²{about}")
-    row("their ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"]))
+    row("moment ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"]))
 
 
-def acting(summary: dict[str, Any], row: Row) -> None:
-    """Print the torques and the forces."""
+def law_rows(summary: dict[str, Any], row: Row) -> None:
+    """Print the torques and forces."""
     for law in summary["torques"]:
         row(*_law(law))
     for force in summary["forces"]:
@@ -101,7 +101,7 @@ def _run(run: dict[str, Any], kind: str, row: Row) -> None:
         row("method", "exact solution in elliptic functions" if elliptic else "exact solution")
     else:
         row("method", f"{run['method']}, {run['steps']} steps of at most {number(run['step'])} s")
-        row("evaluations", f"{run['evaluations']} of the torques")
+        row("evaluations", f"{run['evaluations']} of the torque")
     if run["error_estimate"] is not None:
         row("error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate")
     if not run["drift_within_bound"]:
@@ -114,28 +114,28 @@ def _run(run: dict[str, Any], kind: str, row: Row) -> None:
 def _free(motion: dict[str, Any], row: Row) -> None:
     axis = motion["axis"]
     words = {
-        "short-axis mode": f"short-axis mode: ω circles axis {axis}, that of the largest moment",
-        "long-axis mode": f"long-axis mode: ω circles axis {axis}, that of the smallest moment",
+        "short-axis mode": f"short-axis mode: ω circles axis {axis}, the axis of the largest moment",
+        "long-axis mode": f"long-axis mode: ω circles axis {axis}, the axis of the smallest moment",
     }
     row("regime", words.get(motion["regime"], motion["regime"]))
     periodic = motion["period"] is not None
     if periodic:
         row("modulus k", number(motion["modulus"], 10))
         row("period of ω", f"{time(motion['period'])} in the body")
-        row("precession", f"{time(motion['precession_period'])} for one turn about L, on average")
+        row("precession", f"{time(motion['precession_period'])} per turn about L, on average")
         turns = motion["phase_per_period"] / (2 * np.pi)
-        row("phase", f"{number(turns, 8)} turns about L in a period")
+        row("phase", f"{number(turns, 8)} turns about L per period")
     if motion.get("wobbles_per_turn") is not None:
-        row("wobbles", f"{number(motion['wobbles_per_turn'], 8)} for each turn about axis {axis}")
+        row("wobbles", f"{number(motion['wobbles_per_turn'], 8)} per turn about axis {axis}")
     if periodic:
         row("angle to L", f"{_angles(motion['wobble_min'], motion['wobble_max'])} from axis {axis}")
     if motion["wobble_period"] is not None:
-        row("small wobbles", f"would take {time(motion['wobble_period'])}")
+        row("small wobbles", f"period {time(motion['wobble_period'])}")
     if motion["flip_time"] is not None and motion["modulus"] > 0.9:
         text = f"every {time(motion['flip_time'])} about the middle axis (half a period)"
         found = motion.get("reversals")
         if found:
-            text += f"; sampled: {found['count']}, every {time(found['mean_interval'])}"
+            text += f"; {found['count']} in this run, every {time(found['mean_interval'])}"
         row("flips", text)
     if "closed_form" in motion:
         difference = motion["closed_form"]["largest_rotor_difference"]
@@ -143,12 +143,12 @@ def _free(motion: dict[str, Any], row: Row) -> None:
 
 
 def _damped(motion: dict[str, Any], row: Row) -> None:
-    row("damping", "the motion of a free body, slower and slower")
+    row("damping", "free motion, slowed exponentially")
     if motion["halved_after"] is not None:
-        row("half of ω", f"after every {time(motion['halved_after'])}")
+        row("half-life of ω", time(motion["halved_after"]))
     _free(motion, row)
     if motion["period"] is not None:
-        row("", "(periods are those at the start)")
+        row("", "(periods at the initial rate)")
 
 
 def _gyrostat(motion: dict[str, Any], row: Row) -> None:
@@ -164,21 +164,21 @@ def _lagrange(motion: dict[str, Any], row: Row) -> None:
     row("regime", f"symmetric top under gravity, {motion['regime']}")
     _tilt(motion, row)
     if motion["nutation_period"] is not None:
-        row("nutation", f"{time(motion['nutation_period'])} from low to low")
+        row("nutation period", time(motion["nutation_period"]))
     if motion["precession_rate"] is not None:
         row(
             "precession",
             f"{number(motion['precession_rate'])} rad/s on average, "
-            f"{time(abs(motion['precession_period']))} for a turn",
+            f"{time(abs(motion['precession_period']))} per turn",
         )
         if (fast := motion["fast_top_precession_rate"]) is not None:
             off = motion["precession_rate"] / fast - 1
-            row("fast-top formula", f"{number(fast)} rad/s, m g l/(i3 ω3); the average is off by {off:+.2e}")
+            row("fast-top formula", f"{number(fast)} rad/s, m g l/(i3 ω3); the average differs by {off:+.2e}")
     stable = "stable" if motion["sleeps"] else "unstable"
     row(
         "upright",
-        f"{stable} with its spin of {number(motion['spin'])} rad/s; "
-        f"stable from {number(motion['critical_spin'])} rad/s",
+        f"{stable} at the spin {number(motion['spin'])} rad/s; "
+        f"critical spin {number(motion['critical_spin'])} rad/s",
     )
 
 
@@ -197,7 +197,7 @@ def _heavy(motion: dict[str, Any], row: Row) -> None:
 
 def _tilt(motion: dict[str, Any], row: Row) -> None:
     row("m g l", f"{number(motion['mgl'])} N m")
-    row("tilt from up", _angles(motion["tilt_min"], motion["tilt_max"]))
+    row("tilt", f"{_angles(motion['tilt_min'], motion['tilt_max'])} from the vertical")
 
 
 def _satellite(motion: dict[str, Any], row: Row) -> None:
@@ -207,9 +207,9 @@ def _satellite(motion: dict[str, Any], row: Row) -> None:
     row("long axis", f"{_angles(*motion['from_vertical'])} from the vertical")
     row("short axis", f"{_angles(*motion['from_normal'])} from the orbit's normal")
     if motion["libration_period"] is not None:
-        row("libration", f"{time(motion['libration_period'])} for a swing in the plane, on average")
+        row("libration", f"{time(motion['libration_period'])} per swing in the orbit plane, on average")
     if motion["small_libration_period"] is not None:
-        row("small librations", f"would take {time(motion['small_libration_period'])} in the plane")
+        row("small librations", f"period {time(motion['small_libration_period'])} in the orbit plane")
 
 
 def _torqued(motion: dict[str, Any], row: Row) -> None:

@@ -42,7 +42,7 @@ class SceneNotFoundError(_native.SceneError, FileNotFoundError):
 class Scene:
     """A scene file in SI units, ready to run; see `Scene.read`.
 
-    `dataclasses.replace` takes `path`, `times` and `ensemble`; the other attributes follow from the file.
+    `dataclasses.replace` accepts `path`, `times` and `ensemble`; the other attributes follow from the file.
 
     Attributes
     ----------
@@ -128,7 +128,7 @@ class Scene:
             "drift_bound": given["drift_bound"] or DRIFT_BOUND,
             "times": frozen(np.asarray(self.times, float)),
         }
-        # Fields that the file alone determines: `dataclasses.replace` refuses them.
+        # `dataclasses.replace` rejects the fields that the file alone determines.
         for name in (*(own.name for own in fields(self) if not own.init), "times"):
             self.__dict__[name] = given[name]
 

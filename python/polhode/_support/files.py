@@ -63,7 +63,7 @@ def check_target(target: Path) -> None:
     """Raise an OSError that names the path if a file cannot be written there."""
     with _naming(target):
         if not target.parent.is_dir():
-            raise OSError(f"there is no directory {target.parent}; make it first")
+            raise OSError(f"no such directory: {target.parent}; create it first")
         if target.exists() and not target.is_file():
             raise OSError("it exists and is not a regular file")
         if not os.access(target.parent, os.W_OK):

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-# Chromium under the names of distributions, its relatives beside it.
+# Names of Chromium in distributions, and of related browsers.
 _PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge")
-# Where else to look: in Playwright's own folder, and where Chrome and Edge are installed.
+# Other places: the folder of Playwright, and those of Chrome and Edge.
 _CHOICES: tuple[Any, ...] = ({}, {"channel": "chrome"}, {"channel": "msedge"})
 # WebGL in software: the same pixels on every machine, and no graphics card is needed.
 _SOFTWARE = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
@@ -62,7 +62,7 @@ def studio(
     size
         Width and height of the pictures, in pixels.
     view
-        Azimuth and elevation to look from, in degrees; None for those of the viewer.
+        Azimuth and elevation of the camera in degrees; None for those of the viewer.
     what
         What needs the browser, for errors: ``"a film"``.
 
@@ -77,7 +77,7 @@ def studio(
     """
     playwright = optional("playwright.sync_api", "film", what)
     text = page(of_trajectory(trajectory, times=times), bare=True)
-    # In a thread of its own: Playwright refuses to run in one with an event loop, such as a notebook's.
+    # In a separate thread: Playwright does not run in one with an event loop, such as a notebook's.
     with ThreadPoolExecutor(1) as thread:
 
         def call(function: Callable[..., T], *arguments: Any, **named: Any) -> T:
@@ -86,7 +86,7 @@ def studio(
             except playwright.Error as error:
                 raise OSError(f"{what}: the browser failed: {_first_line(error)}") from error
 
-        # So that it is ended also if a Ctrl-C comes while it starts.
+        # It is ended also if Ctrl-C comes while it starts.
         started: list[Any] = []
         try:
             call(lambda: started.append(playwright.sync_playwright().start()))

@@ -154,7 +154,7 @@ def _live(trajectory: Trajectory, path: Path) -> tuple[Document, Scene | Problem
     nothing: Document = {"format": 1, "name": path.name}
     if origin is not None:
         try:
-            # An event may have ended it before the last time that was asked for.
+            # An event may have ended it before the last output time.
             scene = scene_text(replace(origin, times=trajectory.time))
             return {"format": 1, "scene": scene, "name": "motion.toml"}, origin
         except UnwritableError:

@@ -32,7 +32,7 @@ def view(
         - A `FreeMotion`, `LagrangeTop`, `DampedTop` or `LarmorSphere`.
         - A `Body` or an `Inertia`; with `state`, and `torque` and `force` as for `polhode.simulate`.
     duration
-        Duration in s of motions without an end of their own; None for 20 turns at the initial rate.
+        Duration in s, for bodies and closed forms; None for 20 turns at the initial rate.
 
     Raises
     ------

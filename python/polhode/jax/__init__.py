@@ -1,10 +1,10 @@
-"""The same motion under JAX, for ``jit``, ``vmap`` and ``grad``: an extra, ``pip install 'polhode[jax]'``.
+"""Rigid-body motion under JAX, for ``jit``, ``vmap`` and ``grad``: ``pip install 'polhode[jax]'``.
 
-`free` is the exact free flow, `simulate` takes steps under the laws of `polhode.jax.torque`, `advance` moves
-large ensembles, on a GPU in one kernel. All are functions of arrays, whose components are in the last axis,
-in the order and with the meaning that they have everywhere: rotors over ``(1, e2e3, e3e1, e1e2)`` from body
-axes to space, angular velocities in body axes over ``(e2e3, e3e1, e1e2)``. Unless ``jax_enable_x64`` is set,
-JAX computes in single precision, and results are float32.
+`free` is the exact free flow, `simulate` takes steps under the laws of `polhode.jax.torque`, and `advance`
+takes steps of large ensembles, on a GPU in one kernel. All are functions of arrays with components in the
+last axis: rotors over ``(1, e2e3, e3e1, e1e2)`` from body axes to space, angular velocities in body axes over
+``(e2e3, e3e1, e1e2)``. Unless ``jax_enable_x64`` is set, JAX computes in single precision, and results are
+float32.
 """
 
 from polhode.jax import torque as torque

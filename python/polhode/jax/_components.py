@@ -1,9 +1,8 @@
 """Rotors, vectors and bivectors as tuples of components, each an array of any shape.
 
-So kept, a batch of bodies is one array for each component, which compilers run in lanes, on a GPU in threads;
-and every step is the same code for one body, for a batch, under ``vmap`` and inside a kernel. The components
-of a bivector are those of its axial vector; sums are in the order of the compiled core, so that both round
-alike.
+A batch of bodies is one array per component, which compilers run in SIMD lanes or GPU threads. Each step is
+the same code for one body, for a batch, under ``vmap`` and inside a kernel. The components of a bivector are
+those of its axial vector; sums are in the order of the compiled core, so that both round alike.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Elliptic integrals over arrays in fixed steps, as in `crates/rigid/src/numerics/elliptic.rs`."""
+"""Elliptic integrals of arrays, in a fixed number of steps, as in `crates/rigid/src/numerics/elliptic.rs`."""
 
 from __future__ import annotations
 

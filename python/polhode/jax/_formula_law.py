@@ -1,4 +1,4 @@
-"""Torque laws that are formulas, evaluated over arrays of JAX."""
+"""Torque laws given by formulas, evaluated over JAX arrays."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _GIVEN = [
 
 @pytree
 class Formula(Law):
-    """A formula with the names of the motion and values of its own, pytrees of JAX."""
+    """A formula in the names of the motion and given values, which are JAX pytrees."""
 
     values: dict[str, Any]
     frame: Four | None
@@ -57,7 +57,7 @@ class Formula(Law):
         return found if self.frame is None else turned(reverse(self.frame), found)
 
     def checked(self) -> Formula:
-        """Return it with values of the required grades; raise a `FormulaError` if it is not a torque."""
+        """Return the law with values of the required grades; raise a `FormulaError` if it is not a torque."""
         try:
             self._program()
         except FormulaError:
@@ -114,7 +114,7 @@ class Formula(Law):
 
 
 def value_of(value: Any, name: str) -> Multivector:
-    """Return a multivector over arrays of JAX for a formula, from a multivector or numbers."""
+    """Return a multivector over JAX arrays for a formula, from a multivector or numbers."""
     if isinstance(value, LinearMap):
         raise TypeError(f"{name} is a linear map; formulas under JAX take multivectors, rotors and numbers")
     if isinstance(value, Multivector):

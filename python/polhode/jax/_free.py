@@ -1,11 +1,11 @@
 """The exact free flow: values and derivatives from the compiled core, or from theta series in JAX.
 
-The compiled core is called back from within the program, once for all bodies of a batch. Its derivatives are
-closed forms too (`FreeMotion.derivatives`); what JAX needs beside them is the linear rule below.
+A callback computes all bodies of a batch at once in the compiled core. Its derivatives are closed forms too
+(`FreeMotion.derivatives`), from which the rule below forms the tangents.
 
-**By the rotor.** The flow turns from the body's side, ``R(t) = R(0) U(t)`` where U depends on moments, rates
-and time alone. So a tangent of the start, less its part along ``R(0)``, which the norm takes away, is carried
-along by ``U = ~R(0) R(t)``.
+**With respect to the rotor.** ``R(t) = R(0) U(t)``, where U depends on moments, rates and time only. So a
+tangent of the start, without its part along ``R(0)``, which normalization removes, is multiplied by
+``U = ~R(0) R(t)``.
 """
 
 from __future__ import annotations
@@ -32,24 +32,23 @@ def free(
     """Return rotors (..., 4) and angular velocities (..., 3) of free bodies at times t, exact at any time.
 
     The flow of `polhode.FreeMotion`, for ``jit``, ``vmap`` and ``grad``; all bodies at all times, of batch
-    shape ``bodies + t.shape``. It has derivatives of first order by moments, rotor, angular velocity and
-    time, at every point where the flow has them: they are closed forms as well, and do not lose digits as t
-    grows, with a limit at equal moments, steady rotation and rest.
+    shape ``bodies + t.shape``. First derivatives with respect to moments, rotor, angular velocity and time
+    are closed forms, accurate for any t, also at equal moments, in steady rotation and at rest.
 
     Parameters
     ----------
     inertia, rotor, omega_body
-        As for `polhode.jax.simulate`. The derivative by a rotor's components has no part along the rotor.
+        As for `polhode.jax.simulate`. The derivative with respect to the rotor has no part along the
+        rotor.
     t
         Times in s, of any shape.
     method
-        ``"native"`` calls the compiled core, which keeps the error at rounding up to t = 1e12 and later, in
-        double precision also where JAX computes in single. ``"jax"`` is the same series in JAX alone, for
-        other devices than the CPU: with 64 bits its error is some 1e-15 and grows by 3e-16 or so with every
-        radian that the body turns; its derivatives are those of its operations, and NaN where the motion is
-        steady or two moments are equal. None takes the first where JAX runs on the CPU.
+        ``"native"`` calls the compiled core, whose error stays at rounding up to t = 1e12, always in double
+        precision. ``"jax"`` is the same series in JAX, for devices other than the CPU: in double precision
+        its error is about 1e-15 and grows by about 3e-16 per radian; its derivatives are those of its
+        operations, NaN in steady rotation and at equal moments. None selects ``"native"`` on the CPU.
 
-    What has no motion is NaN: a moment that is not positive, a start that is not finite, a time beyond 1e17
+    The result is NaN for moments that are not positive, starts that are not finite, and times beyond 1e17
     turns.
     """
     if method not in (None, *METHODS):
@@ -98,7 +97,7 @@ def _flow_jvp(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[
 
 
 def carried_along(rotor: Array, tangent: Array, rotors: Array) -> Array:
-    """Return the tangents (..., m, 4) of rotors by one of their start (..., 4)."""
+    """Return the tangents (..., m, 4) of rotors from the tangent (..., 4) of their start."""
     r, d = split(rotor), split(tangent)
     square = sum(x * x for x in r)
     along = sum(x * y for x, y in zip(r, d, strict=True)) / square

@@ -1,8 +1,8 @@
-"""Many bodies over many steps in one kernel, which keeps their states on the chip.
+"""Many steps of many bodies in one Pallas kernel, which keeps their states in registers.
 
-A program of `simulate` writes the state of a batch to memory after each step and reads it back for the next.
-Here a Pallas kernel has the loop over time within: each block of bodies is read once, stays in registers over
-all steps, and is written once. The steps are those of `simulate`, line for line, on components of one block.
+`simulate` writes the state of a batch to memory after each step and reads it back for the next. The kernel
+contains the loop over time: each block of bodies is read once, stays in registers over all steps, and is
+written once. The steps are those of `simulate`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from polhode.jax._table import Table
 
 Array = Any
 
-# A body to each thread of four warps: the state and the slopes of a step fill a thread's registers.
+# One body per thread of four warps: the state and the slopes of a step fill the registers of a thread.
 BLOCK = 128
 
 
@@ -40,26 +40,24 @@ def advance(
     kernel: bool | None = None,
     start_time: Any = 0.0,
 ) -> tuple[Array, Array]:
-    """Return rotors (..., 4) and angular velocities (..., 3) after so many equal steps to a time.
+    """Return rotors (..., 4) and angular velocities (..., 3) at a time, after equal steps.
 
-    What `simulate` gives for this one time, for large ensembles: where JAX runs on a GPU, in one kernel that
-    keeps each body on the chip over all steps. There, too, it is differentiated: the value comes from the
-    kernel, the derivatives from the steps of `simulate`.
+    The result of `simulate` for one time, for large ensembles: on a GPU, one kernel keeps each body in
+    registers over all steps. Derivatives are those of `simulate`.
 
     Parameters
     ----------
     inertia, rotor, omega_body, torque, method
-        As for `polhode.jax.simulate`. In a kernel the parameters of the torque are numbers for each body or
-        for all: no tables, formulas and functions.
+        As for `polhode.jax.simulate`. The kernel does not support tables, formulas and functions.
     time
-        In s, of either sign; one for all bodies.
+        The time of the result in s, one for all bodies; it may be before the start.
     steps
-        Their number, 1 at least.
+        Number of steps, at least 1.
     kernel
-        Whether to use the kernel; True elsewhere than on a GPU runs it in Pallas' interpreter, for tests.
-        None: on a GPU, for the laws that it has.
+        Whether to use the kernel; without a GPU it runs in the interpreter of Pallas, for tests. None
+        selects it on a GPU for the laws that it supports.
     start_time
-        When the bodies are there, in s; one for all of them.
+        The time of the initial states in s, one for all bodies.
     """
     if not isinstance(steps, int) or steps < 1:
         raise ValueError(f"steps is {steps!r}; it must be a positive integer")
@@ -78,7 +76,7 @@ def advance(
 
 
 def _scanned(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
-    """The same by a loop of whole batches."""
+    """Return the result of `advance` by the steps of `simulate`."""
     counts = np.array([steps])
     found = compiled(given, torque, span[1:], counts, span[0], method=method, most=steps, even=True)
     return found[0][..., 1, :], found[1][..., 1, :]
@@ -87,7 +85,7 @@ def _scanned(method: str, steps: int, given: Start, torque: Torque, span: Array)
 @partial(jax.custom_jvp, nondiff_argnums=(0, 1))
 @partial(jax.jit, static_argnums=(0, 1))
 def _advanced(method: str, steps: int, given: Start, torque: Torque, span: Array) -> tuple[Array, Array]:
-    """By the kernel."""
+    """Return the result of `advance` by the kernel."""
     dtype = given.rotor.dtype
     inputs = split(given.moments), normalized(split(given.rotor)), split(given.omega), torque
     leaves, tree = jax.tree.flatten(jax.tree.map(lambda x: jnp.asarray(x, dtype), inputs))
@@ -114,7 +112,7 @@ def _advanced_jvp(method: str, steps: int, primals: tuple[Any, ...], tangents: t
 def _walk(
     method: str, steps: int, tree: Any, leaves: list[Array], begin: Array, end: Array, table: Array
 ) -> tuple[Array, ...]:
-    """All steps of a block of bodies."""
+    """Take all steps of a block of bodies."""
     moments, rotor, omega, torque = jax.tree.unflatten(tree, leaves)
     moves = stepper(method, Gyrostat(moments, torque.wheel()), torque, table)
     point = moves.start(rotor, omega, begin)
@@ -130,11 +128,10 @@ def _walk(
 
 
 def _call(walk: Any, rows: list[Array], span: Array, table: Array) -> list[Array]:
-    """Run it over the blocks, a program of the grid for each."""
+    """Run a walk over the blocks, one program of the grid for each."""
     pallas = optional("jax.experimental.pallas", "jax", "the kernel of polhode.jax")
 
-    # The times of the start and the end, and what a method needs in its stages; of a length that is a power
-    # of two, as GPUs have it.
+    # Coefficients of the stages, start time and end time; GPUs need a length that is a power of two.
     numbers = jnp.concatenate([table, span])
     length = 1 << (numbers.size - 1).bit_length()
     numbers = jnp.pad(numbers, (0, length - numbers.size))
@@ -161,7 +158,7 @@ def _call(walk: Any, rows: list[Array], span: Array, table: Array) -> list[Array
 
 
 def _target() -> dict[str, Any]:
-    """On a GPU through Triton, a body to each thread; elsewhere in the interpreter."""
+    """Return the options for Triton on a GPU, one body per thread; for the interpreter elsewhere."""
     if jax.default_backend() != "gpu":
         return {"interpret": True}
     triton = optional("jax.experimental.pallas.triton", "jax", "the kernel of polhode.jax")

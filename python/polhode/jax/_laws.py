@@ -1,6 +1,6 @@
 """Torque laws as pytrees, with their parameters as leaves for differentiation and mapping.
 
-They compute as `crates/rigid/src/laws/torque/mod.rs` does, in the same order: the torque in principal axes,
+They compute what `crates/rigid/src/laws/torque/mod.rs` does, in the same order: the torque in principal axes,
 without damping ``−g I(Ω)`` and the reaction of a wheel, which steps add. A law without a class here is
 computed by its formula in the registry of laws.
 """

@@ -1,4 +1,4 @@
-"""Motion by equal steps, as one program for JAX."""
+"""Motion by equal steps under JAX."""
 
 from __future__ import annotations
 
@@ -38,17 +38,15 @@ def simulate(
 ) -> tuple[Array, Array]:
     """Return rotors (..., n, 4) and angular velocities in body axes (..., n, 3) at n times.
 
-    One program of JAX, for ``jit``, ``vmap``, ``jacfwd`` and ``grad``, by everything that is an array:
-    moments, start, parameters of the torque, and with `steps` the times and the start time. It takes the
-    steps of `polhode.simulate` by the same names, and agrees with it to the rounding of the steps. Between
-    output times only the state is kept, so that ``grad`` needs memory for one state a step, and computes
-    each step twice.
+    For ``jit``, ``vmap``, ``jacfwd`` and ``grad``, with respect to moments, start, parameters of the torque,
+    and with `steps` the times and the start time. It takes the steps of the methods of `polhode.simulate`,
+    and agrees with them to rounding. ``grad`` stores one state per step and computes each step twice.
 
     Parameters
     ----------
     inertia
-        Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; or an `Inertia`, or a `Body`,
-        about its centre of mass, with `heavy` about the origin of its axes, with
+        Principal moments (..., 3) in kg m² about the body axes e1, e2, e3; an `Inertia`; or a `Body`, which
+        moves about its centre of mass, under `heavy` about the origin of its axes, and under
         `polhode.torque.gravity` about the pivot.
     rotor
         From body axes to space at the start: a `Rotor`, or its components (..., 4), which are divided by
@@ -56,25 +54,25 @@ def simulate(
     omega_body
         Angular velocity in body axes at the start, a bivector or (..., 3), in rad/s. Batches broadcast.
     times
-        Output times (n,) in s, not decreasing; those before the start are reached by going backwards.
+        Output times (n,) in s, not decreasing; those before the start are reached by
+        integrating backwards.
     torque
         A law of `polhode.jax.torque`, a sum of them, a law of `polhode.torque`, or a function as for
         `polhode.jax.torque.function`; None for free motion.
     method
         A splitting, for torques that depend on attitude and time: ``"strang"`` (order 2), ``"yoshida4"``,
-        ``"yoshida6"``, ``"kahan_li6"``, ``"kahan_li8"``; or the classical ``"rk4"``, for any.
+        ``"yoshida6"``, ``"kahan_li6"``, ``"kahan_li8"``; or the classical ``"rk4"``, for any torque.
     step, steps
-        The longest step in s, shortened a little so that steps end on the output times; or the number of
-        steps from one output time to the next, with which the times may be traced.
+        The longest step in s, shortened so that steps end at the output times; or the number of steps
+        between two output times, with which the times may be traced.
     start_time
-        When the body is there, in s, on the clock of `times` and of the torque, as ``State.time``; one for
-        all bodies.
+        The time of the initial state in s, on the clock of `times` and of the torque; one for all bodies.
 
     Raises
     ------
     ValueError
-        For shapes, times and methods that are not usable. Values are not looked at, for they may be traced:
-        what has no motion, such as a moment of 0, gives NaN.
+        For invalid shapes, times and methods. Values are not checked, because they may be traced: where the
+        motion does not exist, as for a moment of 0, the result is NaN.
     """
     given, force = prepared(inertia, rotor, omega_body, torque, method)
     begin, both = ways(times, step, steps, force, start_time)

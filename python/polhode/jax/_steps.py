@@ -19,10 +19,10 @@ _MOST_STEPS = 1e8
 
 
 class Way(NamedTuple):
-    """Times to walk to, one after the other from the start, and the number of equal steps to each.
+    """Successive target times from the start on, and the number of equal steps to each.
 
-    `most` is the largest of these numbers, and `even` whether all are. `places` are those of the output times
-    among the times of the way, from 1; that of the start is 0.
+    `most` is the largest of these numbers; `even` is true if all are equal. `places` are the indices of the
+    output times among the start (0) and the targets (from 1).
     """
 
     targets: Array
@@ -35,9 +35,9 @@ class Way(NamedTuple):
 def ways(
     times: Any, step: float | None, steps: int | None, torque: Torque, start: Any
 ) -> tuple[Any, list[tuple[Way, bool]]]:
-    """Return the start time and the ways from there to all times, back in time (True) and forth.
+    """Return the start time and the ways to all times, each with True if it goes back in time.
 
-    Where the start or the times are traced there is one way, forth.
+    Traced times, or a traced start, give one way forwards.
     """
     if (step is None) == (steps is None):
         raise ValueError("give either step, the longest step in s, or steps, their number between two times")

@@ -1,6 +1,6 @@
 """The exact free flow in JAX alone; `crates/rigid/src/exact/free/mod.rs` has the derivation.
 
-Both forms of the series are computed for each body, and the one that its nome asks for is taken.
+Both forms of the series are computed for each body; its nome selects one.
 """
 
 from __future__ import annotations

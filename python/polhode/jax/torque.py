@@ -1,7 +1,7 @@
 """Torque laws for `polhode.jax.simulate`, with the names and arguments of `polhode.torque`.
 
-Their arguments may be traced, and of any batch that goes with that of the bodies: ``jax.grad`` differentiates
-by them. A law of `polhode.torque` itself serves too where its parameters are just numbers.
+Arguments may be traced, and may be batches that broadcast with the bodies; ``jax.grad`` differentiates with
+respect to them. Laws of `polhode.torque` are accepted too; their parameters are constants.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ P = ParamSpec("P")
 def _law(
     constructor: Callable[P, native.Torque], kernel: Callable[..., Any] | None = None
 ) -> Callable[P, Torque]:
-    """Return a constructor of `polhode.torque` for arguments of JAX, which may be traced.
+    """Return a constructor of `polhode.torque` for JAX arrays, which may be traced.
 
-    Without a kernel the law is computed by the formula of the registry.
+    Without a kernel the law is evaluated by its formula in the registry.
     """
     signature, entry = inspect.signature(constructor), TORQUES[constructor.__name__]
 
@@ -89,10 +89,10 @@ def _control(kp: Three, kd: Three, target: Four) -> _laws.Control:
 
 
 def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear") -> Torque:
-    """Return torques (n, 3) at n times, interpolated; the times are numbers, the torques may be traced.
+    """Return a torque interpolated in a table, as `polhode.torque.tabulated`.
 
-    As in `polhode.torque.tabulated`; beyond its times the torque is NaN. Steps end on its times where
-    `simulate` knows all times beforehand.
+    The times (n,) are constants, the torques (n, 3) may be traced. Outside the times the torque is NaN. Steps
+    end at the times unless the output times are traced.
     """
     when, rows = as_floats(times, "times"), _array(torques)
     # Raises for wrong times, frame and kind.
@@ -104,7 +104,7 @@ def tabulated(times: Any, torques: Any, frame: str = "body", kind: str = "linear
 def formula(text: str, /, *, frame: str = "body", **values: Any) -> Torque:
     """Return the torque of a formula, with the names of `polhode.torque.formula`.
 
-    The values are multivectors, rotors and numbers, of traced arrays too; linear maps are not supported.
+    Values are multivectors, rotors and numbers, which may be traced; linear maps are not supported.
     """
     if frame not in ("body", "space"):
         raise ValueError(f"frame is {frame!r}, expected 'body' or 'space'")
@@ -116,8 +116,8 @@ def function(f: Callable[[Any, Any, Any], Any]) -> Torque:
     """Return the torque of a function in ``jax.numpy``: ``f(t, rotor, omega_body)``.
 
     It is called with the time in s, the rotor's components (..., 4) from body axes to space and those of the
-    angular velocity (..., 3) in body axes, and returns the torque (..., 3) in body axes. What it closes over
-    may be traced.
+    angular velocity (..., 3) in body axes, and returns the torque (..., 3) in body axes. Values that it
+    closes over may be traced.
     """
     if not callable(f):
         raise TypeError(f"expected a function of t, rotor and omega_body, got {type(f).__name__}")

@@ -105,7 +105,7 @@ class Session:
             raise _placed(read, error) from None
 
     def forget(self, name: str) -> None:
-        """Remove a name; a LookupError says why this is not possible."""
+        """Remove a name; a LookupError if this is not possible, with the reason."""
         key = canonical(name) or name
         if key not in self.names:
             raise LookupError(f"`{name}` has no value")

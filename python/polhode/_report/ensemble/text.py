@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from polhode._report.text import QUANTITIES, Row, acting, body_rows, number, printable, time
+from polhode._report.text import QUANTITIES, Row, body_rows, law_rows, number, printable, time
 from polhode._support.memory import size
 
 # Widths of names and quantiles.
@@ -25,10 +25,10 @@ def as_text(summary: dict[str, Any]) -> str:
     lines.append("Ensemble")
     _drawn(summary["ensemble"], row)
     lines.append("Body")
-    body_rows(summary["body"], motion["kind"] == "free", row)
+    body_rows(summary["body"], row)
     if summary["torques"] or summary["forces"]:
-        lines.append("Acting")
-        acting(summary, row)
+        lines.append("Torques and forces")
+        law_rows(summary, row)
     lines.append("Motion")
     who = "those that finished" if summary["failures"]["count"] else "the bodies"
     _motion(motion, summary["ensemble"]["number"], who, row)
@@ -114,7 +114,7 @@ def _run(run: dict[str, Any], row: Row) -> None:
         row("steps", f"{run['steps']} of all bodies")
     if run["error_estimate"] is not None:
         row("error estimate", f"at most {run['error_estimate']:.1e} in attitude and relative rate")
-    row("memory", f"{size(run['memory'])} planned")
+    row("memory", f"{size(run['memory'])} estimated")
     if run["drift_within_bound"] is False:
         row("FAILED", f"a conserved quantity drifted by more than {run['drift_bound']:g}")
 

@@ -67,8 +67,9 @@ demo: package
 	@mkdir -p build/demo
 	$(BIN)/polhode demo -o build/demo
 
-# One worker for each processor; a worker that has finished takes tests from another.
-PYTEST := $(BIN)/python -m pytest --numprocesses logical --dist worksteal
+# One worker more than processors, because tests of the page wait for the browser. A worker that has finished takes tests
+# from another.
+PYTEST = $(BIN)/python -m pytest --numprocesses $$($(BIN)/python -c "import os; print(os.cpu_count() + 1)") --dist worksteal
 
 test: setup
 	cargo test --quiet --locked --workspace --exclude polhode-py

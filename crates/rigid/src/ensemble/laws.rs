@@ -24,11 +24,6 @@ impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     fn torque(&mut self, _: &Place<W, F>) -> [Lanes<W, F>; 3] {
         [Lanes::ZERO; 3]
     }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
-    }
 }
 
 /// Weights and damping only, without wheels: their parameters stay in registers.
@@ -42,11 +37,6 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
         cross(&vertical(&at.rotor), &self.0)
-    }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
     }
 }
 
@@ -63,11 +53,6 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
         self.orbits.torque(&self.moments, at)
-    }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
     }
 }
 
@@ -464,10 +449,5 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
             add(&mut sum, &torque);
         }
         sum
-    }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
     }
 }

@@ -31,8 +31,11 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 
-    /// The acceleration in space of a centre of mass with this position and velocity.
-    fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
+    /// The acceleration in space of a centre of mass with this position and velocity; zero by default.
+    #[inline(always)]
+    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
+        [Lanes::ZERO; 3]
+    }
 }
 
 /// Forcing of a single body. After the first failure, which is kept, no law is evaluated.

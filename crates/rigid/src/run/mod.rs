@@ -25,8 +25,8 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons_from, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
-use certificate::{Certificate, Watch, off_unit};
-use closed_form::{ClosedForm, Fall, check_kept};
+use certificate::{Certificate, DriftMonitor, off_unit};
+use closed_form::{ClosedForm, UniformAcceleration, check_kept};
 use engine::Engine;
 use limits::{StepBounds, samples, span};
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -295,12 +295,12 @@ impl Problem {
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Sweep, SimulateError> {
-        let watch = Watch::new(self.body, &self.torques, self.start().phase);
+        let monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
         let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
         let integrator = Integrator {
             body: self.body,
             engine,
-            watch,
+            monitor,
             rule,
             first,
             least_rate: bounds.least_rate.max(known_rate),
@@ -321,9 +321,9 @@ impl Problem {
     /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
     fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
         let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
-        let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
-        states.iter().for_each(|state| watch.look(&state.phase));
-        let drifts = watch.finish();
+        let mut monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
+        states.iter().for_each(|state| monitor.record(&state.phase));
+        let drifts = monitor.finish();
         check_kept(&drifts)?;
         Ok(Sweep { states, drifts, ..Sweep::default() })
     }
@@ -339,10 +339,10 @@ impl Problem {
     }
 
     /// The motion of the centre of mass, if the forces are constant.
-    fn fall(&self) -> Option<Fall> {
+    fn fall(&self) -> Option<UniformAcceleration> {
         let start = self.center;
         let Some(translation) = &self.translation else {
-            return Some(Fall { time: self.time, start, acceleration: Vector::default() });
+            return Some(UniformAcceleration { time: self.time, start, acceleration: Vector::default() });
         };
         let constant = translation.forces.iter().map(|force| match force {
             Force::Constant(force) => Some(*force),
@@ -350,7 +350,7 @@ impl Problem {
         });
         let sum: Option<Vec<Vector>> = constant.collect();
         let sum = sum?.into_iter().fold(Vector::default(), |sum, force| sum + force);
-        Some(Fall { time: self.time, start, acceleration: sum / translation.mass })
+        Some(UniformAcceleration { time: self.time, start, acceleration: sum / translation.mass })
     }
 
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {

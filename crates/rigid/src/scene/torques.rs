@@ -33,7 +33,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// Its name and, as text, its formula or its numbers.
+    /// Its name and its formula or numbers as text.
     pub fn facts(&self) -> Facts {
         law_facts(self.name, &self.torque, self.formula.as_deref())
     }
@@ -97,7 +97,7 @@ pub fn arguments<T>(reader: &mut Reader, value: &Value, entry: &Entry<T>) -> Opt
     let periods = entry.arguments.iter().map(|argument| argument.period).filter(|name| !name.is_empty());
     let fields: Vec<_> = entry.arguments.iter().map(|argument| argument.field).chain(periods).collect();
     reader.only(table, &fields);
-    // All are read, so that all that is wrong is reported.
+    // Read all arguments, so that all errors are reported.
     let numbers: Vec<Option<Vec<f64>>> =
         entry.arguments.iter().map(|argument| of_field(reader, table, argument)).collect();
     Some(numbers.into_iter().collect::<Option<Vec<_>>>()?.concat())

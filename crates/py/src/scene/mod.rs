@@ -56,7 +56,7 @@ impl Scene {
     /// The attributes of Python's `Scene`, in SI units.
     fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let Scene { scene, body, laws } = self;
-        let formulas: Vec<Option<String>> = laws.iter().map(|law| law.formula.clone()).collect();
+        let formulas: Vec<_> = laws.iter().map(|law| law.formula.as_deref()).collect();
         let law_objects: Vec<Py<Law>> =
             laws.iter().map(|law| named(py, law.torque.clone())).collect::<PyResult<_>>()?;
         let forces: Vec<_> = scene.forces.iter().map(|push| pushed(py, push)).collect::<PyResult<_>>()?;

@@ -112,12 +112,10 @@ impl Event {
 
 /// The crossing between two values, if any. A zero at the first value belongs to the interval before.
 pub(crate) fn crossing(before: f64, after: f64) -> Option<Direction> {
-    if before < 0.0 && after >= 0.0 {
-        Some(Direction::Rising)
-    } else if before > 0.0 && after <= 0.0 {
-        Some(Direction::Falling)
-    } else {
-        None
+    match () {
+        () if before < 0.0 && after >= 0.0 => Some(Direction::Rising),
+        () if before > 0.0 && after <= 0.0 => Some(Direction::Falling),
+        () => None,
     }
 }
 

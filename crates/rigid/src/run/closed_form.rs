@@ -94,8 +94,8 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
     // Laws of one kind add up.
     match first {
         Torque::Heavy(_) => {
-            let each = torques.iter().map(|t| if let Torque::Heavy(c) = t { Some(*c) } else { None });
-            let c = each.collect::<Option<Vec<_>>>()?.into_iter().fold(Vector::default(), |sum, c| sum + c);
+            let add = |sum, t: &Torque| if let Torque::Heavy(c) = t { Some(sum + *c) } else { None };
+            let c = torques.iter().try_fold(Vector::default(), add)?;
             LagrangeTop::new(&inertia, rotor, omega, c).ok().map(Box::new).map(Rotation::Lagrange)
         }
         Torque::Damping(_) => {
@@ -104,8 +104,8 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
             DampedTop::new(&inertia, rotor, omega, damping).ok().map(Box::new).map(Rotation::Damped)
         }
         Torque::Larmor(_) => {
-            let each = torques.iter().map(|t| if let Torque::Larmor(b) = t { Some(*b) } else { None });
-            let b = each.collect::<Option<Vec<_>>>()?.into_iter().fold(Vector::default(), |sum, b| sum + b);
+            let add = |sum, t: &Torque| if let Torque::Larmor(b) = t { Some(sum + *b) } else { None };
+            let b = torques.iter().try_fold(Vector::default(), add)?;
             LarmorSphere::new(&inertia, rotor, omega, b).ok().map(Rotation::Larmor)
         }
         _ => None,

@@ -60,11 +60,8 @@ pub(crate) const NO_CLOSED_FORM: &str = "needs a motion in closed form and no st
 
 /// The start time must be finite.
 pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(SimulateError::BadValue { what: "the time of the start", value })
-    }
+    let what = "the time of the start";
+    if value.is_finite() { Ok(()) } else { Err(SimulateError::BadValue { what, value }) }
 }
 
 /// A body, its angular velocity and its torques must be valid.
@@ -201,16 +198,12 @@ impl Problem {
                 (long(1.0), self.sampled(closed, times)?, neglected)
             }
             (Engine::ClosedForm(_), _) => {
-                let rule = long(1.0);
-                (
-                    rule,
-                    self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?,
-                    neglected,
-                )
+                let plan = SweepPlan::only(long(1.0));
+                (plan.rule, self.sweep(&engine, times, (plan, &bounds), &events, progress)?, neglected)
             }
             (_, Some(step)) => {
-                let rule = StepRule::equal(step.min(bounds.longest));
-                (rule, self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?, None)
+                let plan = SweepPlan::only(StepRule::equal(step.min(bounds.longest)));
+                (plan.rule, self.sweep(&engine, times, (plan, &bounds), &events, progress)?, None)
             }
             (_, None) => {
                 let accuracy = Accuracy::new(method.order(), options.rtol);
@@ -344,12 +337,8 @@ impl Problem {
         let Some(translation) = &self.translation else {
             return Some(UniformAcceleration { time: self.time, start, acceleration: Vector::default() });
         };
-        let constant = translation.forces.iter().map(|force| match force {
-            Force::Constant(force) => Some(*force),
-            _ => None,
-        });
-        let sum: Option<Vec<Vector>> = constant.collect();
-        let sum = sum?.into_iter().fold(Vector::default(), |sum, force| sum + force);
+        let add = |sum, force: &Force| if let Force::Constant(f) = force { Some(sum + *f) } else { None };
+        let sum = translation.forces.iter().try_fold(Vector::default(), add)?;
         Some(UniformAcceleration { time: self.time, start, acceleration: sum / translation.mass })
     }
 

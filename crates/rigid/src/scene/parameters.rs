@@ -45,29 +45,15 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         let mut at = 0;
         for argument in entry.arguments {
             let Argument { field, quantity, shape, limit, period, .. } = *argument;
+            let (law, size, is_period) = (entry.name, shape.size(), false);
             let is_one = matches!(shape, Shape::Scalar | Shape::Gains);
-            let own = Parameter {
-                law: entry.name,
-                field,
-                quantity,
-                size: shape.size(),
-                limit,
-                at,
-                is_one,
-                is_period: false,
-            };
-            at += shape.size();
-            if matches!(shape, Shape::Scalar | Shape::Vector | Shape::Bivector | Shape::Gains) {
-                let time = Some(Quantity::Time);
-                let period = (!period.is_empty()).then_some(Parameter {
-                    field: period,
-                    quantity: time,
-                    limit: Limit::Positive,
-                    is_period: true,
-                    ..own
-                });
+            let own = Parameter { law, field, quantity, size, limit, at, is_one, is_period };
+            at += size;
+            if is_one || matches!(shape, Shape::Vector | Shape::Bivector) {
+                let (quantity, limit) = (Some(Quantity::Time), Limit::Positive);
+                let period = Parameter { field: period, quantity, limit, is_period: true, ..own };
                 all.push(own);
-                all.extend(period);
+                all.extend(Some(period).filter(|period| !period.field.is_empty()));
             }
         }
     }

@@ -120,7 +120,10 @@ fn impossible_bodies_are_reported_at_their_field() {
             "solid = 'sphere'\nradius = 1e200\ndensity = 1",
             "x.toml:4:11: error: mass must be positive and finite, got inf kg",
         ),
-        ("solid = 'sphere'\nradius = 1e-200\nmass = 1", "x.toml:2:9: error: the largest moment of inertia "),
+        (
+            "solid = 'sphere'\nradius = 1e-200\nmass = 1",
+            "x.toml:2:9: error: the largest moment of inertia, 0.0 kg m²",
+        ),
     ];
     for (body, message) in table {
         let error = body_error(&scene(body));

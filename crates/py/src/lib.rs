@@ -1,4 +1,4 @@
-//! The Python binding: converts arrays, registers functions, releases the GIL. It holds no formula.
+//! Python binding: converts arrays, registers functions and releases the GIL.
 
 use pyo3::prelude::*;
 

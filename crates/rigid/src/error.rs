@@ -29,7 +29,7 @@ pub enum SimulateError {
     OutsideMotion { index: usize, time: f64, first: f64, last: f64 },
     /// More steps than the limit allows.
     TooManySteps { steps: f64, step: f64, limit: f64 },
-    /// Stability requires steps much shorter than the motion: a method for stiff laws is to take over.
+    /// Stability requires steps much shorter than the motion; use a method for stiff laws.
     Stiff { steps: f64 },
     /// Halving the step no longer reduces the difference of two runs.
     NotConverged { rtol: f64, reached: f64, step: f64 },

@@ -1,4 +1,4 @@
-//! Facts: named values for readers that are not written in Rust.
+//! Facts: named values for JSON and Python.
 
 /// A value that JSON and Python can hold.
 #[derive(Clone, Debug, PartialEq)]

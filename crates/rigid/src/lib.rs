@@ -1,10 +1,10 @@
-//! Rigid-body mechanics in the language of geometric algebra.
+//! Rigid-body mechanics in geometric algebra.
 //!
 //! A body's attitude is a rotor `R` that carries body axes to space axes; its angular velocity and
 //! angular momentum are bivectors, `L = R I(Ω_B) ~R` (handout eq. 4.19), where the inertia map `I`
 //! takes the plane of rotation to the plane of angular momentum.
 //!
-//! Rooms: [`body`] (mass, centre of mass, the inertia map; solids, triangle meshes and their files), [`state`] (a point
+//! Modules: [`body`] (mass, centre of mass, the inertia map; solids, triangle meshes and their files), [`state`] (a point
 //! of a motion), [`laws`] (torques, forces, formulas, events, and what is conserved), [`exact`] (motions in closed form),
 //! [`methods`] (steps), [`run`] (one motion at given times, with a certificate of what was conserved), [`ensemble`] (many
 //! bodies at once), [`describe`] (properties of a motion as [`mod@facts`]), [`numerics`] (arithmetic of twice the

@@ -9,7 +9,7 @@ use crate::numerics::lanes::{exp_minus, horner};
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 
-/// No number of [`normal`] is larger: that of the smallest probability, 2⁻⁵³, is 8.2095.
+/// Upper bound of [`normal`]: the quantile of the smallest probability, 2⁻⁵³, is 8.2095.
 pub(crate) const LARGEST_NORMAL: f64 = 8.21;
 
 /// The random words of successive bodies.
@@ -41,21 +41,21 @@ fn hash(name: &str) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// A number between −½ and ½, of 2⁵² that lie evenly and alike on both sides of 0, which is none of them.
+/// One of 2⁵² equally spaced numbers between −½ and ½, symmetric about 0, which is not one of them.
 fn centered(word: u64) -> f64 {
     ((word >> 12) as f64 + 0.5) / (1u64 << 52) as f64 - 0.5
 }
 
-/// A number between −1 and 1, all alike.
+/// A uniform number between −1 and 1.
 pub(crate) fn uniform(word: u64) -> f64 {
     2.0 * centered(word)
 }
 
-/// A number of the normal distribution with mean 0 and standard deviation 1: the one that as many are below as the
-/// word says, by Wichura's rational functions (algorithm AS 241, Appl. Statist. 37, 1988), to 1e-15 of it.
+/// A standard normal number: the quantile of the probability that the word gives, by Wichura's rational functions
+/// (algorithm AS 241, Appl. Statist. 37, 1988), to a relative error of 1e-15.
 ///
-/// Near the middle they are of the distance q of the probability from ½, in the tails of `r = √(−ln p)`, p the
-/// smaller of the probabilities on both sides. Never 0, and never larger than [`LARGEST_NORMAL`].
+/// Near the middle their argument is the distance q of the probability from ½, in the tails `r = √(−ln p)`, p the
+/// smaller tail probability. Never 0, and never larger than [`LARGEST_NORMAL`].
 #[allow(clippy::excessive_precision)]
 pub(crate) fn normal(word: u64) -> f64 {
     const MIDDLE: [[f64; 8]; 2] = [
@@ -134,10 +134,10 @@ pub(crate) fn normal(word: u64) -> f64 {
     size.copysign(q)
 }
 
-/// The logarithm of a normal number > 0, to a few roundings of the larger of it and 1.
+/// The logarithm of a normal float > 0, to a few roundings of the larger of it and 1.
 ///
 /// `x = m 2^e` with m from √½ to √2, and `ln m = 2 artanh s`, `s = (m − 1)/(m + 1)`, |s| < 0.172: the terms
-/// `s^(2k+1)/(2k + 1)` of its series sink below 2⁻⁵³ s for k = 10.
+/// `s^(2k+1)/(2k + 1)` of its series fall below 2⁻⁵³ s for k = 10.
 fn ln(x: f64) -> f64 {
     /// 1/(2k + 1).
     const SERIES: [f64; 11] = {
@@ -169,9 +169,9 @@ pub(crate) fn exp(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// By RFC 8439's pseudocode with four double rounds, in Python.
+    /// Reference: the pseudocode of RFC 8439 with four double rounds, in Python.
     #[test]
-    fn words_are_those_of_the_cipher() {
+    fn words_match_the_cipher() {
         let table = [
             (0, "spin", 0, 0x7355_a009_2232_f08a, 0xae47_a47a_5324_4872),
             (7, "attitude", 3, 0x4909_d109_1d64_11ee, 0x8a84_b7c3_ecaa_f150),
@@ -180,7 +180,7 @@ mod tests {
         for (seed, name, body, first, last) in table {
             let words = Words::new(seed, name, body).next().unwrap();
             assert_eq!((words[0], words[7]), (first, last), "{name}");
-            // From any body before it the words are the same.
+            // The words do not depend on the first body.
             for before in 1..=body.min(5) {
                 let from_there = Words::new(seed, name, body - before).nth(before as usize);
                 assert_eq!(from_there, Some(words), "{name}");
@@ -188,7 +188,7 @@ mod tests {
         }
     }
 
-    /// To 20 digits by mpmath.
+    /// Reference: mpmath, 20 digits.
     #[test]
     fn normal_numbers_are_quantiles() {
         let table = [
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn logarithm_and_exponential_are_those_of_the_library() {
+    fn logarithm_and_exponential_match_the_library() {
         for k in 1..1000 {
             let x = 0.037 * k as f64 - 18.0;
             assert!((exp(x) / x.exp() - 1.0).abs() < 4.0 * f64::EPSILON, "{x}");
@@ -226,10 +226,10 @@ mod tests {
         assert_eq!((exp(0.0), ln(1.0)), (1.0, 0.0));
     }
 
-    /// Of n numbers the mean is off by 1/√n, the mean square by √(2/n): five times as much
-    /// happens with one seed in a million, and this is one seed.
+    /// The standard deviation of the mean of n numbers is 1/√n, of the mean square √(2/n); five of them are exceeded
+    /// for one seed in a million.
     #[test]
-    fn numbers_are_distributed_as_they_should() {
+    fn moments_and_distributions_are_normal_and_uniform() {
         let n = 1 << 17;
         let words: Vec<[u64; 8]> = Words::new(1, "test", 0).take(n).collect();
         let root = (n as f64).sqrt();

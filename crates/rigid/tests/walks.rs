@@ -58,7 +58,7 @@ fn functions_of_forces_and_events() {
     assert_eq!(times.len(), 4);
     let error = motion.certificate.error_estimate.unwrap();
     assert!(times.iter().zip(expected).all(|(t, e)| (t - e).abs() <= 10.0 * error), "{times:?}");
-    assert!(motion.events.iter().all(|happened| happened.direction == Direction::Falling));
+    assert!(motion.events.iter().all(|occurrence| occurrence.direction == Direction::Falling));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is known of a motion besides its states: `About` in `viewer/src/core/core.ts`.
+//! Facts of a motion besides its states: `About` in `viewer/src/core/core.ts`.
 
 use crate::opened::Opened;
 use polhode_rigid::facts::{Fact, Facts};
@@ -39,12 +39,12 @@ fn body(of: &Opened) -> Facts {
     }
 }
 
-/// A solid by the names that scenes give its sizes.
+/// A solid as JSON, with the field names of a scene.
 pub fn solid(solid: Solid) -> Value {
     json(solid.facts().into())
 }
 
-/// A fact as JSON, in which numbers that are not finite are `null`.
+/// A fact as JSON, with `null` for numbers that are not finite.
 pub fn json(fact: Fact) -> Value {
     match fact {
         Fact::None => Value::Null,

@@ -19,21 +19,21 @@ use polhode_rigid::{Inertia, Solid, Surface};
 use std::cell::RefCell;
 
 /// A motion that the page shows.
-enum Held {
-    Followed(Box<Opened>),
+enum Loaded {
+    Computed(Box<Opened>),
     Recorded(Recorded, Option<Surface>),
 }
 
 #[derive(Default)]
-struct Desk {
+struct State {
     /// Arguments of the next call.
     rooms: Vec<Vec<u8>>,
     reply: Vec<u8>,
-    held: Vec<Option<Held>>,
+    motions: Vec<Option<Loaded>>,
 }
 
 thread_local! {
-    static DESK: RefCell<Desk> = RefCell::default();
+    static STATE: RefCell<State> = RefCell::default();
 }
 
 type Outcome<T> = Result<T, String>;
@@ -60,39 +60,39 @@ mod clock {
     }
 }
 
-/// Whether a budget in seconds, from now on, is not used up.
+/// Returns whether a budget in seconds, counted from now, is left.
 fn within(budget: f64) -> impl FnMut() -> bool {
     let end = clock::seconds() + budget;
     move || clock::seconds() < end
 }
 
-/// Allocates an argument of the next call, of so many bytes.
+/// Allocates an argument of the next call, of `size` bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(size: usize) -> *mut u8 {
-    DESK.with_borrow_mut(|desk| {
-        desk.rooms.push(vec![0; size]);
-        desk.rooms.last_mut().map_or(std::ptr::null_mut(), |room| room.as_mut_ptr())
+    STATE.with_borrow_mut(|state| {
+        state.rooms.push(vec![0; size]);
+        state.rooms.last_mut().map_or(std::ptr::null_mut(), |room| room.as_mut_ptr())
     })
 }
 
 /// Address of the last reply.
 #[unsafe(no_mangle)]
 pub extern "C" fn reply() -> *const u8 {
-    DESK.with_borrow(|desk| desk.reply.as_ptr())
+    STATE.with_borrow(|state| state.reply.as_ptr())
 }
 
 /// Size of the last reply in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn reply_size() -> usize {
-    DESK.with_borrow(|desk| desk.reply.len())
+    STATE.with_borrow(|state| state.reply.len())
 }
 
 /// Runs a call with its arguments and stores its reply.
-fn answered(work: impl FnOnce(&mut Desk, Vec<Vec<u8>>) -> Outcome<(i32, Vec<u8>)>) -> i32 {
-    DESK.with_borrow_mut(|desk| {
-        let rooms = std::mem::take(&mut desk.rooms);
-        let (code, reply) = work(desk, rooms).unwrap_or_else(|problem| (-1, problem.into_bytes()));
-        desk.reply = reply;
+fn reply_with(work: impl FnOnce(&mut State, Vec<Vec<u8>>) -> Outcome<(i32, Vec<u8>)>) -> i32 {
+    STATE.with_borrow_mut(|state| {
+        let rooms = std::mem::take(&mut state.rooms);
+        let (code, reply) = work(state, rooms).unwrap_or_else(|problem| (-1, problem.into_bytes()));
+        state.reply = reply;
         code
     })
 }
@@ -125,38 +125,38 @@ fn scene(mut rooms: impl Iterator<Item = Vec<u8>>) -> Outcome<(String, String, F
     Ok((scene, name, files))
 }
 
-impl Desk {
-    fn hold(&mut self, held: Held) -> i32 {
-        let free = self.held.iter().position(Option::is_none);
+impl State {
+    fn add(&mut self, motion: Loaded) -> i32 {
+        let free = self.motions.iter().position(Option::is_none);
         let place = free.unwrap_or_else(|| {
-            self.held.push(None);
-            self.held.len() - 1
+            self.motions.push(None);
+            self.motions.len() - 1
         });
-        self.held[place] = Some(held);
+        self.motions[place] = Some(motion);
         place as i32
     }
 
-    fn get(&self, handle: usize) -> Outcome<&Held> {
-        self.held
+    fn get(&self, handle: usize) -> Outcome<&Loaded> {
+        self.motions
             .get(handle)
             .and_then(Option::as_ref)
             .ok_or_else(|| format!("no motion has the handle {handle}"))
     }
 
-    fn followed(&self, handle: usize) -> Outcome<&Opened> {
+    fn computed(&self, handle: usize) -> Outcome<&Opened> {
         match self.get(handle)? {
-            Held::Followed(opened) => Ok(opened),
-            Held::Recorded(..) => Err("this motion is a recording".to_owned()),
+            Loaded::Computed(opened) => Ok(opened),
+            Loaded::Recorded(..) => Err("this motion is a recording".to_owned()),
         }
     }
 
-    /// The surface of a body. If its scene gives none, it follows from the numbers in the room: the mass, the principal
+    /// The surface of a body. If its scene has none, it is computed from the numbers in the room: the mass, the principal
     /// moments, the principal frame, and the arm from the fixed point to the centre of mass.
     fn surface(&self, handle: usize, rooms: &[Vec<u8>]) -> Outcome<Surface> {
         let [mass, i1, i2, i3, f0, f1, f2, f3, arm @ ..] = numbers::<11>(rooms)?;
         let known = match self.get(handle)? {
-            Held::Followed(opened) => &opened.surface,
-            Held::Recorded(_, surface) => surface,
+            Loaded::Computed(opened) => &opened.surface,
+            Loaded::Recorded(_, surface) => surface,
         };
         let frame = Rotor::from_unit_components([f0, f1, f2, f3]);
         Ok(known.clone().unwrap_or_else(|| Surface::of_inertia(mass, [i1, i2, i3], frame, Vector(arm))))
@@ -166,30 +166,30 @@ impl Desk {
 /// Takes a scene, its name and files; computes the motion for at most `budget` seconds; returns a handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn open(budget: f64) -> i32 {
-    answered(|desk, rooms| {
+    reply_with(|state, rooms| {
         let (scene, name, files) = scene(rooms.into_iter())?;
         let opened = Opened::new(&scene, &name, &files, &mut within(budget))?;
-        Ok((desk.hold(Held::Followed(Box::new(opened))), Vec::new()))
+        Ok((state.add(Loaded::Computed(Box::new(opened))), Vec::new()))
     })
 }
 
 /// Takes rows of a recorded motion and, if there is one, the scene, its name and files; returns a handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn record() -> i32 {
-    answered(|desk, rooms| {
+    reply_with(|state, rooms| {
         let mut rooms = rooms.into_iter();
         let recorded = Recorded::new(&floats(&rooms.next().unwrap_or_default()))?;
         let (scene, name, files) = scene(rooms)?;
-        Ok((desk.hold(Held::Recorded(recorded, opened::surface(&scene, &name, &files))), Vec::new()))
+        Ok((state.add(Loaded::Recorded(recorded, opened::surface(&scene, &name, &files))), Vec::new()))
     })
 }
 
 /// Frees a motion.
 #[unsafe(no_mangle)]
 pub extern "C" fn close(handle: usize) {
-    DESK.with_borrow_mut(|desk| {
-        if let Some(held) = desk.held.get_mut(handle) {
-            *held = None;
+    STATE.with_borrow_mut(|state| {
+        if let Some(motion) = state.motions.get_mut(handle) {
+            *motion = None;
         }
     });
 }
@@ -197,44 +197,44 @@ pub extern "C" fn close(handle: usize) {
 /// The facts of a motion, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn about_motion(handle: usize) -> i32 {
-    answered(|desk, _| Ok((0, about(desk.followed(handle)?).to_string().into_bytes())))
+    reply_with(|state, _| Ok((0, about(state.computed(handle)?).to_string().into_bytes())))
 }
 
 /// Takes times; replies with rows of states.
 #[unsafe(no_mangle)]
 pub extern "C" fn states(handle: usize) -> i32 {
-    answered(|desk, rooms| {
+    reply_with(|state, rooms| {
         let times = floats(rooms.first().map_or(&[], |room| room));
-        let rows: Vec<[f64; ROW]> = match desk.get(handle)? {
-            Held::Followed(opened) => opened.states(&times)?,
-            Held::Recorded(recorded, _) => recorded.states(&times)?,
+        let rows: Vec<[f64; ROW]> = match state.get(handle)? {
+            Loaded::Computed(opened) => opened.states(&times)?,
+            Loaded::Recorded(recorded, _) => recorded.states(&times)?,
         };
         Ok((0, bytes(rows.into_iter().flatten())))
     })
 }
 
-/// Takes the numbers of [`Desk::surface`]; answers the vertices of the surface in body axes, in m, its triangles as 32-bit
+/// Takes the numbers of [`State::surface`]; replies with the vertices of the surface in body axes, in m, its triangles as 32-bit
 /// indices, and a 32-bit tint per triangle. Returns the number of vertices.
 #[unsafe(no_mangle)]
 pub extern "C" fn surface(handle: usize) -> i32 {
-    answered(|desk, rooms| {
-        let Surface { vertices, faces, tints } = desk.surface(handle, &rooms)?;
+    reply_with(|state, rooms| {
+        let Surface { vertices, faces, tints } = state.surface(handle, &rooms)?;
         let mut reply = bytes(vertices.iter().flat_map(|vertex| vertex.0));
         reply.extend(faces.iter().flatten().chain(&tints).flat_map(|number| number.to_le_bytes()));
         Ok((vertices.len() as i32, reply))
     })
 }
 
-/// Takes the numbers of [`Desk::surface`]; answers the side lengths of a box around the body, in m.
+/// Takes the numbers of [`State::surface`]; replies with the side lengths of a box around the body, in m.
 #[unsafe(no_mangle)]
 pub extern "C" fn extents(handle: usize) -> i32 {
-    answered(|desk, rooms| Ok((0, bytes(desk.surface(handle, &rooms)?.extents()))))
+    reply_with(|state, rooms| Ok((0, bytes(state.surface(handle, &rooms)?.extents()))))
 }
 
-/// Takes the kind of a solid and three lengths; answers the solid that fills a box of these sides, as JSON.
+/// Takes the kind of a solid and three lengths; replies with the solid that fills a box of these sides, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn solid() -> i32 {
-    answered(|_, rooms| {
+    reply_with(|_, rooms| {
         let mut rooms = rooms.into_iter();
         let kind = text(rooms.next())?;
         let solid = Solid::filling(&kind, numbers(rooms.as_slice())?);
@@ -243,11 +243,11 @@ pub extern "C" fn solid() -> i32 {
     })
 }
 
-/// Takes principal moments and the principal frame; answers the second moments and, unless these are along the body
+/// Takes principal moments and the principal frame; replies with the second moments and, unless these are along the body
 /// axes, the rotor from their axes to the body axes.
 #[unsafe(no_mangle)]
 pub extern "C" fn second_moments() -> i32 {
-    answered(|_, rooms| {
+    reply_with(|_, rooms| {
         let [i1, i2, i3, frame @ ..] = numbers::<7>(&rooms)?;
         let inertia = Inertia::from_principal_moments([i1, i2, i3]).map_err(|error| error.to_string())?;
         let (second, axes) = inertia.rotated(Rotor::from_unit_components(frame)).second_moments();
@@ -255,26 +255,26 @@ pub extern "C" fn second_moments() -> i32 {
     })
 }
 
-/// Takes second moments and the rotor from their axes to the body axes; answers the rows of the inertia matrix.
+/// Takes second moments and the rotor from their axes to the body axes; replies with the rows of the inertia matrix.
 #[unsafe(no_mangle)]
 pub extern "C" fn inertia() -> i32 {
-    answered(|_, rooms| {
+    reply_with(|_, rooms| {
         let [a, b, c, axes @ ..] = numbers::<7>(&rooms)?;
         let inertia = Inertia::from_second_moments([a, b, c], Rotor::from_unit_components(axes));
         Ok((0, bytes(inertia.map_err(|error| error.to_string())?.matrix().into_iter().flatten())))
     })
 }
 
-/// Takes a rotor; answers its [`Rotor::zxz_angles`].
+/// Takes a rotor; replies with its [`Rotor::zxz_angles`].
 #[unsafe(no_mangle)]
 pub extern "C" fn attitude() -> i32 {
-    answered(|_, rooms| Ok((0, bytes(Rotor::from_unit_components(numbers(&rooms)?).zxz_angles()))))
+    reply_with(|_, rooms| Ok((0, bytes(Rotor::from_unit_components(numbers(&rooms)?).zxz_angles()))))
 }
 
-/// Takes a rotor; answers the unit plane and the angle of [`Rotor::plane_angle`].
+/// Takes a rotor; replies with the unit plane and the angle of [`Rotor::plane_angle`].
 #[unsafe(no_mangle)]
 pub extern "C" fn plane_angle() -> i32 {
-    answered(|_, rooms| {
+    reply_with(|_, rooms| {
         let (plane, angle) = Rotor::from_unit_components(numbers(&rooms)?).plane_angle();
         Ok((0, bytes(plane.0.into_iter().chain([angle]))))
     })
@@ -284,8 +284,8 @@ pub extern "C" fn plane_angle() -> i32 {
 /// at most `budget` seconds.
 #[unsafe(no_mangle)]
 pub extern "C" fn bodies(handle: usize, time: f64, count: usize, budget: f64) -> i32 {
-    answered(|desk, _| {
-        let rotors = desk.followed(handle)?.bodies(time, count, &mut within(budget))?;
+    reply_with(|state, _| {
+        let rotors = state.computed(handle)?.bodies(time, count, &mut within(budget))?;
         Ok((0, bytes(rotors.into_iter().flatten())))
     })
 }
@@ -293,7 +293,7 @@ pub extern "C" fn bodies(handle: usize, time: f64, count: usize, budget: f64) ->
 /// Takes a scene and tables; replies with the scene with these tables replaced.
 #[unsafe(no_mangle)]
 pub extern "C" fn merge() -> i32 {
-    answered(|_, rooms| {
+    reply_with(|_, rooms| {
         let mut rooms = rooms.into_iter();
         let (scene, change) = (text(rooms.next())?, text(rooms.next())?);
         Ok((0, merged(&scene, &change)?.into_bytes()))
@@ -303,7 +303,7 @@ pub extern "C" fn merge() -> i32 {
 /// Takes lines of formulas; replies with their results, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn evaluate() -> i32 {
-    answered(|_, rooms| {
+    reply_with(|_, rooms| {
         let lines = text(rooms.into_iter().next())?;
         Ok((0, formulas::evaluated(&lines).into_bytes()))
     })
@@ -312,5 +312,5 @@ pub extern "C" fn evaluate() -> i32 {
 /// The registry of laws, as JSON.
 #[unsafe(no_mangle)]
 pub extern "C" fn law_registry() -> i32 {
-    answered(|_, _| Ok((0, laws::laws().to_string().into_bytes())))
+    reply_with(|_, _| Ok((0, laws::laws().to_string().into_bytes())))
 }

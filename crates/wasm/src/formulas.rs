@@ -8,14 +8,14 @@ use polhode_rigid::units::UNITS;
 use serde_json::{Value, json};
 use value::valued;
 
-/// The outcome of each line of one session: JSON of `Line[]` of the page's core.
+/// Evaluates the lines of one session: JSON of `Line[]` of the page's core.
 pub fn evaluated(text: &str) -> String {
     let mut session = Session::new(UNITS);
     let lines = text.split('\n').enumerate();
-    lines.map(|(i, line)| answered(&mut session, i + 1, line)).collect::<Value>().to_string()
+    lines.map(|(i, line)| evaluated_line(&mut session, i + 1, line)).collect::<Value>().to_string()
 }
 
-fn answered(session: &mut Session, number: usize, line: &str) -> Value {
+fn evaluated_line(session: &mut Session, number: usize, line: &str) -> Value {
     let written = line.split('#').next().unwrap_or_default();
     let (outcome, problem) = match session.run(number, written) {
         Ok(outcome) => (outcome, Value::Null),

@@ -1,4 +1,4 @@
-//! The registry of laws for the page: `LawEntry` in `viewer/src/core/core.ts`.
+//! Registry of laws for the page: `LawEntry` in `viewer/src/core/core.ts`.
 
 use polhode_rigid::laws::registry::{Argument, TORQUES};
 use serde_json::{Value, json};

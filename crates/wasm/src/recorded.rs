@@ -4,13 +4,13 @@ use crate::rows::ROW;
 use polhode_ga::Rotor;
 use std::cmp::Ordering;
 
-/// Rows of states at rising times.
+/// Rows of states at increasing times.
 pub struct Recorded {
     rows: Vec<[f64; ROW]>,
 }
 
 impl Recorded {
-    /// From rows one after another, with increasing times.
+    /// From consecutive rows, with increasing times.
     pub fn new(numbers: &[f64]) -> Result<Recorded, String> {
         let (rows, rest) = numbers.as_chunks::<ROW>();
         if rows.is_empty() || !rest.is_empty() {
@@ -57,7 +57,7 @@ fn rotor(row: &[f64; ROW]) -> Rotor {
     Rotor::from_unit_components([row[1], row[2], row[3], row[4]])
 }
 
-/// The rotor part of the shorter way from one to another: `R (~R S)^part`.
+/// Interpolates along the shorter way between two rotors: `R (~R S)^part`.
 pub fn between(r: Rotor, s: Rotor, part: f64) -> Rotor {
     let turn = r.reverse() * s;
     let [scalar, ..] = turn.components();

@@ -35,14 +35,14 @@ fn rows_are_consistent() {
 }
 
 #[test]
-fn stepped_motions_are_known_for_their_run() {
+fn stepped_motions_have_no_states_beyond_the_run() {
     let error = opened(DAMPED).states(&[3.0]).unwrap_err();
     assert!(error.contains("times[0] = 3 is outside the computed motion"), "{error}");
 }
 
-/// A scene that starts late: the times of its states, and of its bodies, are those of its laws.
+/// States and bodies have absolute times, as the laws do.
 #[test]
-fn a_late_scene_is_known_from_its_start_on() {
+fn states_begin_at_the_start_time() {
     let late = DAMPED
         .replace("[torque]\n", "time = 5\n[torque]\n")
         .replace("viscous_damping = 0.5", "torque_body = 'sin(t) e1e2'");
@@ -61,7 +61,7 @@ fn a_late_scene_is_known_from_its_start_on() {
 }
 
 #[test]
-fn motions_beyond_the_time_limit_are_refused() {
+fn motions_beyond_the_time_limit_are_rejected() {
     let long = DAMPED.replace("duration = 2", "duration = 1e6");
     let mut calls = 0;
     let error = Opened::new(&long, "test.toml", &Files::new(), &mut || {
@@ -134,7 +134,7 @@ fn recordings_are_interpolated_between_rows() {
     assert!(Recorded::new(&[rows[1], rows[0]].concat()).is_err());
 }
 
-/// Bodies of an exact ensemble are the scene's; stepped ones meet the single body's motion at the frames.
+/// Bodies of stepped ensembles have the motion of a single body at the frames.
 #[test]
 fn bodies_of_an_ensemble() {
     let exact = opened(&format!("{FREE}{SWARM}"));

@@ -2,7 +2,7 @@
 
 use super::operators::{equal, function, infix, infix_right, named, sum, turned};
 use super::signature::{Algebra, g3};
-use super::value::{Held, Multivector, Object, Rotor, held, number, one, row, unit_rotor, wrap};
+use super::value::{Multivector, Object, Rotor, Storage, number, one, row, storage, unit_rotor, wrap};
 use numpy::PyArray1;
 use polhode_ga::g3::functions::Function;
 use polhode_ga::product::{Grades, Product};
@@ -22,7 +22,7 @@ impl Multivector {
         _values: &Bound<'_, PyAny>,
         _named: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Multivector> {
-        Err(not_made_directly(cls))
+        Err(no_constructor(cls))
     }
 
     /// Wraps an array (…, K) that must not be written to afterwards; K components of these grades, as bits.
@@ -34,24 +34,24 @@ impl Multivector {
         grades: u16,
         algebra: Option<Py<Algebra>>,
     ) -> Object<'py> {
-        wrap(py, held(py, data, Grades(grades), algebra)?, false)
+        wrap(py, storage(py, data, Grades(grades), algebra)?, false)
     }
 
     /// The components of the grades present; for a single value a new array.
     #[getter]
     fn _data<'py>(&self, py: Python<'py>) -> Object<'py> {
-        match &self.held {
-            Held::One(graded) => Ok(PyArray1::from_slice(py, graded.components()).into_any()),
-            Held::Many { data, .. } => Ok(data.bind(py).clone()),
+        match &self.storage {
+            Storage::One(graded) => Ok(PyArray1::from_slice(py, graded.components()).into_any()),
+            Storage::Many { data, .. } => Ok(data.bind(py).clone()),
         }
     }
 
     /// The grades it may hold, as bits.
     #[getter]
     fn _mask(&self) -> u16 {
-        match &self.held {
-            Held::One(graded) => graded.grades().0,
-            Held::Many { grades, .. } => grades.0,
+        match &self.storage {
+            Storage::One(graded) => graded.grades().0,
+            Storage::Many { grades, .. } => grades.0,
         }
     }
 
@@ -70,7 +70,7 @@ impl Multivector {
         self.single().map_or(f64::NAN, |value| FullMultivector(value.full()).norm())
     }
 
-    /// Whether it is a single value of 3-d space over float64, held inline.
+    /// Whether it is a single value of 3-d space over float64, stored inline.
     #[getter]
     fn _is_one(&self) -> bool {
         self.single().is_some()
@@ -79,9 +79,9 @@ impl Multivector {
     /// The algebra of the value.
     #[getter]
     fn algebra(&self, py: Python<'_>) -> PyResult<Py<Algebra>> {
-        match &self.held {
-            Held::One(_) => Ok(g3(py)?.clone_ref(py)),
-            Held::Many { algebra, .. } => Ok(algebra.clone_ref(py)),
+        match &self.storage {
+            Storage::One(_) => Ok(g3(py)?.clone_ref(py)),
+            Storage::Many { algebra, .. } => Ok(algebra.clone_ref(py)),
         }
     }
 
@@ -144,7 +144,7 @@ impl Multivector {
 
     fn __neg__<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
         match slf.get().single() {
-            Some(a) => wrap(slf.py(), Held::One(a.map(|x| -x)), slf.get().unit),
+            Some(a) => wrap(slf.py(), Storage::One(a.map(|x| -x)), slf.get().unit),
             None => slf.call_method0(intern!(slf.py(), "_negated")),
         }
     }
@@ -156,7 +156,7 @@ impl Multivector {
     /// ``~A``: reverses the order of all products; grades 2 and 3 change sign (handout eq. 1.28).
     fn reverse<'py>(slf: &Bound<'py, Self>) -> Object<'py> {
         match slf.get().single() {
-            Some(a) => wrap(slf.py(), Held::One(a.reverse()), slf.get().unit),
+            Some(a) => wrap(slf.py(), Storage::One(a.reverse()), slf.get().unit),
             None => slf.call_method0(intern!(slf.py(), "_reversed")),
         }
     }
@@ -295,13 +295,13 @@ impl Rotor {
         _values: &Bound<'_, PyAny>,
         _named: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Rotor>> {
-        Err(not_made_directly(cls))
+        Err(no_constructor(cls))
     }
 
     /// Wraps rows (…, 4) of rotor components of norm 1 that must not be written to afterwards.
     #[staticmethod]
     fn _from_rows<'py>(py: Python<'py>, data: Bound<'py, PyAny>) -> Object<'py> {
-        wrap(py, held(py, data, Grades::EVEN, None)?, true)
+        wrap(py, storage(py, data, Grades::EVEN, None)?, true)
     }
 
     /// Return the bivector −Bθ/2 with ``exp(log R) = R``, of size at most π; ``log(−1) = π e1∧e2``.
@@ -334,11 +334,11 @@ impl Rotor {
     }
 }
 
-fn not_made_directly(cls: &Bound<'_, PyType>) -> PyErr {
+fn no_constructor(cls: &Bound<'_, PyType>) -> PyErr {
     let name = cls.name().map_or_else(|_| "Multivector".into(), |name| name.to_string());
-    let makers = match &*name {
+    let constructors = match &*name {
         "Rotor" => "Rotor.from_components, Rotor.from_plane_angle, or another of its from_… constructors",
         _ => "ph.scalar, ph.vector, ph.bivector, ph.trivector or ph.multivector",
     };
-    PyTypeError::new_err(format!("{name} has no public constructor; use {makers}"))
+    PyTypeError::new_err(format!("{name} has no public constructor; use {constructors}"))
 }

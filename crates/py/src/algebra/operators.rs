@@ -1,7 +1,7 @@
 //! Operators of single values; the Python half of the type handles all other operands.
 
 use super::value::{
-    Held, Multivector, Object, Operand, Rotor, number, one, one_rotor, operand, scalar, unit_rotor, wrap,
+    Multivector, Object, Operand, Rotor, Storage, number, one, one_rotor, operand, scalar, unit_rotor, wrap,
 };
 use crate::support::arrays::bad;
 use numpy::{PyArray1, PyArrayMethods};
@@ -52,7 +52,7 @@ pub(crate) fn product_of_rows<'py>(
     plan.run(a.as_slice().ok()?, b.as_slice().ok()?, target.as_slice_mut().ok()?);
     target.make_nonwriteable();
     let data = out.into_any().unbind();
-    Some(wrap(py, Held::Many { data, grades: plan.grades, algebra: algebra.clone_ref(py) }, false))
+    Some(wrap(py, Storage::Many { data, grades: plan.grades, algebra: algebra.clone_ref(py) }, false))
 }
 
 /// `A + B` and `A − B` here for single values.
@@ -116,7 +116,7 @@ pub(crate) fn function<'py>(value: &Bound<'py, Multivector>, f: Function) -> Obj
     let result = result.unwrap_or_default().with_grades(grades);
     let others = [full[0], full[1], full[2], full[3], full[7]];
     let unit = f == Function::Exp && grades == Grades::EVEN && others == [0.0; 5];
-    wrap(py, Held::One(result), unit)
+    wrap(py, Storage::One(result), unit)
 }
 
 /// Whether two single values have the same components; None if one is not a single value.
@@ -133,7 +133,9 @@ pub(crate) fn equal(left: &Bound<'_, Multivector>, right: &Bound<'_, PyAny>) -> 
 pub(crate) fn turned<'py>(rotor: &Bound<'py, Rotor>, x: &Bound<'py, PyAny>) -> Option<Object<'py>> {
     let rotor = rotor.as_super().get().single()?;
     match operand(x) {
-        Operand::Value(value, unit) => Some(wrap(x.py(), Held::One(value.turned(unit_rotor(rotor))), unit)),
+        Operand::Value(value, unit) => {
+            Some(wrap(x.py(), Storage::One(value.turned(unit_rotor(rotor))), unit))
+        }
         _ => None,
     }
 }

@@ -1,6 +1,6 @@
-//! Contents of a value in Python.
+//! Multivector and Rotor: storage of values in Python.
 //!
-//! A single value of 3-d space over float64 is held inline, all others as arrays of any coefficients and algebra.
+//! A single value of 3-d space over float64 is stored inline, all others as arrays of any coefficients and algebra.
 
 use super::signature::{Algebra, g3};
 use crate::support::arrays::bad;
@@ -13,7 +13,7 @@ use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
 pub(crate) type Object<'py> = PyResult<Bound<'py, PyAny>>;
 
-pub(crate) enum Held {
+pub(crate) enum Storage {
     /// A single value of 3-d space over float64.
     One(Graded),
     /// Any array `(…, K)` of the components of the grades present.
@@ -23,7 +23,7 @@ pub(crate) enum Held {
 /// A multivector, or an array of them; immutable.
 #[pyclass(frozen, subclass, module = "polhode")]
 pub(crate) struct Multivector {
-    pub(crate) held: Held,
+    pub(crate) storage: Storage,
     /// Whether it is a Rotor, of norm 1 by construction.
     pub(crate) unit: bool,
 }
@@ -33,8 +33,8 @@ pub(crate) struct Multivector {
 pub(crate) struct Rotor;
 
 /// A new Python value.
-pub(crate) fn wrap(py: Python<'_>, held: Held, unit: bool) -> Object<'_> {
-    let value = PyClassInitializer::from(Multivector { held, unit });
+pub(crate) fn wrap(py: Python<'_>, storage: Storage, unit: bool) -> Object<'_> {
+    let value = PyClassInitializer::from(Multivector { storage, unit });
     if unit {
         Ok(Bound::new(py, value.add_subclass(Rotor))?.into_any())
     } else {
@@ -44,13 +44,13 @@ pub(crate) fn wrap(py: Python<'_>, held: Held, unit: bool) -> Object<'_> {
 
 /// A new single value.
 pub(crate) fn one(py: Python<'_>, value: Graded) -> Object<'_> {
-    wrap(py, Held::One(value), false)
+    wrap(py, Storage::One(value), false)
 }
 
 /// A new single rotor.
 pub(crate) fn one_rotor(py: Python<'_>, rotor: UnitRotor) -> Object<'_> {
     let value = Graded::new(&rotor.components(), Grades::EVEN).ok_or_else(|| bad("a rotor is even"))?;
-    wrap(py, Held::One(value), true)
+    wrap(py, Storage::One(value), true)
 }
 
 /// A Python float or int (not a bool) as a number.
@@ -61,7 +61,7 @@ pub(crate) fn number(x: &Bound<'_, PyAny>) -> Option<f64> {
     }
 }
 
-/// The single value that an operand is, if it is one.
+/// An operand: a single value and whether it is a rotor, a number, or anything else.
 pub(crate) enum Operand<'a> {
     Value(&'a Graded, bool),
     Number(f64),
@@ -71,9 +71,9 @@ pub(crate) enum Operand<'a> {
 pub(crate) fn operand<'a>(x: &'a Bound<'_, PyAny>) -> Operand<'a> {
     if let Ok(value) = x.cast::<Multivector>() {
         let value = value.get();
-        return match &value.held {
-            Held::One(graded) => Operand::Value(graded, value.unit),
-            Held::Many { .. } => Operand::Other,
+        return match &value.storage {
+            Storage::One(graded) => Operand::Value(graded, value.unit),
+            Storage::Many { .. } => Operand::Other,
         };
     }
     number(x).map_or(Operand::Other, Operand::Number)
@@ -105,20 +105,20 @@ pub(crate) fn row(numbers: &Bound<'_, PyAny>) -> Option<([f64; 8], usize)> {
 }
 
 impl Multivector {
-    /// A single value that is held as an array of float64: its row, grades and algebra.
+    /// A single value that is stored as an array of float64: its row, grades and algebra.
     pub(crate) fn row<'py>(
         &self,
         py: Python<'py>,
     ) -> Option<(PyReadonlyArray1<'py, f64>, Grades, &Py<Algebra>)> {
-        let Held::Many { data, grades, algebra } = &self.held else { return None };
+        let Storage::Many { data, grades, algebra } = &self.storage else { return None };
         let row = data.bind(py).cast::<PyArray1<f64>>().ok()?.try_readonly().ok()?;
         Some((row, *grades, algebra))
     }
 
     pub(crate) fn single(&self) -> Option<&Graded> {
-        match &self.held {
-            Held::One(graded) => Some(graded),
-            Held::Many { .. } => None,
+        match &self.storage {
+            Storage::One(graded) => Some(graded),
+            Storage::Many { .. } => None,
         }
     }
 }
@@ -134,14 +134,14 @@ pub(crate) fn scalar(x: f64) -> Graded {
     Graded::default().map(|_| x)
 }
 
-/// Holds an array: inline if it is one value of 3-d space over float64; in C order and read-only if it is a
+/// Stores an array: inline if it is one value of 3-d space over float64; in C order and read-only if it is a
 /// NumPy array; any other as it is.
-pub(crate) fn held<'py>(
+pub(crate) fn storage<'py>(
     py: Python<'py>,
     data: Bound<'py, PyAny>,
     grades: Grades,
     algebra: Option<Py<Algebra>>,
-) -> PyResult<Held> {
+) -> PyResult<Storage> {
     let g3 = g3(py)?;
     let algebra = algebra.unwrap_or_else(|| g3.clone_ref(py));
     if algebra.is(g3)
@@ -155,7 +155,7 @@ pub(crate) fn held<'py>(
         }
         let fits = numbers.len() <= 8;
         return match Graded::new(&row[..count], grades) {
-            Some(value) if fits => Ok(Held::One(value)),
+            Some(value) if fits => Ok(Storage::One(value)),
             _ => Err(bad(format!("{} components do not fit the grades {:#b}", numbers.len(), grades.0))),
         };
     }
@@ -166,5 +166,5 @@ pub(crate) fn held<'py>(
         }
         data.call_method1(intern!(py, "setflags"), (false,))?;
     }
-    Ok(Held::Many { data: data.unbind(), grades, algebra })
+    Ok(Storage::Many { data: data.unbind(), grades, algebra })
 }

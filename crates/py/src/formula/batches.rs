@@ -1,10 +1,10 @@
 //! Native calls of formulas on batches of float64 of 3-d space.
 //!
-//! The batches have one shape; single values are allowed too. A call through Python would cost more than a thousand rows.
+//! The batches have one shape; single values are allowed too. They avoid a Python call that costs as much as a thousand rows.
 
 use super::Formula;
 use crate::algebra::signature::g3;
-use crate::algebra::value::{Held, Multivector, held, number, scalar, wrap};
+use crate::algebra::value::{Multivector, Storage, number, scalar, storage, wrap};
 use crate::support::arrays::numbers;
 use crate::support::pool;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
@@ -27,35 +27,35 @@ impl<'py> Rows<'py> {
             return Ok(number(value).map(|x| (Rows::One(scalar(x)), Grades::SCALAR, false)));
         };
         let py = value.py();
-        let Multivector { held, unit } = value.get();
-        match held {
-            Held::One(graded) => Ok(Some((Rows::One(*graded), graded.grades(), *unit))),
-            Held::Many { data, grades, algebra } if algebra.is(g3(py)?) => {
+        let Multivector { storage, unit } = value.get();
+        match storage {
+            Storage::One(graded) => Ok(Some((Rows::One(*graded), graded.grades(), *unit))),
+            Storage::Many { data, grades, algebra } if algebra.is(g3(py)?) => {
                 let rows = data.bind(py).cast::<PyArrayDyn<f64>>().ok().and_then(|x| x.try_readonly().ok());
                 Ok(rows.map(|rows| (Rows::Many(rows), *grades, *unit)))
             }
-            Held::Many { .. } => Ok(None),
+            Storage::Many { .. } => Ok(None),
         }
     }
 }
 
-/// The value of a formula; `None` if other values or errors need the general way.
+/// The value of a formula; `None` if Python must handle the values or an error.
 pub(crate) fn value<'py>(
     formula: &Formula,
     named: &Bound<'py, PyDict>,
 ) -> PyResult<Option<Bound<'py, PyAny>>> {
     let py = named.py();
-    let mut said = Vec::with_capacity(named.len());
+    let mut kinds = Vec::with_capacity(named.len());
     let mut given = Vec::with_capacity(named.len());
     for (name, value) in named.iter() {
         let Some((rows, grades, unit)) = Rows::of(&value)? else { return Ok(None) };
-        said.push((name.extract()?, grades.0, unit.into()));
+        kinds.push((name.extract()?, grades.0, unit.into()));
         given.push(rows);
     }
     if !given.iter().any(|rows| matches!(rows, Rows::Many(_))) {
         return Ok(None);
     }
-    let Some(program) = formula.for_floats(py, said) else { return Ok(None) };
+    let Some(program) = formula.for_floats(py, kinds) else { return Ok(None) };
     let program = program.get();
     let Some(ty) = program.ty() else { return Ok(None) };
     let mut data = Vec::with_capacity(program.order.len());
@@ -76,5 +76,5 @@ pub(crate) fn value<'py>(
     let shape: Vec<usize> = batch.iter().copied().chain([ty.grades.indices(&G3).len()]).collect();
     let out = pool::array(py, &shape)?;
     program.fill_rows(py, &data, batch, out.readwrite().as_slice_mut()?)?;
-    wrap(py, held(py, out.into_any(), ty.grades, None)?, ty.unit).map(Some)
+    wrap(py, storage(py, out.into_any(), ty.grades, None)?, ty.unit).map(Some)
 }

@@ -4,7 +4,7 @@
 //! little cost beside the arithmetic. Linear maps are recognized by their addresses, and their matrices are cached.
 
 use super::program::Program;
-use crate::algebra::value::{Held, Operand, operand, scalar, wrap};
+use crate::algebra::value::{Operand, Storage, operand, scalar, wrap};
 use crate::support::face::LINEAR_MAP;
 use polhode_ga::Graded;
 use polhode_ga::formula::{Given, InputKind, Type};
@@ -53,7 +53,7 @@ impl Calls {
         };
         match found {
             None => Ok(None),
-            Some(Ok((value, unit))) => wrap(py, Held::One(value), unit).map(Some),
+            Some(Ok((value, unit))) => wrap(py, Storage::One(value), unit).map(Some),
             Some(Err((error, program))) => Err(program.get().row_error(py, &error, &[])),
         }
     }

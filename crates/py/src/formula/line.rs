@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use std::collections::HashSet;
 
 /// An error and its place in the line, in characters.
-type Wrong = (String, usize, usize);
+type PlacedError = (String, usize, usize);
 
 /// A line of a session, read from character `start` on.
 #[pyclass(frozen, name = "Line", module = "polhode._native")]
@@ -52,17 +52,17 @@ impl SessionLine {
     }
 
     /// An error about the whole formula.
-    fn error(&self, message: String) -> Wrong {
+    fn error(&self, message: String) -> PlacedError {
         placed(&self.written, self.line.error(message))
     }
 
     /// An error about characters of a formula of the session, with its place in this line.
-    fn place(&self, message: String, text: &str, place: Place) -> Wrong {
+    fn place(&self, message: String, text: &str, place: Place) -> PlacedError {
         placed(&self.written, self.line.place(text, Error { message, span: span(text, place) }))
     }
 }
 
-fn placed(written: &str, error: Error) -> Wrong {
+fn placed(written: &str, error: Error) -> PlacedError {
     let (start, end) = characters(written, error.span);
     (error.message, start, end.max(start))
 }

@@ -23,8 +23,8 @@ use pyo3::types::{PyCFunction, PyDict, PyTuple};
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-/// A name as given, the grades as bits, and 0 for a value, 1 for a rotor, or 2 for a linear map of grade 1 or 2.
-pub(crate) type Said = (String, u16, u8);
+/// A name, its grades as bits, and 0 for a value, 1 for a rotor, or 2 for a linear map of grade 1 or 2.
+pub(crate) type NameKind = (String, u16, u8);
 
 /// Maximum number of cached programs of a formula, one for each combination of kinds.
 const KEPT: usize = 64;
@@ -40,7 +40,7 @@ pub(crate) struct Formula {
 }
 
 /// The signature of the algebra, and the names with their kinds.
-type Key = ((usize, usize, usize), Vec<Said>);
+type Key = ((usize, usize, usize), Vec<NameKind>);
 
 #[pymethods]
 impl Formula {
@@ -83,7 +83,7 @@ impl Formula {
         py: Python<'_>,
         style: &str,
         algebra: Py<Algebra>,
-        given: Vec<Said>,
+        given: Vec<NameKind>,
     ) -> PyResult<String> {
         let tree =
             if given.is_empty() { self.read_open(py)? } else { self.read(py, &algebra, names(&given)?.0)?.0 };
@@ -95,7 +95,7 @@ impl Formula {
     }
 
     /// The program for values of these kinds, in this algebra.
-    fn program(&self, py: Python<'_>, algebra: Py<Algebra>, given: Vec<Said>) -> PyResult<Py<Program>> {
+    fn program(&self, py: Python<'_>, algebra: Py<Algebra>, given: Vec<NameKind>) -> PyResult<Py<Program>> {
         let signature = algebra.get().table.signature();
         let key = ((signature.p, signature.q, signature.r), given);
         if let Some(program) = self.programs.lock().map_err(bad)?.get(&key) {
@@ -120,7 +120,7 @@ impl Formula {
     }
 
     /// The tree as nested dictionaries, for values of these kinds; without any, with open names.
-    fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<Said>) -> Object<'py> {
+    fn tree<'py>(&self, py: Python<'py>, algebra: Py<Algebra>, given: Vec<NameKind>) -> Object<'py> {
         let names = if given.is_empty() { Names::open() } else { names(&given)?.0 };
         let space = space(&algebra);
         let (tree, names) = self.read(py, &algebra, names)?;
@@ -145,24 +145,24 @@ impl Formula {
     /// The program for single values of 3-d space; `None` if some are not, or if it is an equation.
     fn for_single_values(&self, named: &Bound<'_, PyDict>) -> PyResult<Option<Py<Program>>> {
         let py = named.py();
-        let mut said = Vec::with_capacity(named.len());
+        let mut kinds = Vec::with_capacity(named.len());
         for (name, value) in named.iter() {
-            said.push(match Argument::of(&value)? {
+            kinds.push(match Argument::of(&value)? {
                 None => return Ok(None),
                 Some(Argument::Value(ty, _)) => (name.extract()?, ty.grades.0, ty.unit.into()),
                 Some(Argument::Map(_, grade)) => (name.extract()?, grade, 2),
             });
         }
-        Ok(self.for_floats(py, said))
+        Ok(self.for_floats(py, kinds))
     }
 
     /// The program for values of 3-d space over floats; `None` for an equation, for another algebra, and for an
     /// error, which the general way reports.
-    pub(crate) fn for_floats(&self, py: Python<'_>, said: Vec<Said>) -> Option<Py<Program>> {
+    pub(crate) fn for_floats(&self, py: Python<'_>, kinds: Vec<NameKind>) -> Option<Py<Program>> {
         if self.algebra.as_ref().is_some_and(|algebra| !algebra.get().is_g3()) {
             return None;
         }
-        let program = self.program(py, g3(py).ok()?.clone_ref(py), said).ok()?;
+        let program = self.program(py, g3(py).ok()?.clone_ref(py), kinds).ok()?;
         (!program.get().program.is_equation()).then_some(program)
     }
 
@@ -199,7 +199,7 @@ impl Formula {
         Ok((tree, names))
     }
 
-    fn compiled(&self, py: Python<'_>, algebra: &Py<Algebra>, given: &[Said]) -> PyResult<Program> {
+    fn compiled(&self, py: Python<'_>, algebra: &Py<Algebra>, given: &[NameKind]) -> PyResult<Program> {
         let (names, spelled) = names(given)?;
         let (tree, names) = self.read(py, algebra, names)?;
         let program = compile(&tree, space(algebra), &names).map_err(|e| error(py, &self.text, &e))?;
@@ -236,7 +236,7 @@ impl Formula {
 }
 
 /// The meanings of names, and their canonical spellings.
-pub(crate) fn names(given: &[Said]) -> PyResult<(Names, Vec<String>)> {
+pub(crate) fn names(given: &[NameKind]) -> PyResult<(Names, Vec<String>)> {
     let mut names = Names::new([]);
     let mut spelled: Vec<String> = Vec::new();
     for (name, grades, kind) in given {

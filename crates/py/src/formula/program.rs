@@ -12,7 +12,7 @@ use polhode_ga::table::G3;
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
-/// A piece of text in characters, as Python counts.
+/// A range of text in characters.
 pub(crate) type Place = (usize, usize);
 
 /// A formula compiled for values of known types.
@@ -214,13 +214,13 @@ fn described<'py>(py: Python<'py>, op: &Op) -> PyResult<(&'static str, Bound<'py
     })
 }
 
-/// A piece of text in characters instead of bytes.
+/// Converts a span of bytes to characters.
 pub(crate) fn characters(text: &str, span: Span) -> Place {
     let count = |end: usize| text.get(..end).unwrap_or(text).chars().count();
     (count(span.start), count(span.end))
 }
 
-/// A piece of text in bytes instead of characters.
+/// Converts a range of characters to bytes.
 pub(crate) fn span(text: &str, place: Place) -> Span {
     Span { start: byte(text, place.0), end: byte(text, place.1) }
 }

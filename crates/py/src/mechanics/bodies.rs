@@ -77,7 +77,7 @@ impl Inertia {
 #[pyclass(frozen, module = "polhode._native")]
 pub(crate) struct Body(pub(crate) body::Body);
 
-/// Exactly one of the two is given; the Python face sees to it.
+/// Exactly one of the two is given, which Python checks.
 fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
     match (mass, density) {
         (Some(mass), None) => Ok(Amount::Mass(mass)),

@@ -30,7 +30,7 @@ impl<'py> Batch<'py> {
         self.rows.shape().split_last().map_or(&[][..], |(_, batch)| batch)
     }
 
-    /// A single value of the kind that it holds.
+    /// A single value of its kind.
     pub fn like(&self) -> PyResult<Bound<'py, PyAny>> {
         self.whole.getattr("like")
     }
@@ -66,7 +66,7 @@ impl Column {
     }
 }
 
-/// The arguments of a law. Those of a batch have all the same shape.
+/// The arguments of a law. All batches have the same shape.
 pub(crate) struct Arguments<'a, 'py> {
     pub all: &'a Bound<'py, PyTuple>,
     /// Shape of the batch of bodies.
@@ -114,7 +114,7 @@ impl<'a, 'py> Arguments<'a, 'py> {
     }
 }
 
-/// For each body of a batch its value, from values whose shape broadcasts to that of the batch; one for all stays one.
+/// Broadcasts values to the shape of a batch; a single value stays single.
 pub(crate) fn spread<T: Clone>(own: Vec<T>, own_shape: &[usize], shape: &[usize]) -> Vec<T> {
     if own.len() == 1 || own_shape == shape {
         return own;

@@ -53,7 +53,7 @@ pub(crate) fn simulate_many<'py>(
     if shape.contains(&0) || times.len() == 0 {
         return Err(bad("no bodies or no times to simulate"));
     }
-    let made: Vec<Py<LawValue>> = laws
+    let callbacks: Vec<Py<LawValue>> = laws
         .iter()
         .map(|law| law.as_super().clone().unbind())
         .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
@@ -74,7 +74,7 @@ pub(crate) fn simulate_many<'py>(
     let (max_step, max_steps, breaks) = limits;
     let events = Vec::new();
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
-    run_many(py, &ensemble, &shape, numbers(&times)?, &options, threads, &made, progress)
+    run_many(py, &ensemble, &shape, numbers(&times)?, &options, threads, &callbacks, progress)
 }
 
 /// Runs the bodies of a batch shape.
@@ -86,7 +86,7 @@ pub(crate) fn run_many<'py>(
     times: &[f64],
     options: &Options,
     threads: Option<usize>,
-    made: &[Py<LawValue>],
+    callbacks: &[Py<LawValue>],
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Results<'py>> {
     if let Some((body, error)) = ensemble.first_unusable() {
@@ -106,9 +106,11 @@ pub(crate) fn run_many<'py>(
         let (rotors, omegas, momenta, energies) = (next(), next(), next(), next());
         let centers = (!ensemble.forces.is_empty()).then(|| [next(), next()]);
         let outputs = Outputs { rotors, omegas, momenta, energies, centers };
-        run(py, made, progress.as_ref(), |progress| ensemble.run(times, options, threads, outputs, progress))?
+        run(py, callbacks, progress.as_ref(), |progress| {
+            ensemble.run(times, options, threads, outputs, progress)
+        })?
     };
-    interrupted(made.iter().map(|one| one.bind(py)))?;
+    interrupted(callbacks.iter().map(|one| one.bind(py)))?;
     let unfit = summary.failures.iter().find(|failure| matches!(failure.error, SimulateError::Unfit { .. }));
     if let Some(failure) = unfit {
         return Err(bad(format!("{}{}", place(failure.body, shape), failure.error)));

@@ -1,4 +1,4 @@
-//! The free flow over rows, each a body with its own times: for JAX, which traces and batches itself.
+//! Free flow over rows, each a body with its own times, for JAX.
 //!
 //! A row without a motion is NaN and not an error, because derivatives may be evaluated there.
 
@@ -12,13 +12,13 @@ use pyo3::prelude::*;
 /// Number of times from which lanes are faster.
 const IN_LANES: usize = 8;
 
-/// Bodies in principal axes, and each one's times.
+/// Bodies in principal axes, each with its times.
 struct Bodies<'a> {
     moments: &'a [[f64; 3]],
     rotors: &'a [[f64; 4]],
     omegas: &'a [[f64; 3]],
     times: &'a [f64],
-    /// Times of each.
+    /// Number of times of each body.
     count: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Forces and events by name and arguments, and the registry of laws for Python.
+//! Forces, events and the registry of laws for Python.
 
 use super::columns::Arguments;
 use super::law_value::{
@@ -23,7 +23,7 @@ pub(crate) struct Force {
 
 #[pymethods]
 impl Force {
-    /// A force by its name in `polhode.force`, its arguments as that module has checked and converted them.
+    /// A force by its name in `polhode.force` and arguments checked and converted by that module.
     #[new]
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Force>> {
@@ -68,7 +68,7 @@ fn force(name: &str, arguments: &Bound<'_, PyTuple>, raised: &Raised) -> PyResul
     })
 }
 
-/// Something to look for along a motion.
+/// An event to detect along a motion.
 #[pyclass(frozen, extends = LawValue, module = "polhode._native")]
 pub(crate) struct Event {
     pub(crate) event: event::Event,

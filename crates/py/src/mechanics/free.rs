@@ -120,13 +120,12 @@ impl FreeMotion {
         for (row, (_, omega)) in starts.iter().enumerate() {
             angular_velocity(*omega).map_err(|error| at(row, error))?;
         }
-        let made = |row: usize| motion(&inertias[row.min(inertias.len() - 1)], &starts[row]);
+        let new = |row: usize| motion(&inertias[row.min(inertias.len() - 1)], &starts[row]);
         let motions = if shape.is_empty() {
-            Motions::One(Box::new(made(0).map_err(bad)?))
+            Motions::One(Box::new(new(0).map_err(bad)?))
         } else {
             let tiles = pieces(py, starts.len().div_ceil(TILE), TILE, |tile| {
-                Tile::new((tile * TILE..starts.len()).map(made))
-                    .map_err(|(place, e)| (tile * TILE + place, e))
+                Tile::new((tile * TILE..starts.len()).map(new)).map_err(|(place, e)| (tile * TILE + place, e))
             })?;
             let tiles = tiles.into_iter().map(|tile| tile.map_err(|(row, error)| at(row, bad(error))));
             Motions::Many(tiles.collect::<PyResult<_>>()?)
@@ -151,8 +150,7 @@ impl FreeMotion {
         self.states(py, Times::Common(times), self.starts.len() * times.len())
     }
 
-    /// The same of each motion at its own times, `each` in turn, and again after the last motion. The
-    /// caller has checked the times.
+    /// The same for each motion at its own times, `each` in a row, cyclically. The caller has checked the times.
     fn at_each<'py>(
         &self,
         py: Python<'py>,

@@ -3,7 +3,7 @@
 use crate::algebra::value::{self, Operand};
 use crate::formula::calls::{Argument, of_map};
 use crate::formula::program::error;
-use crate::formula::{Said, names};
+use crate::formula::{NameKind, names};
 use crate::support::arrays::{Rows, bad, one};
 use crate::support::face::{AS_BIVECTORS, AS_VECTORS, Slot};
 use polhode_ga::formula::{Error, Given, Input, InputKind, Names};
@@ -18,10 +18,10 @@ use std::collections::HashMap;
 use std::fmt::Display;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a Python function raised, until it is reported.
+/// The exception that a Python function raised, until it is reported.
 pub(crate) type Raised = Arc<Mutex<Option<PyErr>>>;
 
-/// A law or an event: equal where its name and arguments are, and pickled by them.
+/// A law or an event, compared and pickled by its name and arguments.
 #[pyclass(frozen, subclass, module = "polhode._native")]
 pub(crate) struct LawValue {
     name: String,
@@ -78,7 +78,7 @@ fn take_raised(value: &Bound<'_, LawValue>) -> Option<PyErr> {
     value.get().raised.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-/// The exception where one of these has no value: what a Python function raised, or else this message.
+/// The exception raised by the function of one of these values, or else a ValueError with this message.
 pub(crate) fn failed<'a, 'py: 'a>(
     values: impl IntoIterator<Item = &'a Bound<'py, LawValue>>,
     message: impl Display,
@@ -86,8 +86,8 @@ pub(crate) fn failed<'a, 'py: 'a>(
     values.into_iter().find_map(take_raised).unwrap_or_else(|| bad(message))
 }
 
-/// Raises what a function raised that is not an `Exception`, such as a KeyboardInterrupt. Exceptions that were reported
-/// otherwise are dropped.
+/// Raises stored exceptions that are not an `Exception`, such as KeyboardInterrupt. Others, which are reported already,
+/// are dropped.
 pub(crate) fn interrupted<'a, 'py: 'a>(
     values: impl IntoIterator<Item = &'a Bound<'py, LawValue>>,
 ) -> PyResult<()> {
@@ -118,7 +118,7 @@ pub(crate) fn formula<T>(
     values: &Values<'_>,
     compile: impl FnOnce(Names, &mut Known<'_>) -> Result<T, Error>,
 ) -> PyResult<T> {
-    let mut types: Vec<Said> = Vec::with_capacity(values.len());
+    let mut types: Vec<NameKind> = Vec::with_capacity(values.len());
     for (name, value) in values {
         types.push(match Argument::of(value)? {
             Some(Argument::Value(ty, _)) => (name.clone(), ty.grades.0, ty.unit.into()),
@@ -143,7 +143,7 @@ pub(crate) fn formula<T>(
     }
 }
 
-/// A Python value as that of an input.
+/// Converts a Python value to that of an input.
 fn known(value: &Bound<'_, PyAny>, kind: InputKind) -> PyResult<Given> {
     match (kind, value::operand(value)) {
         (InputKind::Value(_), Operand::Value(value, _)) => Ok(Given::Value(*value)),
@@ -166,11 +166,11 @@ pub(crate) fn vector_of(py: Python<'_>, v: Vector) -> value::Object<'_> {
 
 const VECTOR: Grades = Grades(0b10);
 
-/// A Python function that is called along a motion, which stops where it raises.
+/// A Python function that is called along a motion; an exception stops the motion.
 pub(crate) struct Callback {
     pub call: Py<PyAny>,
     pub raised: Raised,
-    /// What it returns.
+    /// The name of its value, for errors.
     pub what: &'static str,
 }
 
@@ -191,7 +191,7 @@ impl Callback {
     }
 }
 
-/// What a returned value is, for errors.
+/// Describes a returned value, for errors.
 type What<'a> = &'a dyn Fn() -> String;
 
 /// A bivector or three numbers.
@@ -236,7 +236,7 @@ fn three(
     if let Ok(three) = returned.extract::<Rows<'_>>().and_then(|rows| one(&rows)) {
         return Ok(three);
     }
-    // Any other value of three numbers, or the error that says why it is none.
+    // Any other value of three numbers, or an error.
     let rows = convert.get(py)?.call1((returned, what()))?;
     let rows: Rows<'_> = rows.call_method0(intern!(py, "copy"))?.extract()?;
     one(&rows).map_err(|error| PyValueError::new_err(format!("{} must be a single {kind}: {error}", what())))

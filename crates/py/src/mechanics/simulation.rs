@@ -26,7 +26,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
     polhode_rigid::methods::methods().map(Method::name).collect()
 }
 
-/// Calls `progress(pass, fraction)` and checks for Ctrl-C, at most every 50 ms; keeps the error raised.
+/// Calls `progress(pass, fraction)` and checks for Ctrl-C, at most every 50 ms; stores the error raised.
 struct Watcher<'a> {
     progress: Option<&'a Py<PyAny>>,
     last: Instant,
@@ -69,8 +69,8 @@ fn points<'py>(py: Python<'py>, states: States) -> Points<'py> {
 pub(crate) struct Motion {
     motion: rigid::Motion,
     setup: Setup,
-    /// The laws and events, which keep what their functions raise.
-    made: Vec<Py<LawValue>>,
+    /// The laws and events, which store the exceptions of their functions.
+    callbacks: Vec<Py<LawValue>>,
 }
 
 impl Motion {
@@ -78,11 +78,11 @@ impl Motion {
     pub(crate) fn new(
         py: Python<'_>,
         setup: Setup,
-        made: Vec<Py<LawValue>>,
+        callbacks: Vec<Py<LawValue>>,
         progress: Option<Py<PyAny>>,
         simulate: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<rigid::Motion, SimulateError> + Send,
     ) -> PyResult<Motion> {
-        run(py, &made, progress.as_ref(), simulate).map(|motion| Motion { motion, setup, made })
+        run(py, &callbacks, progress.as_ref(), simulate).map(|motion| Motion { motion, setup, callbacks })
     }
 }
 
@@ -96,15 +96,15 @@ impl Motion {
     fn at<'py>(&self, py: Python<'py>, times: Rows<'py>) -> Points<'py> {
         let times = numbers(&times)?;
         check_times(times)?;
-        let states = run(py, &self.made, None, |progress| self.motion.at(times, progress))?;
+        let states = run(py, &self.callbacks, None, |progress| self.motion.at(times, progress))?;
         points(py, states)
     }
 
     /// The events in the order of integration: index, whether rising, and states.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<(Vec<usize>, Vec<bool>, [Array<'py>; 7])> {
-        let which = self.motion.events.iter().map(|happened| happened.event).collect();
+        let which = self.motion.events.iter().map(|occurrence| occurrence.event).collect();
         let rising =
-            self.motion.events.iter().map(|happened| happened.direction == Direction::Rising).collect();
+            self.motion.events.iter().map(|occurrence| occurrence.direction == Direction::Rising).collect();
         Ok((which, rising, points(py, self.motion.event_states())?))
     }
 
@@ -161,7 +161,7 @@ impl Motion {
 /// Runs without the GIL, with progress and Ctrl-C.
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
-    made: &[Py<LawValue>],
+    callbacks: &[Py<LawValue>],
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<T, SimulateError> + Send,
 ) -> PyResult<T> {
@@ -174,7 +174,7 @@ pub(crate) fn run<T: Send>(
         (Ok(found), _) => Ok(found),
         (Err(SimulateError::Interrupted), Some(error)) => Err(error),
         (Err(error @ SimulateError::Torque { .. }), _) => {
-            Err(failed(made.iter().map(|one| one.bind(py)), error))
+            Err(failed(callbacks.iter().map(|one| one.bind(py)), error))
         }
         (Err(error), _) => Err(bad(error)),
     }
@@ -219,7 +219,7 @@ pub(crate) fn simulate<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Motion> {
     let (method, exact) = method_of(method)?;
-    let made: Vec<Py<LawValue>> = laws
+    let callbacks: Vec<Py<LawValue>> = laws
         .iter()
         .map(|law| law.as_super().clone().unbind())
         .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
@@ -242,5 +242,5 @@ pub(crate) fn simulate<'py>(
     let times = numbers(&times)?;
     let (max_step, max_steps, breaks) = limits;
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
-    Motion::new(py, setup, made, progress, |progress| problem.simulate(times, options, progress))
+    Motion::new(py, setup, callbacks, progress, |progress| problem.simulate(times, options, progress))
 }

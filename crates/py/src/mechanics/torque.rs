@@ -30,7 +30,7 @@ pub(crate) struct Law {
 }
 
 impl Law {
-    /// A law that is known already, with its name and arguments.
+    /// Wraps a law with its name and arguments.
     pub(crate) fn named(
         py: Python<'_>,
         torque: Torque,
@@ -55,7 +55,7 @@ impl Law {
 
 #[pymethods]
 impl Law {
-    /// A law by its name in `polhode.torque`, its arguments as that module has checked and converted them.
+    /// A law by its name in `polhode.torque` and arguments checked and converted by that module.
     #[new]
     #[pyo3(signature = (name, *arguments))]
     fn new(name: String, arguments: Bound<'_, PyTuple>) -> PyResult<PyClassInitializer<Law>> {
@@ -65,7 +65,7 @@ impl Law {
         Ok(PyClassInitializer::from(LawValue::new(name, arguments, raised)).add_subclass(law))
     }
 
-    /// The moments of the weight, rows (n, 3) in body axes, of a law that holds the body; none of others.
+    /// The moments of the weight, rows (n, 3) in body axes, of a weight; None for other laws.
     fn weight_moments<'py>(&self, py: Python<'py>) -> PyResult<Option<Array<'py>>> {
         let moments: Option<Vec<[f64; 3]>> = self
             .torques
@@ -75,7 +75,7 @@ impl Law {
         moments.map(|rows| table(py, rows.into_iter())).transpose()
     }
 
-    /// Its name in scenes and, as text, its formula or its numbers; of a single body.
+    /// Its name in scenes and its formula or numbers as text, for a single body.
     fn facts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let torque = slf.get().single()?;
         let name = match &torque {

@@ -36,8 +36,7 @@ pub(crate) fn bodies(py: Python<'_>, drawn: Drawn) -> PyResult<Bodies<'_>> {
     ))
 }
 
-/// A law that all bodies share, or the name of one that differs from body to body and its arguments, as arrays (n,)
-/// or (n, m).
+/// A law that all bodies share, or the name and the arguments, arrays (n,) or (n, m), of a law that varies.
 fn law<'py>(py: Python<'py>, torques: &[Torque]) -> PyResult<Bound<'py, PyAny>> {
     if let [torque] = torques {
         return Ok(named(py, torque.clone())?.into_bound(py).into_any());

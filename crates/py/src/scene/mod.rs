@@ -56,8 +56,8 @@ impl Scene {
     /// The attributes of Python's `Scene`, in SI units.
     fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let Scene { scene, body, laws } = self;
-        let formulas: Vec<Option<String>> = laws.iter().map(|law| law.formula.clone()).collect();
-        let made: Vec<Py<Law>> =
+        let formulas: Vec<_> = laws.iter().map(|law| law.formula.as_deref()).collect();
+        let law_objects: Vec<Py<Law>> =
             laws.iter().map(|law| named(py, law.torque.clone())).collect::<PyResult<_>>()?;
         let forces: Vec<_> = scene.forces.iter().map(|push| pushed(py, push)).collect::<PyResult<_>>()?;
         let choice = &scene.run.choice;
@@ -73,7 +73,7 @@ impl Scene {
         result.set_item("position", line(py, scene.center.position.0.to_vec()))?;
         result.set_item("velocity", line(py, scene.center.velocity.0.to_vec()))?;
         result.set_item("time", scene.time)?;
-        result.set_item("laws", made)?;
+        result.set_item("laws", law_objects)?;
         result.set_item("formulas", formulas)?;
         result.set_item("forces", forces)?;
         result.set_item("times", line(py, scene.times()))?;
@@ -87,7 +87,7 @@ impl Scene {
         Ok(result)
     }
 
-    /// The inertia that rules the motion: about the fixed point if there is one.
+    /// The inertia of the equations of motion: about the fixed point if there is one.
     fn inertia(&self) -> Inertia {
         Inertia(self.scene.ruling_inertia(&self.body))
     }
@@ -128,7 +128,7 @@ impl Scene {
         Some((ensemble.number, ensemble.seed, ensemble.varied().into_iter().map(varied).collect()))
     }
 
-    /// Bodies of the ensemble from the first on, one at least.
+    /// `count` bodies of the ensemble from number `first` on.
     fn draw<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bodies<'py>> {
         let (ensemble, rows) = self.rows(first, count)?;
         let drawn = py.detach(|| ensemble.draw(&self.scene, (&self.body, &self.laws), rows));
@@ -156,8 +156,8 @@ impl Scene {
         });
         let centers = table(py, centers)?;
         let options = self.scene.options();
-        let told = run_many(py, &bodies, &[count], numbers(&times)?, &options, threads, &[], progress)?;
-        Ok((told, inertias, centers))
+        let results = run_many(py, &bodies, &[count], numbers(&times)?, &options, threads, &[], progress)?;
+        Ok((results, inertias, centers))
     }
 }
 
@@ -166,7 +166,7 @@ impl Scene {
         self.scene.setup(&self.body, &self.laws)
     }
 
-    /// The ensemble, and so many of its bodies from the first on.
+    /// The ensemble and the range of `count` bodies from number `first` on.
     fn rows(&self, first: usize, count: usize) -> PyResult<(&scene::Ensemble, Range<usize>)> {
         let Some(ensemble) = &self.scene.ensemble else {
             return Err(bad("this scene has no table [ensemble]"));

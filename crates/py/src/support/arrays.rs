@@ -21,8 +21,8 @@ pub(crate) fn bad<E: std::fmt::Display>(message: E) -> PyErr {
     PyValueError::new_err(message.to_string())
 }
 
-/// The numbers of an array in C order. An array in any other order is refused: `as_slice` alone would
-/// also take one in Fortran order, and its rows for columns.
+/// The numbers of an array in C order. Other orders are errors: `as_slice` alone would accept Fortran
+/// order and swap rows and columns.
 pub(crate) fn numbers<'a, T: Element>(array: &'a Rows<'_, T>) -> PyResult<&'a [T]> {
     if !array.is_c_contiguous() {
         return Err(bad("the array is not C-contiguous"));
@@ -64,7 +64,7 @@ pub(crate) fn one<const N: usize>(row: &Rows<'_>) -> PyResult<[f64; N]> {
     data.try_into().map_err(|_| bad(format!("expected {N} numbers, got shape {:?}", row.shape())))
 }
 
-/// Numbers as an array of one axis.
+/// Numbers as a one-dimensional array.
 pub(crate) fn line<'py>(py: Python<'py>, numbers: Vec<f64>) -> Array<'py> {
     PyArray1::from_vec(py, numbers).to_dyn().clone()
 }
@@ -112,8 +112,8 @@ pub(crate) fn map_rows<'py, const IN: usize, const OUT: usize, E: std::fmt::Disp
     })
 }
 
-/// Applies a function of rows of one length, from arrays of one shape, to all rows, which give rows of that
-/// length; an error names the batch index.
+/// Applies a function of rows to all rows of arrays of one shape; results have the same length. An error names the
+/// batch index.
 pub(crate) fn map_long_rows<'py, const N: usize, E: std::fmt::Display + Send>(
     py: Python<'py>,
     inputs: [&Rows<'py>; N],

@@ -1,10 +1,10 @@
-//! Objects of the Python face that the binding uses; the modules that define them register them.
+//! Registry of Python objects that the binding calls.
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-/// One object of the face.
+/// A registered Python object.
 pub(crate) struct Slot {
     name: &'static str,
     object: PyOnceLock<Py<PyAny>>,
@@ -18,9 +18,9 @@ pub(crate) static CALL_FORMULA: Slot = Slot::new("call_formula");
 pub(crate) static LINEAR_MAP: Slot = Slot::new("LinearMap");
 /// The class of values with a row for each body.
 pub(crate) static BATCH: Slot = Slot::new("Batch");
-/// Converts three components, as anything that `vector` takes.
+/// Converts any value that `vector` takes to three components.
 pub(crate) static AS_VECTORS: Slot = Slot::new("as_vectors");
-/// Converts three components, as anything that `bivector` takes.
+/// Converts any value that `bivector` takes to three components.
 pub(crate) static AS_BIVECTORS: Slot = Slot::new("as_bivectors");
 
 impl Slot {
@@ -42,7 +42,7 @@ impl Slot {
     }
 }
 
-/// Registers an object of the face under its name; the first one stays.
+/// Registers an object under its name; later registrations are ignored.
 #[pyfunction]
 pub(crate) fn register(py: Python<'_>, name: &str, object: Py<PyAny>) -> PyResult<()> {
     let slots = [&FORMULA_ERROR, &CALL_FORMULA, &LINEAR_MAP, &BATCH, &AS_VECTORS, &AS_BIVECTORS];

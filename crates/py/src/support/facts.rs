@@ -6,7 +6,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-/// A fact; None where nothing is known.
+/// A fact as a Python object.
 pub(crate) fn object(py: Python<'_>, fact: Fact) -> PyResult<Bound<'_, PyAny>> {
     match fact {
         Fact::None => Ok(py.None().into_bound(py)),
@@ -31,7 +31,7 @@ pub(crate) fn dict(py: Python<'_>, facts: Facts) -> PyResult<Bound<'_, PyDict>> 
     Ok(result)
 }
 
-/// Facts of many bodies by the names of a template: numbers as arrays, NaN where nothing is known, and all else as lists.
+/// Facts of many bodies by the names of a template: numbers as arrays with NaN for unknown values, all else as lists.
 pub(crate) fn columns(
     py: Python<'_>,
     template: Facts,

@@ -1,4 +1,4 @@
-//! What is known of a motion, in words and numbers: its kind, regime, periods and bounds.
+//! Description of a motion: its kind, regime, periods and bounds.
 //!
 //! The kind follows from the torques ([`Setup::kind`]), regime and periods of free motions and heavy symmetric tops from
 //! the start ([`Setup::facts`]), and the rest from the states at the output times ([`Setup::describe`]).
@@ -98,7 +98,7 @@ impl Setup {
         facts
     }
 
-    /// The free motion from this start; of a symmetric top its wobbles for each turn about its axis too.
+    /// The free motion from this start; for a symmetric top also its wobbles per turn about the axis.
     fn describe_start(&self, kind: &str) -> Facts {
         let Some(free) = self.free() else { return facts! { kind: kind } };
         let mut facts = [facts! { kind: kind }, free.facts()].concat();
@@ -162,7 +162,7 @@ impl Setup {
         facts
     }
 
-    /// The free motion at the start, which goes on in the time `(1 − e^(−gt))/g`.
+    /// The free motion from this start, with the rescaled time `(1 − e^(−gt))/g`.
     fn describe_damped(&self) -> Facts {
         let each = self.torques.iter().map(|t| if let Torque::Damping(g) = t { *g } else { 0.0 });
         let damping: f64 = each.sum();
@@ -249,7 +249,7 @@ fn longest(times: &[f64]) -> f64 {
     times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
 }
 
-/// A law's name in scenes and, as text, its formula or its numbers.
+/// A law's name in scenes and its formula or numbers as text.
 pub fn law_facts(name: &str, torque: &Torque, formula: Option<&str>) -> Facts {
     let argument = |numbers: &[f64]| match numbers {
         [x] => x.to_string(),

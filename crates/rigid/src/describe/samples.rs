@@ -1,4 +1,4 @@
-//! Numbers of a motion that follow from its states at the output times.
+//! Quantities of a motion from its states at the output times.
 
 use super::longest;
 use crate::facts;
@@ -7,7 +7,7 @@ use crate::run::States;
 use polhode_ga::Vector;
 use std::f64::consts::PI;
 
-/// An angle that changes by less than this between samples, in rad, is followed without doubt.
+/// Largest change of an angle between samples, in rad, for which its turns are counted.
 const FOLLOWED: f64 = 2.0;
 
 /// The first and the last value.

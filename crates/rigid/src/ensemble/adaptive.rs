@@ -23,7 +23,7 @@ use std::{array, mem};
 const LAST: usize = 8;
 
 /// Rounds between calls of `progress`.
-const BETWEEN_LOOKS: u32 = 256;
+const BETWEEN_CHECKS: u32 = 256;
 
 /// Integration of all bodies not yet assigned to a thread.
 pub(super) struct AdaptedSteps<'a, 'b> {
@@ -179,7 +179,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
                 if accepted[l]
                     && let Some(noise) = self.runs[l].as_mut().and_then(|run| run.noise.as_mut())
                 {
-                    self.at.set(l, &noise.shake(&self.at.get(l)));
+                    self.at.set(l, &noise.perturb(&self.at.get(l)));
                 }
                 let stops = |run: &BodyRun| run.stop == self.at.time.0[l];
                 if accepted[l] && self.runs[l].as_ref().is_some_and(stops) {
@@ -187,7 +187,7 @@ impl<'a, const W: usize, const F: bool> LaneBatch<'a, W, F> {
                 }
             }
             rounds += 1;
-            if rounds % BETWEEN_LOOKS == 0 {
+            if rounds % BETWEEN_CHECKS == 0 {
                 for l in 0..W {
                     let time = self.at.time.0[l];
                     let Some(run) = &mut self.runs[l] else { continue };

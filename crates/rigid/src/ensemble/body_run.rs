@@ -1,4 +1,4 @@
-//! BodyRun: the sweeps of one body in a lane, by the rules for a single body.
+//! Sweeps of one body in a lane, by the rules for a single body.
 
 use super::member::{METHOD, Member, Outcome};
 use super::scheduler::Scheduler;
@@ -7,7 +7,7 @@ use crate::laws::torque::Torque;
 use crate::methods::runge_kutta::{DOP853, Points, RungeKutta};
 use crate::methods::step_control::{Limit, StepController, next_stop};
 use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
-use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::limits::{StepBounds, span};
 use crate::run::noise::Noise;
 use crate::run::refine::{Accuracy, Converged, Convergence, Scales, SweepPlan};
@@ -100,7 +100,7 @@ impl<'a> BodyRun<'a> {
         let early = times.partition_point(|&t| t < self.begin.phase.time);
         loop {
             let taken = self.sweep.states.len();
-            self.sweep.meet(*fastest, &at.center);
+            self.sweep.update_largest(*fastest, &at.center);
             if taken == times.len() {
                 let mut sweep = mem::take(&mut self.sweep);
                 sweep.states[..early].reverse();
@@ -142,7 +142,7 @@ impl<'a> BodyRun<'a> {
         self.limit.check(self.sweep.steps, h, turn, || self.fraction(time, scheduler))
     }
 
-    /// Why a step has no error estimate: it is too long, or a law cannot be evaluated, as a step of a single body shows.
+    /// The error of a law that cannot be evaluated, from a single-body step; none if the step is just too long.
     #[cold]
     pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
         let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
@@ -166,10 +166,10 @@ impl<'a> BodyRun<'a> {
     /// Writes the points and records the outcome.
     pub fn done(mut self, found: Converged, torques: &[Torque], scheduler: &Scheduler<'a>) {
         let Member { body, frame, gyrostat, start, ref mut own, .. } = self.member;
-        let mut watch = Watch::new(gyrostat, torques, start);
+        let mut monitor = DriftMonitor::new(gyrostat, torques, start);
         let mut norm_drift = 0.0_f64;
         for (index, Carried { phase, .. }) in found.sweep.states.iter().enumerate() {
-            watch.look(phase);
+            monitor.record(phase);
             norm_drift = norm_drift.max(off_unit(phase.rotor));
             own.write(index, (frame, &gyrostat, torques), phase, &scheduler.center(body, phase.time));
         }
@@ -179,7 +179,7 @@ impl<'a> BodyRun<'a> {
             steps: found.sweep.steps,
             evaluations: found.sweep.evaluations,
             error_estimate: Some(found.error),
-            drifts: watch.finish(),
+            drifts: monitor.finish(),
             norm_drift,
             warnings: Vec::new(),
         };

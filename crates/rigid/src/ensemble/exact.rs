@@ -3,8 +3,8 @@
 use super::member::{Member, Outcome};
 use super::scheduler::Scheduler;
 use crate::exact::free::FreeMotion;
-use crate::run::certificate::{Certificate, Watch, off_unit};
-use crate::run::closed_form::{Since, check_kept};
+use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
+use crate::run::closed_form::{ElapsedTime, check_kept};
 use crate::state::checks::check_horizons_from;
 use crate::state::phase::Phase;
 use polhode_ga::simd::threads::Threads;
@@ -20,7 +20,7 @@ impl<'a> Scheduler<'a> {
         if let Err(error) = check_horizons_from(start.time, self.times, [motion.horizon(); 2]) {
             return self.fail(body, own, method, error);
         }
-        let since = Since::new(start.time, gyrostat, &[]);
+        let since = ElapsedTime::new(start.time, gyrostat, &[]);
         let elapsed: Cow<'_, [f64]> = match start.time {
             0.0 => self.times.into(),
             _ => self.times.iter().map(|&time| since.elapsed(time).hi).collect(),
@@ -29,7 +29,7 @@ impl<'a> Scheduler<'a> {
         let momentum = start.rotor.apply_bivector(start.momentum);
         own.momenta.as_chunks_mut::<3>().0.fill(momentum.0);
         own.energies.fill(gyrostat.kinetic(start.momentum));
-        let mut watch = Watch::new(gyrostat, &[], start);
+        let mut monitor = DriftMonitor::new(gyrostat, &[], start);
         let mut norm_drift = 0.0_f64;
         let states = own.rotors.as_chunks_mut::<4>().0.iter_mut().zip(own.omegas.as_chunks_mut::<3>().0);
         for (&time, (rotor, omega)) in self.times.iter().zip(states) {
@@ -43,12 +43,12 @@ impl<'a> Scheduler<'a> {
                 *omega = frame.apply_bivector(gyrostat.omega(phase.momentum)).0;
             }
             norm_drift = norm_drift.max(off_unit(Rotor::from_unit_components(*rotor)));
-            watch.look(&phase);
+            monitor.record(&phase);
         }
         for (index, &time) in self.times.iter().enumerate() {
             own.place(index, &self.center(body, time));
         }
-        let drifts = watch.finish();
+        let drifts = monitor.finish();
         if let Err(error) = check_kept(&drifts) {
             return self.fail(body, own, method, error);
         }

@@ -12,7 +12,7 @@ use crate::methods::classical::Bodies;
 use crate::methods::kicks::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
 use crate::run::Progress;
-use crate::run::certificate::{Certificate, Watch, off_unit};
+use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
 use crate::run::engine::Engine;
 use crate::run::limits::span;
 use crate::run::stops::{aliasing_warning, is_aliased};
@@ -24,7 +24,7 @@ use polhode_ga::simd::lanes::Work;
 use std::array;
 
 /// Steps between checks for finite states and calls of `progress`.
-const BETWEEN_LOOKS: u64 = 1024;
+const BETWEEN_CHECKS: u64 = 1024;
 
 /// Integration of at most [`SIDE_BY_SIDE`] bodies over all times.
 pub(super) struct FixedSteps<'a, 'b> {
@@ -64,8 +64,8 @@ impl FixedSteps<'_, '_> {
         let FixedSteps { scheduler, plan, mut members, progress } = self;
         let Plan { start, step, method, .. } = plan;
         let times = scheduler.times;
-        let mut watches: Vec<Watch> =
-            members.iter().zip(torques).map(|(m, t)| Watch::new(m.gyrostat, t, m.start)).collect();
+        let mut monitors: Vec<DriftMonitor> =
+            members.iter().zip(torques).map(|(m, t)| DriftMonitor::new(m.gyrostat, t, m.start)).collect();
         let mut failures: [Option<(f64, SimulateError)>; SIDE_BY_SIDE] = [const { None }; SIDE_BY_SIDE];
         let mut norm_drifts = [0.0_f64; SIDE_BY_SIDE];
         let (mut steps, mut longest, mut so_far) = (0, 0.0_f64, 0);
@@ -82,8 +82,8 @@ impl FixedSteps<'_, '_> {
             for index in indices {
                 for segment in segments(time, times[index], step, &breaks) {
                     longest = longest.max((segment.to - segment.from).abs() / segment.count as f64);
-                    for first in (0..segment.count).step_by(BETWEEN_LOOKS as usize) {
-                        let last = segment.count.min(first + BETWEEN_LOOKS);
+                    for first in (0..segment.count).step_by(BETWEEN_CHECKS as usize) {
+                        let last = segment.count.min(first + BETWEEN_CHECKS);
                         let before = state;
                         stepper.advance(&mut state, segment, &(first..last));
                         steps += last - first;
@@ -113,7 +113,7 @@ impl FixedSteps<'_, '_> {
                     }
                     let phase = stepper.phase(&member.gyrostat, &state, l, time);
                     norm_drifts[l] = norm_drifts[l].max(off_unit(phase.rotor));
-                    watches[l].look(&phase);
+                    monitors[l].record(&phase);
                     let center = scheduler.center(member.body, time);
                     let of = (member.frame, &member.gyrostat, &torques[l][..]);
                     member.own.write(index, of, &phase, &center);
@@ -127,8 +127,8 @@ impl FixedSteps<'_, '_> {
         let aliased = torques[0].iter().filter(is_aliased);
         let mut warnings: Vec<String> = aliased.map(|law| aliasing_warning(law, step)).collect();
         let failures = failures.into_iter();
-        let outcomes = members.iter().zip(watches).zip(failures).zip(norm_drifts);
-        scheduler.record(outcomes.map(|(((member, watch), failure), norm_drift)| Outcome {
+        let outcomes = members.iter().zip(monitors).zip(failures).zip(norm_drifts);
+        scheduler.record(outcomes.map(|(((member, monitor), failure), norm_drift)| Outcome {
             body: member.body,
             certificate: Certificate {
                 method: method.name(),
@@ -136,7 +136,7 @@ impl FixedSteps<'_, '_> {
                 steps,
                 evaluations: steps * plan.evaluations(),
                 error_estimate: None,
-                drifts: watch.finish(),
+                drifts: monitor.finish(),
                 norm_drift,
                 warnings: std::mem::take(&mut warnings),
             },
@@ -175,7 +175,7 @@ fn segments(from: f64, to: f64, step: f64, breaks: &[f64]) -> Vec<Segment> {
     ends.into_iter().map(part).filter(|segment| segment.from != segment.to).collect()
 }
 
-/// When and why steps from a point fail: repeats them for the body alone.
+/// Time and cause of a failure: repeats the steps for the single body.
 #[cold]
 fn diagnose(
     method: Method,

@@ -1,6 +1,6 @@
 //! Torque laws of bodies in SIMD lanes.
 //!
-//! Laws of one kind are merged where their parameters add up. What all bodies share, such as an orbit or a table, is
+//! Laws of one kind are merged where their parameters add up. Shared orbits and tables are
 //! evaluated once per time.
 
 use crate::laws::forcing::{Forcing, Place};
@@ -24,11 +24,6 @@ impl<const W: usize, const F: bool> Forcing<W, F> for NoForcing {
     fn torque(&mut self, _: &Place<W, F>) -> [Lanes<W, F>; 3] {
         [Lanes::ZERO; 3]
     }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
-    }
 }
 
 /// Weights and damping only, without wheels: their parameters stay in registers.
@@ -42,11 +37,6 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Weight<W, F> {
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
         cross(&vertical(&at.rotor), &self.0)
-    }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
     }
 }
 
@@ -63,11 +53,6 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Gradient<W, F> {
     #[inline(always)]
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3] {
         self.orbits.torque(&self.moments, at)
-    }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
     }
 }
 
@@ -108,7 +93,7 @@ pub(super) struct Laws<'t, const W: usize, const F: bool> {
     laws: Vec<Law<'t, W, F>>,
 }
 
-/// A law, or some that act as one, with the parameters of each body.
+/// A law, or the sum of several of one kind, with the parameters of each body.
 enum Law<'t, const W: usize, const F: bool> {
     /// `c` of all weights.
     Heavy(Three<W, F>),
@@ -129,7 +114,7 @@ enum Law<'t, const W: usize, const F: bool> {
     },
     Larmor(Three<W, F>),
     /// A table shared by all, in its axes.
-    Tabulated(Latest<'t>),
+    Tabulated(CachedTable<'t>),
     Formula(Box<Formulas<'t, W, F>>),
     /// Lane by lane.
     Other([&'t Torque; W]),
@@ -144,14 +129,14 @@ struct Orbits<const W: usize> {
     places: [[f64; W]; 3],
 }
 
-/// A table with its latest value.
-struct Latest<'t> {
+/// A table with its last value.
+struct CachedTable<'t> {
     table: &'t Table,
     time: f64,
     torque: [f64; 3],
 }
 
-/// The numbers of a law that lanes compute; none of another.
+/// The numbers of a law computed in lanes; empty for others.
 fn numbers(law: &Torque) -> Vec<f64> {
     match law {
         Torque::Heavy(v) | Torque::Larmor(v) => v.0.to_vec(),
@@ -221,7 +206,7 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                 let same =
                     |law: &&Torque| matches!(law, Torque::Tabulated(other) if Arc::ptr_eq(table, other));
                 if each.iter().all(same) {
-                    Law::Tabulated(Latest { table, time: f64::NAN, torque: [f64::NAN; 3] })
+                    Law::Tabulated(CachedTable { table, time: f64::NAN, torque: [f64::NAN; 3] })
                 } else {
                     Law::Other(each)
                 }
@@ -313,7 +298,7 @@ fn place(orbit: &Orbit, time: f64) -> [f64; 3] {
     [x, y, 3.0 * orbit.rate() * orbit.rate() * nearness]
 }
 
-impl Latest<'_> {
+impl CachedTable<'_> {
     /// The torque at a time, NaN where the table has none.
     fn at(&mut self, time: f64) -> [f64; 3] {
         if time != self.time {
@@ -415,15 +400,15 @@ impl<const K: usize, const W: usize, const F: bool> Term<'_, '_, K, W, F> {
                 }
                 cross(&momentum, &seen(&at.rotor, b))
             }
-            Law::Tabulated(latest) if K == 8 => {
+            Law::Tabulated(cached) if K == 8 => {
                 let mut torque = [Lanes::ZERO; 3];
                 for l in 0..W {
-                    let numbers = latest.at(at.time.0[l]);
+                    let numbers = cached.at(at.time.0[l]);
                     for k in 0..3 {
                         torque[k].0[l] = numbers[k];
                     }
                 }
-                if latest.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
+                if cached.table.axes == Axes::Body { torque } else { seen(&at.rotor, &torque) }
             }
             Law::Formula(formulas) if K == 9 => formulas.torque(at),
             _ => [Lanes::ZERO; 3],
@@ -464,10 +449,5 @@ impl<const W: usize, const F: bool> Forcing<W, F> for Laws<'_, W, F> {
             add(&mut sum, &torque);
         }
         sum
-    }
-
-    #[inline(always)]
-    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
-        [Lanes::ZERO; 3]
     }
 }

@@ -1,4 +1,4 @@
-//! Members of an ensemble: a body in lanes, how it is stepped, and its outcome.
+//! Members of an ensemble: body, plan and outcome.
 
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
@@ -33,14 +33,14 @@ pub(super) struct Member<'a> {
     pub own: BodyOutput<'a>,
 }
 
-/// How a body is solved without a given step.
+/// Solution strategy of a body without a given step.
 pub(super) enum Strategy {
     /// In the lanes.
     Lanes,
     /// In closed form, for a free body.
     Free,
     /// As a single body.
-    Alone,
+    Single,
 }
 
 /// The outcome of a body.
@@ -50,7 +50,7 @@ pub(super) struct Outcome {
     pub failure: Option<(f64, SimulateError)>,
 }
 
-/// How bodies are integrated in lanes by equal steps.
+/// Plan of bodies integrated in lanes by equal steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plan {
     /// In s.

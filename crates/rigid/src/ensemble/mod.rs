@@ -3,7 +3,7 @@
 //! A body has its own inertia, start and laws, or shares them with the others. Its result never depends on the others,
 //! on their number, or on the number of threads. Without a step and a method, motions in closed form are evaluated, and
 //! others are integrated by `dop853` with steps of their own: in lanes, where drifts of conserved quantities are measured
-//! at the output times. What lanes do not support is solved one by one. A body that fails does not stop the others.
+//! at the output times. Bodies that lanes do not support are solved one by one. A body that fails does not stop the others.
 
 mod adaptive;
 mod advance;
@@ -35,26 +35,26 @@ use scheduler::Scheduler;
 pub struct Rows<T>(Vec<T>);
 
 impl<T> Rows<T> {
-    /// One at least.
+    /// At least one row.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there are no rows.
     pub fn new(rows: Vec<T>) -> Rows<T> {
         assert!(!rows.is_empty(), "one for all, or one for each");
         Rows(rows)
     }
 
-    /// That of a body.
+    /// The value of a body.
     pub fn of(&self, body: usize) -> &T {
         &self.0[if self.is_one() { 0 } else { body }]
     }
 
-    /// Whether all share one.
+    /// Whether all bodies share one value.
     pub fn is_one(&self) -> bool {
         self.0.len() == 1
     }
 
-    /// All of them.
+    /// All rows.
     pub fn all(&self) -> &[T] {
         &self.0
     }

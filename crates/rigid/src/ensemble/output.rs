@@ -3,9 +3,8 @@
 use super::Failure;
 use crate::run::output::BodyOutput;
 
-/// Arrays for the points of all bodies at all times, body by body: rows of four rotor components, of three of the angular
-/// velocity in body axes, of three of the momentum in space, energies, and six of place and velocity, which are
-/// optional.
+/// Arrays for the states of all bodies at all times, body by body: rows of rotors (4), angular velocities in body axes
+/// (3), momenta in space (3), energies (1) and, optionally, positions (3) and velocities (3).
 #[derive(Debug)]
 pub struct Outputs<'a> {
     /// Body axes to space.

@@ -1,4 +1,4 @@
-//! Scheduler: hands out the bodies of an ensemble to threads and collects their outcomes.
+//! Scheduler: assigns the bodies of an ensemble to threads and collects their outcomes.
 
 use super::Ensemble;
 use super::member::{METHOD, Member, Outcome, Plan, Strategy};
@@ -10,7 +10,7 @@ use crate::methods::Method;
 use crate::methods::splitting::Sequence;
 use crate::methods::splitting::turns::Kind;
 use crate::run::certificate::Certificate;
-use crate::run::closed_form::{ClosedForm, Fall};
+use crate::run::closed_form::{ClosedForm, UniformAcceleration};
 use crate::run::limits::{Samples, StepBounds, samples};
 use crate::run::output::BodyOutput;
 use crate::run::{Options, Progress, check_body};
@@ -60,7 +60,7 @@ impl<'a> Scheduler<'a> {
         let each: Box<dyn Iterator<Item = BodyOutput<'a>> + Send + 'a> =
             Box::new(outputs.each(times.len().max(1)));
         let alike = ensemble.inertias.is_one() && ensemble.laws.iter().all(|law| law.is_one());
-        let one_clock = ensemble.starts.iter().all(|start| start.time == ensemble.starts[0].time);
+        let same_start = ensemble.starts.iter().all(|start| start.time == ensemble.starts[0].time);
         let frame = ensemble.inertias.of(0).principal_frame();
         let turned = || ensemble.laws.iter().map(|law| law.of(0).clone().in_axes(frame)).collect();
         Scheduler {
@@ -74,7 +74,7 @@ impl<'a> Scheduler<'a> {
             running: Mutex::new(0),
             ended: Condvar::new(),
             shared: alike.then(turned),
-            samples: (alike && one_clock).then(OnceLock::new),
+            samples: (alike && same_start).then(OnceLock::new),
         }
     }
 
@@ -102,7 +102,7 @@ impl<'a> Scheduler<'a> {
                     self.free(member);
                     self.report(progress);
                 }
-                Strategy::Alone => self.run_single(body, member.own, progress),
+                Strategy::Single => self.run_single(body, member.own, progress),
             }
         }
         None
@@ -132,22 +132,22 @@ impl<'a> Scheduler<'a> {
         Some(Plan { start: self.ensemble.starts[body].time, step, method, kind })
     }
 
-    /// How a body is solved without a given step.
+    /// Solution strategy of a body without a given step.
     fn strategy(&self, member: &Member) -> Strategy {
         let Member { gyrostat, torques, start, omega, .. } = member;
         let chosen = self.options.method.is_some() && !self.options.exact;
         if check_body(gyrostat, *omega, torques).is_err() {
             // The error is reported as for a single body.
-            Strategy::Alone
+            Strategy::Single
         } else if chosen {
             Strategy::Lanes
         } else if torques.is_empty() {
             Strategy::Free
         } else {
             let (center, acceleration) = (Center::default(), Vector::default());
-            let fall = Fall { time: start.time, start: center, acceleration };
+            let fall = UniformAcceleration { time: start.time, start: center, acceleration };
             let closed = ClosedForm::of(*gyrostat, start.rotor, *omega, torques, fall);
-            if closed.is_some() || self.options.exact { Strategy::Alone } else { Strategy::Lanes }
+            if closed.is_some() || self.options.exact { Strategy::Single } else { Strategy::Lanes }
         }
     }
 
@@ -171,7 +171,7 @@ impl<'a> Scheduler<'a> {
         Member { body, frame, gyrostat, torques, omega, start, bounds: StepBounds::default(), own }
     }
 
-    /// What bounds the steps of a body. Laws in lanes are not functions of the caller: sampling them does not fail.
+    /// Bounds of the steps of a body. Laws in lanes are not user functions, so sampling does not fail.
     fn bounds(&self, member: &Member) -> StepBounds {
         let Member { gyrostat, torques, start, .. } = member;
         let sample = || samples(torques, gyrostat, start, self.times, self.options).unwrap_or_default();
@@ -227,7 +227,7 @@ impl<'a> Scheduler<'a> {
             _ => sum,
         });
         let acceleration = if self.ensemble.forces.is_empty() { Vector::default() } else { force / mass };
-        Fall { time: start.time, start: start.center, acceleration }.at(time)
+        UniformAcceleration { time: start.time, start: start.center, acceleration }.at(time)
     }
 
     pub fn record(&self, outcomes: impl IntoIterator<Item = Outcome>) {

@@ -50,7 +50,7 @@ pub struct Plane {
     field: Field,
 }
 
-/// A field that is the same everywhere: `V = c·γ`, `γ = ~R a R` with a unit vector a of space.
+/// A uniform field: `V = c·γ`, `γ = ~R a R` with a unit vector a of space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Field {
     axis: Vector,
@@ -159,7 +159,7 @@ pub fn energy(body: &Gyrostat, torques: &[Torque], state: &Phase) -> f64 {
     body.kinetic(state.momentum) + torques.iter().filter_map(|t| t.potential(body, state)).sum::<f64>()
 }
 
-/// Whether a law exerts a torque at all; a wheel belongs to the body.
+/// Whether a law exerts a torque; a wheel belongs to the body.
 fn acts(torque: &Torque) -> bool {
     let nothing = Vector::default();
     match torque {
@@ -246,7 +246,7 @@ fn spin_axis(body: &Gyrostat, acting: &[&Torque]) -> Option<Vector> {
     (are_parallel(wheel, axis) && acting.iter().all(|t| keeps(t))).then_some(axis)
 }
 
-/// All laws together, if they are one uniform field: gravity, and dipoles in fields along one axis.
+/// The sum of all laws, if it is one uniform field: gravity, and dipoles in fields along one axis.
 fn field(acting: &[&Torque]) -> Option<Field> {
     let axis = shared_axis(acting)?;
     let mut c = Vector::default();

@@ -12,23 +12,23 @@ pub enum Quantity {
     /// `(R a ~R)·n − level`, with directions a of the body and n of space: an axis of the body crosses a plane or reaches
     /// an angle.
     Axis {
-        /// Of the body.
+        /// In body axes.
         body: Vector,
-        /// Of space.
+        /// In space.
         space: Vector,
         /// The cosine of the angle for unit vectors.
         level: f64,
     },
     /// `Ω_B·B − level`: the spin in a plane of the body, by the dot product of components.
     Spin {
-        /// Of the body.
+        /// In body axes.
         plane: Bivector,
         /// In rad/s for a unit bivector.
         level: f64,
     },
     /// `x·n − level`: the centre of mass crosses a plane.
     Position {
-        /// Of space.
+        /// In space.
         normal: Vector,
         /// In m for a unit vector.
         level: f64,
@@ -59,14 +59,14 @@ pub enum Direction {
     Falling,
 }
 
-/// An event that happened.
+/// An occurrence of an event.
 #[derive(Clone, Copy, Debug)]
-pub struct Happened {
-    /// Which event.
+pub struct Occurrence {
+    /// Index of the event.
     pub event: usize,
-    /// Which way.
+    /// Direction of the crossing.
     pub direction: Direction,
-    /// Where.
+    /// The state at the event.
     pub at: Carried,
 }
 
@@ -112,21 +112,18 @@ impl Event {
 
 /// The crossing between two values, if any. A zero at the first value belongs to the interval before.
 pub(crate) fn crossing(before: f64, after: f64) -> Option<Direction> {
-    if before < 0.0 && after >= 0.0 {
-        Some(Direction::Rising)
-    } else if before > 0.0 && after <= 0.0 {
-        Some(Direction::Falling)
-    } else {
-        None
+    match () {
+        () if before < 0.0 && after >= 0.0 => Some(Direction::Rising),
+        () if before > 0.0 && after <= 0.0 => Some(Direction::Falling),
+        () => None,
     }
 }
 
-/// How far above zero, relative to its depth, the vertex of a parabola through three values may lie for the quantity to
-/// be examined further.
+/// Largest height of the first vertex above zero, relative to the depth of the parabola, that is examined further.
 const DOUBT: f64 = 0.1;
 
-/// A time between three at which a quantity has one sign where it has the other, and its value there: near the vertex of
-/// the parabola through the three values, and of narrower ones that follow.
+/// Finds a zero crossing that three samples of equal sign miss: a time at which the sign differs, and the value there.
+/// Tries the vertices of parabolas through three values, each narrower than the last.
 pub(crate) fn dip<E>(
     mut points: [(f64, f64); 3],
     mut function: impl FnMut(f64) -> Result<f64, E>,
@@ -143,8 +140,8 @@ pub(crate) fn dip<E>(
         let b = left + a * (t1 - t0);
         let way = -0.5 * b / a;
         let lowest = y1 + 0.5 * b * way;
-        // Where time runs backwards, too, the parabola that opens upwards has a > 0; NaN is none. A vertex that lies
-        // just outside may yet be one inside; the next three times find the others.
+        // a > 0 for a parabola that opens upwards, also backwards in time; false for NaN. A minimum just outside is
+        // tried too; others are found by the next three samples.
         let near = (t1 + way - 0.5 * (t0 + t2)).abs() <= 0.6 * (t2 - t0).abs();
         if !(a > 0.0 && near) || narrower == 0 && lowest > DOUBT * (y0.max(y2) - lowest) {
             return Ok(None);
@@ -163,7 +160,7 @@ pub(crate) fn dip<E>(
         if y < 0.0 {
             return Ok(Some((at, value)));
         }
-        // It has settled above zero.
+        // It has converged above zero.
         if y.is_nan() || (y - y1).abs() <= 0.25 * y {
             return Ok(None);
         }
@@ -194,7 +191,7 @@ pub(crate) fn root<E>(
         }
         let secant = high - at_high * (high - low) / (at_high - at_low);
         let inside = (secant - low) * (secant - high) < 0.0;
-        // One end that has not moved for long calls for bisection.
+        // Bisect if one end has not moved for several iterations.
         let middle = if inside && side.abs() < 4 { secant } else { 0.5 * (low + high) };
         let value = function(middle)?;
         if value == 0.0 {
@@ -240,7 +237,7 @@ mod tests {
         assert!((x - 0.7).abs() < 1e-14);
     }
 
-    /// Two crossings between three looks.
+    /// Two crossings between three samples.
     #[test]
     fn a_dip_below_zero_is_found() {
         let find = |f: &dyn Fn(f64) -> f64, times: [f64; 3]| {
@@ -265,7 +262,7 @@ mod tests {
                 }
             }
         }
-        // Far from zero nothing is asked.
+        // Far from zero the function is not called.
         assert_eq!(find(&|t| 2.0 + t.cos(), [0.0, 0.2, 0.4]), (None, 0));
         assert_eq!(find(&|t| 2.0 - t.cos(), [-0.2, 0.0, 0.2]), (None, 0));
     }

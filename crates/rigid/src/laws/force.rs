@@ -12,7 +12,7 @@ use polhode_ga::{Rotor, Vector};
 pub enum Force {
     /// Constant in space, in N.
     Constant(Vector),
-    /// Constant in body axes, in N, as of a thruster. Off the centre of mass it exerts a torque too,
+    /// Constant in body axes, in N: a thruster. Off the centre of mass it also exerts the torque
     /// [`super::torque::Torque::ConstantBody`].
     Body(Vector),
     /// `−k v`, k in N s/m.
@@ -34,7 +34,7 @@ pub enum Force {
 pub struct Push {
     /// The force.
     pub force: Force,
-    /// The point, of a thrust alone.
+    /// The point, for a thrust only.
     pub at: Option<Vector>,
 }
 
@@ -100,7 +100,7 @@ impl Force {
         })
     }
 
-    /// The rate in 1/s at which the velocity of a body of this mass changes, a scale for steps; 0 if it is unknown.
+    /// The rate of change of the velocity in 1/s, a scale for steps; 0 if unknown.
     fn rate(&self, mass: f64, start: &Center) -> f64 {
         match self {
             Force::Drag(k) => k.abs() / mass,

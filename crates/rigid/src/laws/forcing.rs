@@ -1,7 +1,7 @@
-//! Torques and accelerations as steppers evaluate them: of bodies in lanes, or of one body.
+//! Torques and accelerations for steppers: of bodies in lanes, or of one body.
 
 use super::force::Translation;
-use super::torque::{Torque, exerted};
+use super::torque::{Torque, total_torque};
 use crate::error::SimulateError;
 use crate::error::TorqueError;
 use crate::state::center::Center;
@@ -22,7 +22,7 @@ pub(crate) struct Place<const W: usize, const F: bool> {
 
 /// Torques and accelerations of bodies in lanes.
 pub(crate) trait Forcing<const W: usize, const F: bool> {
-    /// Whether there are torques, wheels or damping at all.
+    /// Whether there are torques, wheels or damping.
     const ACTS: bool;
 
     /// Whether there may be wheels.
@@ -31,22 +31,29 @@ pub(crate) trait Forcing<const W: usize, const F: bool> {
     /// The torque in principal axes, without damping `−g I(Ω)` and the reaction of a wheel.
     fn torque(&mut self, at: &Place<W, F>) -> [Lanes<W, F>; 3];
 
-    /// The acceleration in space of a centre of mass with this position and velocity.
-    fn acceleration(&mut self, at: &Place<W, F>, center: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3];
+    /// The acceleration in space of a centre of mass with this position and velocity; zero by default.
+    #[inline(always)]
+    fn acceleration(&mut self, _: &Place<W, F>, _: &[Lanes<W, F>; 6]) -> [Lanes<W, F>; 3] {
+        [Lanes::ZERO; 3]
+    }
 }
 
-/// Forcing of a single body. After the first failure, which is kept, no law is evaluated.
-pub(crate) struct Alone<'a> {
+/// Forcing of a single body. The first failure is stored; after it, no law is evaluated.
+pub(crate) struct BodyForcing<'a> {
     body: &'a Gyrostat,
     torques: &'a [Torque],
     translation: Option<&'a Translation>,
     failure: Option<SimulateError>,
 }
 
-impl<'a> Alone<'a> {
+impl<'a> BodyForcing<'a> {
     /// In principal axes.
-    pub fn new(body: &'a Gyrostat, torques: &'a [Torque], translation: Option<&'a Translation>) -> Alone<'a> {
-        Alone { body, torques, translation, failure: None }
+    pub fn new(
+        body: &'a Gyrostat,
+        torques: &'a [Torque],
+        translation: Option<&'a Translation>,
+    ) -> BodyForcing<'a> {
+        BodyForcing { body, torques, translation, failure: None }
     }
 
     /// The first failure, if there was one.
@@ -69,14 +76,14 @@ impl<'a> Alone<'a> {
     }
 }
 
-impl Forcing<1, false> for Alone<'_> {
+impl Forcing<1, false> for BodyForcing<'_> {
     const ACTS: bool = true;
 
     fn torque(&mut self, at: &Place<1, false>) -> [One; 3] {
         if self.torques.is_empty() || self.failure.is_some() {
             return [One::ZERO; 3];
         }
-        let torque = exerted(self.torques, self.body, &self.phase(at));
+        let torque = total_torque(self.torques, self.body, &self.phase(at));
         self.noted(torque.map(|torque| torque.0))
     }
 

@@ -12,7 +12,7 @@
 
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{Alone, Forcing, Place};
+use crate::laws::forcing::{BodyForcing, Forcing, Place};
 use crate::laws::torque::Torque;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -201,7 +201,7 @@ impl Classical {
     pub fn step(&self, from: &Carried, h: f64) -> Result<Carried, SimulateError> {
         let omega = self.body.omega(from.phase.momentum).0;
         let (rotor, time) = (from.phase.rotor.components(), from.phase.time);
-        let mut acting = Alone::new(&self.body, &self.torques, self.translation.as_ref());
+        let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref());
         let rotation: [f64; 7] = array::from_fn(|k| if k < 4 { rotor[k] } else { omega[k - 4] });
         let (rotation, center) = if self.translation.is_none() {
             let mut state = One::each(rotation);

@@ -1,7 +1,7 @@
 //! Kicks: torques at fixed attitude, solved exactly; restores the momentum after free steps.
 
 use crate::error::SimulateError;
-use crate::laws::torque::{Torque, exerted};
+use crate::laws::torque::{Torque, total_torque};
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor};
 
@@ -23,7 +23,7 @@ impl Kicks {
 
     /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
     pub fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
-        let torque = exerted(&self.torques, &self.body, state)?;
+        let torque = total_torque(&self.torques, &self.body, state)?;
         let mut impulse = h;
         let decay = -self.damping * h;
         if decay != 0.0 {

@@ -5,7 +5,7 @@ use crate::laws::torque::Torque;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::Rotor;
 
-/// How a run was computed, and how well it conserved what it should.
+/// Method, error estimate and drifts of conserved quantities of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certificate {
     /// The method's name, `exact` for the exact solution.
@@ -16,8 +16,8 @@ pub struct Certificate {
     pub steps: u64,
     /// Evaluations of the torque, in all passes.
     pub evaluations: u64,
-    /// Conservative estimate of the error, from the difference of the last two passes, or of what an exact solution
-    /// neglects.
+    /// Conservative estimate of the error, from the difference of the last two passes, or the error that an exact
+    /// solution neglects.
     pub error_estimate: Option<f64>,
     /// Each conserved quantity: its initial value, and its largest change over the run relative to the
     /// terms that make it up.
@@ -34,31 +34,31 @@ pub(crate) fn off_unit(rotor: Rotor) -> f64 {
 }
 
 /// Tracks the conserved quantities along a run.
-pub(crate) struct Watch<'a> {
+pub(crate) struct DriftMonitor<'a> {
     body: Gyrostat,
     torques: &'a [Torque],
-    quantities: Vec<Followed>,
+    quantities: Vec<Tracked>,
 }
 
 /// A quantity with its value at the start, the size of its terms, and its largest change so far.
-struct Followed {
+struct Tracked {
     quantity: Conserved,
     start: f64,
     scale: f64,
     drift: f64,
 }
 
-impl<'a> Watch<'a> {
-    pub fn new(body: Gyrostat, torques: &'a [Torque], start: Phase) -> Watch<'a> {
+impl<'a> DriftMonitor<'a> {
+    pub fn new(body: Gyrostat, torques: &'a [Torque], start: Phase) -> DriftMonitor<'a> {
         let follow = |quantity: Conserved| {
             // Drift from zero without other terms is absolute.
             let scale = match quantity.scale(&body, torques, &start) {
                 0.0 => 1.0,
                 scale => scale,
             };
-            Followed { quantity, start: quantity.value(&body, torques, &start), scale, drift: 0.0 }
+            Tracked { quantity, start: quantity.value(&body, torques, &start), scale, drift: 0.0 }
         };
-        Watch {
+        DriftMonitor {
             body,
             torques,
             quantities: Conserved::under(&body, torques, &start).into_iter().map(follow).collect(),
@@ -67,20 +67,20 @@ impl<'a> Watch<'a> {
 
     /// Each quantity with its relative changes at these points.
     pub fn changes<'s>(&self, states: impl Iterator<Item = &'s Phase> + Clone) -> Vec<(Conserved, Vec<f64>)> {
-        let change = |followed: &Followed, state: &Phase| {
-            (followed.quantity.value(&self.body, self.torques, state) - followed.start) / followed.scale
+        let change = |tracked: &Tracked, state: &Phase| {
+            (tracked.quantity.value(&self.body, self.torques, state) - tracked.start) / tracked.scale
         };
-        let series = |f: &Followed| (f.quantity, states.clone().map(|state| change(f, state)).collect());
+        let series = |f: &Tracked| (f.quantity, states.clone().map(|state| change(f, state)).collect());
         self.quantities.iter().map(series).collect()
     }
 
-    pub fn look(&mut self, state: &Phase) {
-        for followed in &mut self.quantities {
-            let value = followed.quantity.value(&self.body, self.torques, state);
-            let drift = (value - followed.start).abs() / followed.scale;
+    pub fn record(&mut self, state: &Phase) {
+        for tracked in &mut self.quantities {
+            let value = tracked.quantity.value(&self.body, self.torques, state);
+            let drift = (value - tracked.start).abs() / tracked.scale;
             // f64::max loses a NaN.
-            if !(drift <= followed.drift || followed.drift.is_nan()) {
-                followed.drift = drift;
+            if !(drift <= tracked.drift || tracked.drift.is_nan()) {
+                tracked.drift = drift;
             }
         }
     }

@@ -1,4 +1,4 @@
-//! ClosedForm: finds and evaluates the closed form of a motion.
+//! Closed form of a motion, if it has one.
 
 use crate::body::inertia::Inertia;
 use crate::error::SimulateError;
@@ -15,7 +15,7 @@ use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// How far a body may turn in a step, in rad, whose error is rounding.
+/// Largest turn in rad of a step whose error is rounding.
 const LONGEST_TURN: f64 = 0.1;
 
 /// A rotation in closed form, in principal axes.
@@ -32,8 +32,8 @@ pub(crate) enum Rotation {
 pub(crate) struct ClosedForm {
     body: Gyrostat,
     rotation: Rotation,
-    fall: Fall,
-    since: Since,
+    fall: UniformAcceleration,
+    since: ElapsedTime,
 }
 
 impl ClosedForm {
@@ -43,10 +43,10 @@ impl ClosedForm {
         rotor: Rotor,
         omega: Bivector,
         torques: &[Torque],
-        fall: Fall,
+        fall: UniformAcceleration,
     ) -> Option<ClosedForm> {
         let rotation = rotation(body.moments, rotor, omega, torques)?;
-        Some(ClosedForm { body, rotation, fall, since: Since::new(fall.time, body, torques) })
+        Some(ClosedForm { body, rotation, fall, since: ElapsedTime::new(fall.time, body, torques) })
     }
 
     /// How far from the start, in s, the phase is known backwards and forwards.
@@ -94,8 +94,8 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
     // Laws of one kind add up.
     match first {
         Torque::Heavy(_) => {
-            let each = torques.iter().map(|t| if let Torque::Heavy(c) = t { Some(*c) } else { None });
-            let c = each.collect::<Option<Vec<_>>>()?.into_iter().fold(Vector::default(), |sum, c| sum + c);
+            let add = |sum, t: &Torque| if let Torque::Heavy(c) = t { Some(sum + *c) } else { None };
+            let c = torques.iter().try_fold(Vector::default(), add)?;
             LagrangeTop::new(&inertia, rotor, omega, c).ok().map(Box::new).map(Rotation::Lagrange)
         }
         Torque::Damping(_) => {
@@ -104,8 +104,8 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
             DampedTop::new(&inertia, rotor, omega, damping).ok().map(Box::new).map(Rotation::Damped)
         }
         Torque::Larmor(_) => {
-            let each = torques.iter().map(|t| if let Torque::Larmor(b) = t { Some(*b) } else { None });
-            let b = each.collect::<Option<Vec<_>>>()?.into_iter().fold(Vector::default(), |sum, b| sum + b);
+            let add = |sum, t: &Torque| if let Torque::Larmor(b) = t { Some(sum + *b) } else { None };
+            let b = torques.iter().try_fold(Vector::default(), add)?;
             LarmorSphere::new(&inertia, rotor, omega, b).ok().map(Rotation::Larmor)
         }
         _ => None,
@@ -113,18 +113,18 @@ fn rotation(moments: [f64; 3], rotor: Rotor, omega: Bivector, torques: &[Torque]
 }
 
 /// The time since the start of a motion in closed form, whose laws do not depend on time. The difference of two times is
-/// rounded, and a step makes up for the remainder.
+/// rounded; a step covers the remainder.
 #[derive(Clone, Debug)]
-pub(crate) struct Since {
+pub(crate) struct ElapsedTime {
     start: f64,
     body: Gyrostat,
     stepper: RungeKutta,
 }
 
-impl Since {
+impl ElapsedTime {
     /// In principal axes; the start in s.
-    pub fn new(start: f64, body: Gyrostat, torques: &[Torque]) -> Since {
-        Since { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None, &DOP853) }
+    pub fn new(start: f64, body: Gyrostat, torques: &[Torque]) -> ElapsedTime {
+        ElapsedTime { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None, &DOP853) }
     }
 
     /// The rounded time since the start, and the remainder.
@@ -159,7 +159,7 @@ pub(crate) fn check_kept(drifts: &[(Conserved, f64, f64)]) -> Result<(), Simulat
 
 /// The motion of a centre of mass under a constant force.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fall {
+pub(crate) struct UniformAcceleration {
     /// The time of the start, in s.
     pub time: f64,
     /// The centre of mass at the start.
@@ -168,10 +168,10 @@ pub(crate) struct Fall {
     pub acceleration: Vector,
 }
 
-impl Fall {
+impl UniformAcceleration {
     /// The centre of mass at a time in s.
     pub fn at(&self, time: f64) -> Center {
-        let Fall { time: begin, start, acceleration } = *self;
+        let UniformAcceleration { time: begin, start, acceleration } = *self;
         let time = time - begin;
         // t² may overflow where no force needs it.
         let fallen = |a: f64| if a == 0.0 { 0.0 } else { 0.5 * a * time * time };
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_closed_form_does_not_keep_is_an_error() {
+    fn drift_of_a_closed_form_is_an_error() {
         let drifts =
             |energy: f64| [(Conserved::AngularMomentum, 3.0, 1e-15), (Conserved::Energy, 1.0, energy)];
         assert_eq!(check_kept(&drifts(1e-12)), Ok(()));

@@ -1,4 +1,4 @@
-//! StepBounds: where steps end, their largest length and number.
+//! Bounds of steps: their stops, largest length and number.
 
 use super::stops::{Sampled, sampled};
 use super::{MAX_STEPS, Options};

@@ -25,8 +25,8 @@ use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::{check_horizons_from, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
-use certificate::{Certificate, Watch, off_unit};
-use closed_form::{ClosedForm, Fall, check_kept};
+use certificate::{Certificate, DriftMonitor, off_unit};
+use closed_form::{ClosedForm, UniformAcceleration, check_kept};
 use engine::Engine;
 use limits::{StepBounds, samples, span};
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -60,11 +60,8 @@ pub(crate) const NO_CLOSED_FORM: &str = "needs a motion in closed form and no st
 
 /// The start time must be finite.
 pub(crate) fn check_start_time(value: f64) -> Result<(), SimulateError> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(SimulateError::BadValue { what: "the time of the start", value })
-    }
+    let what = "the time of the start";
+    if value.is_finite() { Ok(()) } else { Err(SimulateError::BadValue { what, value }) }
 }
 
 /// A body, its angular velocity and its torques must be valid.
@@ -201,16 +198,12 @@ impl Problem {
                 (long(1.0), self.sampled(closed, times)?, neglected)
             }
             (Engine::ClosedForm(_), _) => {
-                let rule = long(1.0);
-                (
-                    rule,
-                    self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?,
-                    neglected,
-                )
+                let plan = SweepPlan::only(long(1.0));
+                (plan.rule, self.sweep(&engine, times, (plan, &bounds), &events, progress)?, neglected)
             }
             (_, Some(step)) => {
-                let rule = StepRule::equal(step.min(bounds.longest));
-                (rule, self.sweep(&engine, times, (SweepPlan::only(rule), &bounds), &events, progress)?, None)
+                let plan = SweepPlan::only(StepRule::equal(step.min(bounds.longest)));
+                (plan.rule, self.sweep(&engine, times, (plan, &bounds), &events, progress)?, None)
             }
             (_, None) => {
                 let accuracy = Accuracy::new(method.order(), options.rtol);
@@ -295,12 +288,12 @@ impl Problem {
         events: &[Event],
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<Sweep, SimulateError> {
-        let watch = Watch::new(self.body, &self.torques, self.start().phase);
+        let monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
         let first = 0.1 / self.rate().max(f64::MIN_POSITIVE);
         let integrator = Integrator {
             body: self.body,
             engine,
-            watch,
+            monitor,
             rule,
             first,
             least_rate: bounds.least_rate.max(known_rate),
@@ -321,9 +314,9 @@ impl Problem {
     /// The closed form at all times, as a sweep without steps. An error if it drifts in a conserved quantity.
     fn sampled(&self, closed: &ClosedForm, times: &[f64]) -> Result<Sweep, SimulateError> {
         let states: Vec<Carried> = times.iter().map(|&time| closed.at(time)).collect();
-        let mut watch = Watch::new(self.body, &self.torques, self.start().phase);
-        states.iter().for_each(|state| watch.look(&state.phase));
-        let drifts = watch.finish();
+        let mut monitor = DriftMonitor::new(self.body, &self.torques, self.start().phase);
+        states.iter().for_each(|state| monitor.record(&state.phase));
+        let drifts = monitor.finish();
         check_kept(&drifts)?;
         Ok(Sweep { states, drifts, ..Sweep::default() })
     }
@@ -339,18 +332,14 @@ impl Problem {
     }
 
     /// The motion of the centre of mass, if the forces are constant.
-    fn fall(&self) -> Option<Fall> {
+    fn fall(&self) -> Option<UniformAcceleration> {
         let start = self.center;
         let Some(translation) = &self.translation else {
-            return Some(Fall { time: self.time, start, acceleration: Vector::default() });
+            return Some(UniformAcceleration { time: self.time, start, acceleration: Vector::default() });
         };
-        let constant = translation.forces.iter().map(|force| match force {
-            Force::Constant(force) => Some(*force),
-            _ => None,
-        });
-        let sum: Option<Vec<Vector>> = constant.collect();
-        let sum = sum?.into_iter().fold(Vector::default(), |sum, force| sum + force);
-        Some(Fall { time: self.time, start, acceleration: sum / translation.mass })
+        let add = |sum, force: &Force| if let Force::Constant(f) = force { Some(sum + *f) } else { None };
+        let sum = translation.forces.iter().try_fold(Vector::default(), add)?;
+        Some(UniformAcceleration { time: self.time, start, acceleration: sum / translation.mass })
     }
 
     fn check(&self, times: &[f64], options: &Options) -> Result<(), SimulateError> {

@@ -1,6 +1,6 @@
 //! Motion: the solution of a problem, at and between its output times.
 
-use super::certificate::{Certificate, Watch};
+use super::certificate::{Certificate, DriftMonitor};
 use super::engine::Engine;
 use super::limits::StepBounds;
 use super::output::BodyOutput;
@@ -9,7 +9,7 @@ use super::sweep::StepRule;
 use super::{Problem, Progress};
 use crate::error::SimulateError;
 use crate::laws::conserved::Conserved;
-use crate::laws::event::Happened;
+use crate::laws::event::Occurrence;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::checks::check_horizons_from;
@@ -25,7 +25,7 @@ pub struct Motion {
     /// In principal axes, at the output times, fewer if an event ended the motion.
     pub(super) states: Vec<Carried>,
     /// The events, in the order of integration.
-    pub events: Vec<Happened>,
+    pub events: Vec<Occurrence>,
     /// Drift of conserved quantities and other data of the run.
     pub certificate: Certificate,
 }
@@ -48,7 +48,7 @@ pub struct States {
 }
 
 impl Motion {
-    /// Writes the points at the output times.
+    /// Writes the states at the output times.
     pub(crate) fn write(&self, own: &mut BodyOutput) {
         let Problem { frame, body, torques, .. } = &self.problem;
         for (index, state) in self.states.iter().enumerate() {
@@ -64,13 +64,13 @@ impl Motion {
     /// Each conserved quantity, and its change since the start at the output times, relative as in the certificate.
     pub fn drifts(&self) -> Vec<(Conserved, Vec<f64>)> {
         let Problem { body, torques, .. } = &self.problem;
-        let watch = Watch::new(*body, torques, self.problem.start().phase);
-        watch.changes(self.states.iter().map(|state| &state.phase))
+        let monitor = DriftMonitor::new(*body, torques, self.problem.start().phase);
+        monitor.changes(self.states.iter().map(|state| &state.phase))
     }
 
-    /// The points at which events happened.
+    /// The points of the events.
     pub fn event_states(&self) -> States {
-        let states: Vec<Carried> = self.events.iter().map(|happened| happened.at).collect();
+        let states: Vec<Carried> = self.events.iter().map(|occurrence| occurrence.at).collect();
         self.problem.states(&states)
     }
 
@@ -82,7 +82,7 @@ impl Motion {
         progress: &mut dyn FnMut(Progress) -> bool,
     ) -> Result<States, SimulateError> {
         // A motion ended by an event extends to the event.
-        let known = self.states.iter().chain(self.events.iter().map(|happened| &happened.at));
+        let known = self.states.iter().chain(self.events.iter().map(|occurrence| &occurrence.at));
         let (first, last) = known.fold((self.problem.time, self.problem.time), |(a, b): (f64, f64), s| {
             (a.min(s.phase.time), b.max(s.phase.time))
         });

@@ -10,7 +10,7 @@
 //!
 //! where ρ is the relative rounding of one step ([`super::engine::Engine::rounding`]). The two sums are of one
 //! distribution, so that `difference ρ/s` estimates the rounding error; over n' steps instead of n it is √(n'/n) times
-//! as large. A component that is zero stays zero, as in rounding: what is exact by symmetry stays certain.
+//! as large. A component that is zero stays zero, as in rounding: values that are exact by symmetry stay exact.
 
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -45,7 +45,7 @@ impl Noise {
     }
 
     /// The point with noise added.
-    pub fn shake(&mut self, at: &Carried) -> Carried {
+    pub fn perturb(&mut self, at: &Carried) -> Carried {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.state;
         bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -137,7 +137,7 @@ struct Pair {
     difference: f64,
     /// Size and number of the current noise, and the largest difference that noise of this size has caused.
     size: f64,
-    shaken: u32,
+    repeats: u32,
     response: f64,
 }
 
@@ -160,7 +160,7 @@ pub(crate) struct Convergence {
     pair: Option<Pair>,
     magnification: Option<Magnification>,
     /// The number of the sweep from which unresolved sweeps are repeated with noise.
-    look_at: u32,
+    noise_from: u32,
     /// Of all sweeps.
     sweeps: u32,
     steps: u64,
@@ -176,7 +176,7 @@ pub(crate) struct Convergence {
     reached: f64,
 }
 
-type Taken = Result<Option<Converged>, SimulateError>;
+type SweepResult = Result<Option<Converged>, SimulateError>;
 
 impl Convergence {
     pub fn new(first: StepRule, accuracy: Accuracy, scales: Scales) -> Convergence {
@@ -189,7 +189,7 @@ impl Convergence {
             coarse: None,
             pair: None,
             magnification: None,
-            look_at: FEW_SWEEPS,
+            noise_from: FEW_SWEEPS,
             sweeps: 0,
             steps: 0,
             evaluations: 0,
@@ -206,7 +206,7 @@ impl Convergence {
         let number = self.sweeps + 1;
         match &self.pair {
             Some(pair) => {
-                let noise = Noise::new(pair.size, self.scales.in_space, u64::from(pair.shaken));
+                let noise = Noise::new(pair.size, self.scales.in_space, u64::from(pair.repeats));
                 SweepPlan { rule: pair.rule, number, known_rate: pair.known_rate, noise: Some(noise) }
             }
             None => SweepPlan { rule: self.rule, number, known_rate: self.known_rate, noise: None },
@@ -216,42 +216,43 @@ impl Convergence {
     /// Takes the result of a sweep. Returns the final sweep once it is accurate enough.
     ///
     /// Events of two sweeps are compared at one time: `follow` advances a point to a nearby time.
-    pub fn take(&mut self, sweep: Sweep, follow: &dyn Fn(&Carried, f64) -> Carried) -> Taken {
+    pub fn take(&mut self, sweep: Sweep, follow: &dyn Fn(&Carried, f64) -> Carried) -> SweepResult {
         self.sweeps += 1;
         self.steps += sweep.steps;
         self.evaluations += sweep.evaluations;
         if let Some(mut pair) = self.pair.take() {
             let response = difference(&self.scales, &pair.coarse, &sweep, follow);
             pair.response = pair.response.max(response);
-            return self.shaken(pair);
+            return self.take_noisy(pair);
         }
         let Some((coarse, rule, known_rate)) = self.coarse.take() else { return self.refine(sweep) };
         let difference = difference(&self.scales, &coarse, &sweep, follow);
         let resolved = difference <= RESOLVED.max(self.accuracy.goal);
         let shorter_than_turns = sweep.largest[0] * sweep.longest < 1.0;
-        if self.magnification.is_none() && (resolved || self.number >= self.look_at && shorter_than_turns) {
-            let (size, shaken, response) = (FIRST_SIZE, 0, 0.0);
+        if self.magnification.is_none() && (resolved || self.number >= self.noise_from && shorter_than_turns)
+        {
+            let (size, repeats, response) = (FIRST_SIZE, 0, 0.0);
             self.pair =
-                Some(Pair { coarse, rule, known_rate, fine: sweep, difference, size, shaken, response });
+                Some(Pair { coarse, rule, known_rate, fine: sweep, difference, size, repeats, response });
             return Ok(None);
         }
         self.compare(difference, &coarse, sweep)
     }
 
     /// Takes the response to noise: reduces the noise if it is not linear, repeats it if rounding matters.
-    fn shaken(&mut self, mut pair: Pair) -> Taken {
+    fn take_noisy(&mut self, mut pair: Pair) -> SweepResult {
         let Scales { rounding, .. } = self.scales;
         if pair.response > LINEAR && pair.size > rounding {
             pair.size = (1e-3 * pair.size / pair.response).max(rounding);
-            (pair.shaken, pair.response) = (pair.shaken + 1, 0.0);
+            (pair.repeats, pair.response) = (pair.repeats + 1, 0.0);
             self.pair = Some(pair);
             return Ok(None);
         }
         let found = Magnification::new(pair.response, pair.size, pair.coarse.steps, rounding);
         // The response to one noise may be a hundred times smaller than to another, but hardly more.
         let matters = 100.0 * found.rounding_error(pair.fine.steps) > self.accuracy.goal;
-        if matters && pair.shaken.is_multiple_of(2) {
-            pair.shaken += 1;
+        if matters && pair.repeats.is_multiple_of(2) {
+            pair.repeats += 1;
             self.pair = Some(pair);
             return Ok(None);
         }
@@ -259,12 +260,12 @@ impl Convergence {
         if resolved || pair.response > LINEAR {
             self.magnification = Some(found);
         }
-        self.look_at = self.number + 3;
+        self.noise_from = self.number + 3;
         self.compare(pair.difference, &pair.coarse, pair.fine)
     }
 
     /// Compares two sweeps. Returns the finer one if it is accurate enough.
-    fn compare(&mut self, difference: f64, coarse: &Sweep, fine: Sweep) -> Taken {
+    fn compare(&mut self, difference: f64, coarse: &Sweep, fine: Sweep) -> SweepResult {
         let rounding = self.magnification.map_or(0.0, |known| known.rounding_error(fine.steps));
         let (truncation, shorter) = self.truncation(difference, coarse, &fine);
         let error = (truncation + rounding).max(f64::EPSILON * (fine.steps as f64).sqrt());
@@ -332,7 +333,7 @@ impl Convergence {
     }
 
     /// Continues with shorter steps. If there are none, the last sweep is final.
-    fn refine(&mut self, coarse: Sweep) -> Taken {
+    fn refine(&mut self, coarse: Sweep) -> SweepResult {
         let finer = self.rule.refined(self.by);
         if finer == self.rule {
             if self.reached <= self.accuracy.acceptable && self.magnification.is_some() {

@@ -1,10 +1,10 @@
-//! The rotation of a body as it is given: inertia, start and torques.
+//! Setup of a rotation: inertia, start and torques.
 
 use crate::body::inertia::Inertia;
 use crate::laws::torque::Torque;
 use polhode_ga::{Bivector, Rotor};
 
-/// A body that turns: its inertia, its start and the torques on it, in body axes.
+/// Inertia, start and torques of a rotating body, in body axes.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// About the centre of mass, or about the fixed point if there is one.

@@ -26,14 +26,14 @@ const DEVIATION: f64 = 1e-3;
 pub(crate) struct Sampled {
     /// Ascending times at which steps stop.
     pub stops: Vec<f64>,
-    /// When the torque is largest, if it depends on time.
+    /// Time of the largest torque, if it depends on time.
     pub peak: Option<f64>,
 }
 
 /// Samples a law between two times. Laws that are not smooth at known times have stops of their own.
 ///
-/// `start` is where functions are evaluated, which may be defined for such states only; formulas and orbits are evaluated
-/// in general position, so that the stops depend on the law alone.
+/// User functions, which may be defined for such states only, are evaluated at `start`; formulas and orbits in general
+/// position, so that the stops depend on the law alone.
 pub(crate) fn sampled(
     law: &Torque,
     body: &Gyrostat,
@@ -107,7 +107,7 @@ fn is_predicted(values: &[Bivector], allowed: f64) -> bool {
 }
 
 /// Number of steps checked for aliasing, and samples in each.
-const LOOKED_AT: usize = 256;
+const CHECKED_STEPS: usize = 256;
 const INSIDE: usize = 12;
 
 /// Whether a law depends on time in an unknown way; tables have their own stops.
@@ -140,11 +140,11 @@ pub(crate) fn is_aliased(
     }
     let steps = ((to - from) / step).ceil().max(1.0);
     let h = (to - from) / steps;
-    let looked_at = (steps as usize).min(LOOKED_AT);
+    let checked = (steps as usize).min(CHECKED_STEPS);
     let value = |time: f64| law.value(body, &Phase { time, ..*start });
     let (mut missed, mut all) = (0.0, 0.0);
-    for k in 0..looked_at {
-        let begin = from + h * (steps * k as f64 / looked_at as f64).floor();
+    for k in 0..checked {
+        let begin = from + h * (steps * k as f64 / checked as f64).floor();
         let seen = (value(begin), value(begin + 0.5 * h), value(begin + h));
         let (Ok(a), Ok(b), Ok(c)) = seen else { return false };
         let mut mean = Bivector::default();
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_surround_a_push() {
+    fn stops_surround_a_pulse() {
         let found = stops(|x| (-((x - 0.3) / 1e-3).powi(2)).exp());
         let near = found.iter().filter(|&&k| (k as f64 / SAMPLES as f64 - 0.3).abs() < 5e-3).count();
         assert!(near >= 4 && found.len() < 60, "{near} of {}", found.len());

@@ -1,13 +1,13 @@
 //! Integrator: one sweep over the output times, by fixed or adaptive steps, with events.
 
-use super::certificate::Watch;
-use super::closed_form::Fall;
+use super::certificate::DriftMonitor;
+use super::closed_form::UniformAcceleration;
 use super::engine::Engine;
 use super::noise::Noise;
 use crate::error::SimulateError;
 use crate::error::TorqueError;
 use crate::laws::conserved::Conserved;
-use crate::laws::event::{Event, Happened, crossing, dip, root};
+use crate::laws::event::{Event, Occurrence, crossing, dip, root};
 use crate::methods::step_control::{Limit, StepController, next_stop};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -18,7 +18,7 @@ use crate::state::point::Point;
 type Done<'a> = &'a mut dyn FnMut(f64) -> f64;
 
 /// Largest turn of the body, or of the path of its centre of mass, between evaluations of events, in rad.
-const LOOK: f64 = 0.2;
+const EVENT_TURN: f64 = 0.2;
 
 /// An event this close to the start, relative to the time to the next evaluation, is at the start.
 const ROUNDING_OF_START: f64 = 1e-12;
@@ -84,7 +84,7 @@ impl StepRule {
 pub(crate) struct Sweep {
     pub states: Vec<Carried>,
     /// The events, in the order of integration.
-    pub events: Vec<Happened>,
+    pub events: Vec<Occurrence>,
     /// Number of sides of the start on which an event ended the motion.
     pub ends: u32,
     /// Each conserved quantity with its value at the start and its largest relative change.
@@ -101,7 +101,7 @@ pub(crate) struct Sweep {
 
 impl Sweep {
     /// Updates the largest magnitudes with a point of the motion.
-    pub fn meet(&mut self, omega: f64, center: &Center) {
+    pub fn update_largest(&mut self, omega: f64, center: &Center) {
         let sizes = [omega, center.position.norm(), center.velocity.norm()];
         self.largest = [0, 1, 2].map(|k| self.largest[k].max(sizes[k]));
     }
@@ -111,7 +111,7 @@ impl Sweep {
 pub(crate) struct Integrator<'a> {
     pub body: Gyrostat,
     pub engine: &'a Engine,
-    pub watch: Watch<'a>,
+    pub monitor: DriftMonitor<'a>,
     pub rule: StepRule,
     /// A guess of the first step, in s.
     pub first: f64,
@@ -126,7 +126,7 @@ pub(crate) struct Integrator<'a> {
     pub breaks: &'a [f64],
     pub events: &'a [Event],
     /// The motion of the centre of mass, where its acceleration is constant.
-    pub fall: Option<Fall>,
+    pub fall: Option<UniformAcceleration>,
     /// The start of the motion, in s.
     pub origin: f64,
     /// In kg; NaN where unknown.
@@ -171,7 +171,7 @@ impl Integrator<'_> {
         let before = part(begin);
         states.extend(self.side(start, late.iter(), &mut sweep, &mut |time| before + part(time))?);
         sweep.states = states;
-        sweep.drifts = self.watch.finish();
+        sweep.drifts = self.monitor.finish();
         Ok(sweep)
     }
 
@@ -184,7 +184,7 @@ impl Integrator<'_> {
         done: Done,
     ) -> Result<Vec<Carried>, SimulateError> {
         let fastest = self.body.omega(start.phase.momentum).norm().max(self.least_rate);
-        sweep.meet(fastest, &start.center);
+        sweep.update_largest(fastest, &start.center);
         let mut times = times.peekable();
         if times.peek().is_none() {
             return Ok(Vec::new());
@@ -312,15 +312,15 @@ impl Integrator<'_> {
             return Err(SimulateError::Diverged { time });
         }
         if !self.events.is_empty() {
-            next = self.look_for_events(cursor, next, sweep)?;
+            next = self.find_events(cursor, next, sweep)?;
         }
-        self.watch.look(&next.phase);
+        self.monitor.record(&next.phase);
         cursor.fastest = cursor.fastest.max(self.body.omega(next.phase.momentum).norm());
         cursor.at = match &mut self.noise {
-            Some(noise) => noise.shake(&next),
+            Some(noise) => noise.perturb(&next),
             None => next,
         };
-        sweep.meet(cursor.fastest, &cursor.at.center);
+        sweep.update_largest(cursor.fastest, &cursor.at.center);
         if sweep.steps.is_multiple_of(STEPS_BETWEEN_CALLS) {
             let fraction = done(time).min(1.0);
             if !(self.progress)(Progress { pass: self.number, fraction }) {
@@ -333,8 +333,8 @@ impl Integrator<'_> {
     /// Finds the events within a step. Returns its end, or the event that ends the motion.
     ///
     /// A point within a step is computed by a shorter step. A step may be a good part of a turn: events are evaluated at
-    /// pairs of pieces of less than [`LOOK`] rad, and at a minimum suggested by three values in a row.
-    fn look_for_events(
+    /// pairs of pieces of less than [`EVENT_TURN`] rad, and at a minimum suggested by three values in a row.
+    fn find_events(
         &self,
         cursor: &mut Cursor,
         next: Carried,
@@ -354,15 +354,15 @@ impl Integrator<'_> {
             };
             let mut found = Vec::new();
             for k in 0..self.events.len() {
-                let looks = [&before, &middle, &after].map(|(time, values)| (*time, values[k]));
-                self.crossings(k, looks, cursor, sweep, &mut found)?;
+                let samples = [&before, &middle, &after].map(|(time, values)| (*time, values[k]));
+                self.crossings(k, samples, cursor, sweep, &mut found)?;
             }
             found.sort_by(|a, b| (a.at.phase.time * h.signum()).total_cmp(&(b.at.phase.time * h.signum())));
-            for happened in found {
-                sweep.events.push(happened);
-                if self.events[happened.event].terminal {
+            for occurrence in found {
+                sweep.events.push(occurrence);
+                if self.events[occurrence.event].terminal {
                     cursor.ended = true;
-                    return Ok(happened.at);
+                    return Ok(occurrence.at);
                 }
             }
             before = after;
@@ -384,27 +384,27 @@ impl Integrator<'_> {
             let leaves = (b.position - a.position) / h - a.velocity;
             (b.velocity - a.velocity).norm().max(leaves.norm()) / speed
         };
-        (turn.max(bend) / (2.0 * LOOK)).ceil().clamp(1.0, 1e4) as u64
+        (turn.max(bend) / (2.0 * EVENT_TURN)).ceil().clamp(1.0, 1e4) as u64
     }
 
     /// Finds the zeros of an event between three evaluations, pairs of time and value.
     fn crossings(
         &self,
         event: usize,
-        looks: [(f64, f64); 3],
+        samples: [(f64, f64); 3],
         cursor: &Cursor,
         sweep: &mut Sweep,
-        found: &mut Vec<Happened>,
+        found: &mut Vec<Occurrence>,
     ) -> Result<(), SimulateError> {
         let wanted = self.events[event].direction;
         let mut value = |time: f64| self.value(event, &self.within(&cursor.at, time, cursor, sweep)?);
-        let mut looks = looks.to_vec();
-        if let Some(lowest) = dip([looks[0], looks[1], looks[2]], &mut value)? {
-            let between = if (lowest.0 - looks[1].0) * (looks[2].0 - looks[1].0) > 0.0 { 2 } else { 1 };
-            looks.insert(between, lowest);
+        let mut samples = samples.to_vec();
+        if let Some(lowest) = dip([samples[0], samples[1], samples[2]], &mut value)? {
+            let between = if (lowest.0 - samples[1].0) * (samples[2].0 - samples[1].0) > 0.0 { 2 } else { 1 };
+            samples.insert(between, lowest);
         }
         let mut times = Vec::new();
-        for pair in looks.windows(2) {
+        for pair in samples.windows(2) {
             let ((low, at_low), (high, at_high)) = (pair[0], pair[1]);
             let Some(direction) = crossing(at_low, at_high) else { continue };
             if wanted.is_some_and(|wanted| wanted != direction) {
@@ -420,7 +420,7 @@ impl Integrator<'_> {
             }
         }
         for (direction, time) in times {
-            found.push(Happened { event, direction, at: self.within(&cursor.at, time, cursor, sweep)? });
+            found.push(Occurrence { event, direction, at: self.within(&cursor.at, time, cursor, sweep)? });
         }
         Ok(())
     }

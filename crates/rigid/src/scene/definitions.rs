@@ -1,4 +1,4 @@
-//! Names that a scene defines, and formulas that use them.
+//! Names defined by a scene, and formulas that use them.
 
 use crate::laws::torque::{Axes, FormulaTorque, given_names};
 use crate::units::UNITS;
@@ -18,21 +18,10 @@ pub struct Formulas {
     values: BTreeMap<String, Graded>,
 }
 
-/// An error in a formula, and its bytes in the text.
-pub struct Wrong {
-    pub message: String,
-    pub span: Range<usize>,
-}
-
-impl From<Error> for Wrong {
-    fn from(error: Error) -> Wrong {
-        Wrong { message: error.message, span: error.span.start..error.span.end }
-    }
-}
-
 /// The error at its place in the original text.
-fn placed(source: &Source, wrong: Wrong) -> Wrong {
-    Wrong { span: source.place(wrong.span), message: wrong.message }
+fn placed(source: &Source, error: Error) -> Error {
+    let Range { start, end } = source.place(error.span.start..error.span.end);
+    Error { span: Span { start, end }, ..error }
 }
 
 impl Formulas {
@@ -41,57 +30,51 @@ impl Formulas {
         self.values.insert(name, value);
     }
 
-    pub fn define(&mut self, head: &str, body: &str) -> Result<(), Wrong> {
+    pub fn define(&mut self, head: &str, body: &str) -> Result<(), Error> {
         let source = self.source(body, &heading(head)?.1)?;
-        define(head, &source.text, Space::g3(), &mut self.names)
-            .map_err(|error| placed(&source, error.into()))
+        define(head, &source.text, Space::g3(), &mut self.names).map_err(|error| placed(&source, error))
     }
 
-    pub fn value(&self, text: &str) -> Result<Graded, Wrong> {
+    pub fn value(&self, text: &str) -> Result<Graded, Error> {
         let source = self.source(text, &[])?;
-        self.evaluated(&source.text).map_err(|wrong| placed(&source, wrong))
+        self.evaluated(&source.text).map_err(|error| placed(&source, error))
     }
 
-    pub fn torque(&self, text: &str, axes: Axes) -> Result<FormulaTorque, Wrong> {
+    pub fn torque(&self, text: &str, axes: Axes) -> Result<FormulaTorque, Error> {
         let given: Vec<String> = given_names().map(str::to_owned).collect();
         let source = self.source(text, &given)?;
         let value = |input: &Input| self.values.get(&input.name).map(|value| Given::Value(*value));
         FormulaTorque::new(&source.text, axes, self.names.clone(), value)
-            .map_err(|error| placed(&source, error.into()))
+            .map_err(|error| placed(&source, error))
     }
 
-    fn evaluated(&self, text: &str) -> Result<Graded, Wrong> {
+    fn evaluated(&self, text: &str) -> Result<Graded, Error> {
         let space = Space::g3();
-        let whole = 0..text.len();
+        let failed = |message: &str, span: Span| Error { message: message.to_owned(), span };
+        let whole = Span { start: 0, end: text.len() };
         let tree = parse(text, space, &self.names)?;
         if tree.sides.len() > 1 {
-            return Err(Wrong {
-                message: "an equation has no value, write one side".to_owned(),
-                span: whole,
-            });
+            return Err(failed("an equation has no value, write one side", whole));
         }
         let program = compile(&tree, space, &self.names)?;
         let inputs = program.inputs.iter().filter_map(|input| self.values.get(&input.name));
         let inputs: Vec<Given> = inputs.map(|value| Given::Value(*value)).collect();
-        let failed =
-            |message: &str, Span { start, end }| Wrong { message: message.to_owned(), span: start..end };
-        let Some(runner) = Runner::new(&program) else {
-            return Err(failed("not a formula of 3-d space", Span::default()));
-        };
+        let runner =
+            Runner::new(&program).ok_or_else(|| failed("not a formula of 3-d space", Span::default()))?;
         let values = runner
             .value(&inputs)
             .map_err(|(step, error)| failed(&error.to_string(), program.steps[step].span))?;
         let value = values[program.results[0][0]];
         if !value.components().iter().all(|x| x.is_finite()) {
-            return Err(Wrong { message: "the value is not finite".to_owned(), span: whole });
+            return Err(failed("the value is not finite", whole));
         }
         Ok(value)
     }
 
     /// The formula with its quantities as numbers in SI units; `parameters` are those of a function.
-    fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Wrong> {
+    fn source(&self, text: &str, parameters: &[String]) -> Result<Source, Error> {
         let known = |name: String| self.names.get(&name).is_some() || parameters.contains(&name);
         let is_name = |word: &str| canonical(word).is_some_and(known);
-        Source::read(text, is_name, UNITS).map_err(Wrong::from)
+        Source::read(text, is_name, UNITS)
     }
 }

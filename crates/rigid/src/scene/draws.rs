@@ -92,7 +92,7 @@ impl Draw<'_> {
         self.each("attitude", nominal, self.ensemble.attitude.map(draw))
     }
 
-    /// Angular velocities in body axes, whatever the axes of the spin.
+    /// Angular velocities in body axes.
     fn omegas(&self, scene: &Scene, rotors: &[Rotor]) -> Vec<Bivector> {
         let size = scene.spin.norm();
         let direction = |words: [u64; 8]| unit(from_fn(|k| normal(words[k]))).map(|x| size * x);
@@ -193,7 +193,7 @@ impl fmt::Display for DrawError {
 
 impl std::error::Error for DrawError {}
 
-/// The direction of normal numbers, which are never all 0 and never large.
+/// The direction of a vector of normal numbers, which are never 0 and never large.
 fn unit<const N: usize>(numbers: [f64; N]) -> [f64; N] {
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
     numbers.map(|x| x / size)

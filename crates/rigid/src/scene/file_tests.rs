@@ -1,9 +1,9 @@
-//! Scenes on disk, and the bodies they make.
+//! Tests of scenes on disk and of their bodies.
 
 use super::*;
 use crate::body::solids::Amount;
 
-/// A folder of this test's own, removed at the end.
+/// A temporary folder, removed at the end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -26,13 +26,13 @@ impl Drop for Folder {
     }
 }
 
-/// The scene with this `[body]`, at a path of no file.
+/// The scene with this `[body]`, at a path without a file.
 fn scene(body: &str) -> Scene {
     let rest = "[initial]\nspin = { vector = [0, 0, 1] }\n[run]\nduration = 10\n";
     Scene::parse(&format!("[body]\n{body}\n{rest}"), Path::new("x.toml")).unwrap()
 }
 
-/// The first line of the one error of a body that cannot be.
+/// The first line of the only error of an impossible body.
 fn body_error(scene: &Scene) -> String {
     let errors = scene.build_body().unwrap_err();
     assert_eq!(errors.len(), 1);
@@ -43,7 +43,7 @@ fn body_error(scene: &Scene) -> String {
 const TETRAHEDRON: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 0 0 60\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 #[test]
-fn files_that_are_no_scenes_are_refused() {
+fn invalid_files_are_rejected() {
     let folder = Folder::new("scenes");
     let message =
         |path: &Path| Scene::read(path).unwrap_err()[0].to_string().replace(path.to_str().unwrap(), "P");
@@ -100,7 +100,7 @@ fn solids_and_given_inertias_become_bodies() {
 }
 
 #[test]
-fn what_no_body_can_have_is_reported_at_its_field() {
+fn impossible_bodies_are_reported_at_their_field() {
     let table = [
         ("moments = [9, 2, 1]", "x.toml:2:11: error: no body has the principal moments 9.0, 2.0, 1.0: "),
         (
@@ -120,7 +120,10 @@ fn what_no_body_can_have_is_reported_at_its_field() {
             "solid = 'sphere'\nradius = 1e200\ndensity = 1",
             "x.toml:4:11: error: mass must be positive and finite, got inf kg",
         ),
-        ("solid = 'sphere'\nradius = 1e-200\nmass = 1", "x.toml:2:9: error: the largest moment of inertia, "),
+        (
+            "solid = 'sphere'\nradius = 1e-200\nmass = 1",
+            "x.toml:2:9: error: the largest moment of inertia, 0.0 kg m²",
+        ),
     ];
     for (body, message) in table {
         let error = body_error(&scene(body));

@@ -10,11 +10,10 @@
 //! spin = "5 rev/s plane(n)"
 //! ```
 
-use super::definitions::Wrong;
 use super::reader::{Reader, Table, Value};
 use crate::laws::torque::{Axes, FormulaTorque};
 use crate::units::Quantity;
-use polhode_ga::formula::heading;
+use polhode_ga::formula::{Error, heading};
 use polhode_ga::product::Grades;
 use polhode_ga::{Bivector, Graded, Vector};
 use toml::de::DeValue;
@@ -38,12 +37,12 @@ pub fn read(reader: &mut Reader, table: &Table) {
             }
         } else if let Some(body) = reader.string(value) {
             let defined = reader.formulas.define(head, body);
-            defined.unwrap_or_else(|wrong| report(reader, value, body, wrong));
+            defined.unwrap_or_else(|error| report(reader, value, body, error));
         }
     }
 }
 
-/// The value of a number, or of a formula whose numbers may have units.
+/// A number, or the value of a formula whose numbers may have units.
 pub fn value_of(reader: &mut Reader, value: &Value) -> Option<Graded> {
     match value.get_ref() {
         DeValue::Integer(_) | DeValue::Float(_) => {
@@ -52,13 +51,8 @@ pub fn value_of(reader: &mut Reader, value: &Value) -> Option<Graded> {
         }
         _ => {
             let text = reader.string(value)?;
-            match reader.formulas.value(text) {
-                Ok(found) => Some(found),
-                Err(wrong) => {
-                    report(reader, value, text, wrong);
-                    None
-                }
-            }
+            let found = reader.formulas.value(text);
+            found.map_err(|error| report(reader, value, text, error)).ok()
         }
     }
 }
@@ -102,23 +96,18 @@ pub fn bivector(reader: &mut Reader, value: &Value, quantity: Quantity) -> Optio
 /// The torque law of a formula, with the names of `[define]` and of the motion.
 pub fn torque(reader: &mut Reader, value: &Value, axes: Axes) -> Option<FormulaTorque> {
     let text = reader.string(value)?;
-    match reader.formulas.torque(text, axes) {
-        Ok(law) => Some(law),
-        Err(wrong) => {
-            report(reader, value, text, wrong);
-            None
-        }
-    }
+    let law = reader.formulas.torque(text, axes);
+    law.map_err(|error| report(reader, value, text, error)).ok()
 }
 
 /// Reports an error in a formula at its place in the file, if the file has its text verbatim.
-fn report(reader: &mut Reader, value: &Value, text: &str, wrong: Wrong) {
+fn report(reader: &mut Reader, value: &Value, text: &str, error: Error) {
     let span = value.span();
     // Quotes are one byte long, or three.
     let quotes = span.len().saturating_sub(text.len());
     let span = match quotes {
-        2 | 6 => span.start + quotes / 2 + wrong.span.start..span.start + quotes / 2 + wrong.span.end,
+        2 | 6 => span.start + quotes / 2 + error.span.start..span.start + quotes / 2 + error.span.end,
         _ => span,
     };
-    reader.report(span, wrong.message);
+    reader.report(span, error.message);
 }

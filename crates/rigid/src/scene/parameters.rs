@@ -1,4 +1,4 @@
-//! Parameters of laws that may vary in an ensemble, by their names in a scene.
+//! Parameters of laws that may vary in an ensemble.
 
 use crate::error::TorqueError;
 use crate::laws::registry::{Argument, Limit, Shape, TORQUES, torque};
@@ -12,19 +12,19 @@ use std::sync::LazyLock;
 pub struct Parameter {
     /// The law, as `[torque]` calls it, or `gravity`.
     pub law: &'static str,
-    /// The field of the law; empty where the law is the parameter.
+    /// The field of the law; empty if the law has a single value.
     pub field: &'static str,
-    /// What its numbers measure; none is a pure number.
+    /// The physical quantity; `None` for pure numbers.
     pub quantity: Option<Quantity>,
-    /// How many numbers it may have.
+    /// Number of numbers.
     pub size: usize,
-    /// Which numbers it may have.
+    /// The allowed numbers.
     pub limit: Limit,
-    /// Where its numbers begin among those of the law.
+    /// Index of its first number among those of the law.
     pub at: usize,
-    /// Whether it may be one number for all axes.
+    /// Whether one number may stand for all axes.
     is_one: bool,
-    /// Whether the law has 2π over it instead.
+    /// Whether it is a period, and the number of the law is 2π over it.
     is_period: bool,
 }
 
@@ -45,29 +45,15 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         let mut at = 0;
         for argument in entry.arguments {
             let Argument { field, quantity, shape, limit, period, .. } = *argument;
+            let (law, size, is_period) = (entry.name, shape.size(), false);
             let is_one = matches!(shape, Shape::Scalar | Shape::Gains);
-            let own = Parameter {
-                law: entry.name,
-                field,
-                quantity,
-                size: shape.size(),
-                limit,
-                at,
-                is_one,
-                is_period: false,
-            };
-            at += shape.size();
-            if matches!(shape, Shape::Scalar | Shape::Vector | Shape::Bivector | Shape::Gains) {
-                let time = Some(Quantity::Time);
-                let period = (!period.is_empty()).then_some(Parameter {
-                    field: period,
-                    quantity: time,
-                    limit: Limit::Positive,
-                    is_period: true,
-                    ..own
-                });
+            let own = Parameter { law, field, quantity, size, limit, at, is_one, is_period };
+            at += size;
+            if is_one || matches!(shape, Shape::Vector | Shape::Bivector) {
+                let (quantity, limit) = (Some(Quantity::Time), Limit::Positive);
+                let period = Parameter { field: period, quantity, limit, is_period: true, ..own };
                 all.push(own);
-                all.extend(period);
+                all.extend(Some(period).filter(|period| !period.field.is_empty()));
             }
         }
     }
@@ -82,13 +68,13 @@ impl Parameter {
         format!("{table}{}{dot}{}", self.law, self.field)
     }
 
-    /// The place in a scene of the law.
+    /// The place of the law in a scene.
     pub fn place(&self) -> String {
         if self.law == "gravity" { "[gravity]".to_owned() } else { format!("`{}` in [torque]", self.law) }
     }
 
-    /// Its numbers in a law, 0 where it has but one, and whether it is one number for all axes. `None` for another law,
-    /// and for the acceleration of gravity, which is not a number of the law that gravity becomes.
+    /// Its numbers in a law, padded with 0, and whether all axes share one number. `None` for another law, and for the
+    /// acceleration of gravity, which is not an argument of a law.
     pub fn of(&self, law: &Torque) -> Option<([f64; 3], bool)> {
         let all = torque(self.law)?.numbers(law)?;
         let own = &all[self.at..self.at + self.size];
@@ -100,7 +86,7 @@ impl Parameter {
         Some((numbers, self.is_one && own.iter().all(|x| *x == own[0])))
     }
 
-    /// The law with other numbers for it.
+    /// The law with these numbers for the parameter.
     pub fn set(&self, law: &Torque, mut numbers: [f64; 3]) -> Result<Torque, TorqueError> {
         let entry = torque(self.law);
         let Some((entry, mut all)) = entry.and_then(|entry| Some((entry, entry.numbers(law)?))) else {

@@ -227,22 +227,20 @@ impl Reader {
 
     /// A bare number.
     pub fn number(&mut self, value: &Value) -> Option<f64> {
-        let DeValue::Float(float) = value.get_ref() else {
+        match value.get_ref() {
             // At most 2^53 in magnitude, so exact.
-            return match value.get_ref() {
-                DeValue::Integer(_) => self
-                    .within(value, "the integer is beyond 2^53; write it with a decimal point")
-                    .map(|integer| integer as f64),
-                _ => {
-                    self.wrong_type(value, "a number");
-                    None
+            DeValue::Integer(_) => self
+                .within(value, "the integer is beyond 2^53; write it with a decimal point")
+                .map(|integer| integer as f64),
+            DeValue::Float(float) => {
+                let number = float.as_str().parse().ok().filter(|x: &f64| x.is_finite());
+                if number.is_none() {
+                    self.report(value.span(), format!("{} is not a finite number", quote(float.as_str())));
                 }
-            };
-        };
-        match float.as_str().parse() {
-            Ok(number) if f64::is_finite(number) => Some(number),
+                number
+            }
             _ => {
-                self.report(value.span(), format!("{} is not a finite number", quote(float.as_str())));
+                self.wrong_type(value, "a number");
                 None
             }
         }
@@ -252,13 +250,10 @@ impl Reader {
     pub fn quantity(&mut self, value: &Value, expected: Quantity) -> Option<f64> {
         match value.get_ref() {
             DeValue::Integer(_) | DeValue::Float(_) => self.number(value),
-            DeValue::String(text) => match units::parse(text, expected) {
-                Ok(number) => Some(number),
-                Err(error) => {
-                    self.report(value.span(), error.to_string());
-                    None
-                }
-            },
+            DeValue::String(text) => {
+                let number = units::parse(text, expected);
+                number.map_err(|error| self.report(value.span(), error.to_string())).ok()
+            }
             _ => {
                 self.wrong_type(value, &format!("{expected} such as `\"{}\"`", expected.example()));
                 None

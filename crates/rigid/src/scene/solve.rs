@@ -1,4 +1,4 @@
-//! The problem and the options of a scene.
+//! Problem, ensemble and options of a scene.
 
 use super::{DrawError, Law, Scene};
 use crate::body::Body;
@@ -13,8 +13,8 @@ use polhode_ga::{Bivector, Rotor, Vector};
 use std::ops::Range;
 
 impl Scene {
-    /// The inertia for the rotation of a body of [`Scene::build`]: about the fixed point, if there is one, which is then the
-    /// origin of its axes.
+    /// The inertia of a body of [`Scene::build`] about the fixed point, the origin of its axes, or else about the centre of
+    /// mass.
     pub fn ruling_inertia(&self, body: &Body) -> Inertia {
         // `build` has rejected a body for which there is none.
         if self.is_held() {
@@ -24,7 +24,7 @@ impl Scene {
         }
     }
 
-    /// How that body turns: its start, the laws made with it, and the torques of thrusts.
+    /// The rotation of the body: its start, the laws built with it, and the torques of thrusts.
     pub fn setup(&self, body: &Body, laws: &[Law]) -> Setup {
         let laws = laws.iter().map(|law| law.torque.clone());
         Setup {
@@ -37,7 +37,7 @@ impl Scene {
         }
     }
 
-    /// The motion of that body under the laws made with it, and under the forces.
+    /// The problem of the body with the laws built with it and the forces.
     pub fn problem(&self, body: &Body, laws: &[Law]) -> Problem {
         Problem::of(&self.setup(body, laws)).with_center(self.center, body.mass, &self.pushes())
     }

@@ -33,7 +33,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// Its name and, as text, its formula or its numbers.
+    /// Its name and its formula or numbers as text.
     pub fn facts(&self) -> Facts {
         law_facts(self.name, &self.torque, self.formula.as_deref())
     }
@@ -76,12 +76,11 @@ fn formula(reader: &mut Reader, value: &Value, name: &'static str, axes: Axes) -
 }
 
 fn law(reader: &mut Reader, value: &Value, entry: &'static Entry<Torque>) -> Option<Law> {
-    let torque = match entry.kernel {
-        Kernel::Table => tabulated(reader, value, entry)?,
-        _ => {
-            let numbers = arguments(reader, value, entry)?;
-            placed(reader, value, entry.check(&numbers).and_then(|()| entry.build(&numbers)))?
-        }
+    let torque = if let Kernel::Table = entry.kernel {
+        tabulated(reader, value, entry)?
+    } else {
+        let numbers = arguments(reader, value, entry)?;
+        placed(reader, value, entry.check(&numbers).and_then(|()| entry.build(&numbers)))?
     };
     Some(Law { name: entry.name, torque, formula: None })
 }
@@ -97,7 +96,7 @@ pub fn arguments<T>(reader: &mut Reader, value: &Value, entry: &Entry<T>) -> Opt
     let periods = entry.arguments.iter().map(|argument| argument.period).filter(|name| !name.is_empty());
     let fields: Vec<_> = entry.arguments.iter().map(|argument| argument.field).chain(periods).collect();
     reader.only(table, &fields);
-    // All are read, so that all that is wrong is reported.
+    // Read all arguments, so that all errors are reported.
     let numbers: Vec<Option<Vec<f64>>> =
         entry.arguments.iter().map(|argument| of_field(reader, table, argument)).collect();
     Some(numbers.into_iter().collect::<Option<Vec<_>>>()?.concat())
@@ -130,12 +129,13 @@ fn one(reader: &mut Reader, value: &Value, argument: &Argument) -> Option<Vec<f6
         Some(number)
     };
     match (argument.shape, argument.quantity) {
-        (Shape::Vector, None) => match value.get_ref() {
-            DeValue::String(_) => {
-                formulas::components(reader, value, Grades(0b0010), "a vector").map(|v: [f64; 3]| v.to_vec())
-            }
-            _ => reader.numbers(value).map(|v: [f64; 3]| v.to_vec()),
-        },
+        (Shape::Vector, None) => {
+            let components: Option<[f64; 3]> = match value.get_ref() {
+                DeValue::String(_) => formulas::components(reader, value, Grades(0b0010), "a vector"),
+                _ => reader.numbers(value),
+            };
+            components.map(Vec::from)
+        }
         (Shape::Vector, Some(quantity)) => formulas::vector(reader, value, quantity).map(|v| v.0.to_vec()),
         (Shape::Bivector, Some(quantity)) => {
             formulas::bivector(reader, value, quantity).map(|b| b.0.to_vec())
@@ -161,10 +161,10 @@ fn tabulated(reader: &mut Reader, value: &Value, entry: &Entry<Torque>) -> Optio
     let torques = reader.field(table, "torques", |reader, value| {
         reader.list(value, "torques", |reader, item| formulas::bivector(reader, item, Quantity::Torque))
     });
-    let frame =
-        reader.optional(table, "frame", |reader, value| reader.word(value, "frame", &["body", "space"]));
-    let kind =
-        reader.optional(table, "kind", |reader, value| reader.word(value, "kind", &["linear", "cubic"]));
+    let mut word = |name, words: &[&'static str]| {
+        reader.optional(table, name, |reader, value| reader.word(value, name, words))
+    };
+    let (frame, kind) = (word("frame", &["body", "space"]), word("kind", &["linear", "cubic"]));
     let axes = if frame? == Some("space") { Axes::Space } else { Axes::Body };
     let kind = if kind? == Some("cubic") { Kind::Cubic } else { Kind::Linear };
     let rows: Vec<Bivector> = torques?;

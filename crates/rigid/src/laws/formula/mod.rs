@@ -118,7 +118,7 @@ impl Purpose {
         }
     }
 
-    /// Why a value of these grades is none, and what to do.
+    /// The error message for a value of these grades.
     fn refusal(self, grades: Grades) -> String {
         let (wanted, grade) = match self {
             Purpose::Torque(_) => ("bivector", 2),
@@ -206,8 +206,7 @@ impl Formula {
     /// bivector in body axes and in space, or `Omega_B` and `Omega_S`; for a torque `Ω` is that in its axes),
     /// `L` and `L_B` (the momentum, that of a wheel included, in space and in body axes), the inertia
     /// map `I(…)` of the body, and for forces and events `x` and `v` (position and velocity of the centre of mass, vectors
-    /// in space) and `m` (the mass in kg). All other names are those of `names`; `value` returns the value of an input, of
-    /// the kind that it has.
+    /// in space) and `m` (the mass in kg). All other names are in `names`; `value` returns the values of inputs.
     pub fn new(
         text: &str,
         purpose: Purpose,

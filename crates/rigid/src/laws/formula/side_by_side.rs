@@ -23,7 +23,7 @@ pub(crate) struct Formulas<'f, const W: usize, const F: bool> {
 }
 
 impl<'f, const W: usize, const F: bool> Formulas<'f, W, F> {
-    /// `None` if they are not the same program, or if a step never has a value.
+    /// `None` if the programs differ, or if a step never has a value.
     pub fn new(each: [&'f Formula; W], bodies: &[Gyrostat; W]) -> Option<Formulas<'f, W, F>> {
         let Compiled { program, runner, purpose, .. } = &*each[0].compiled;
         let sources = &each[0].sources;

@@ -1,4 +1,4 @@
-//! Laws that are computed by the formulas of their entries, which are compiled once.
+//! Laws computed by the formulas of their entries, which are compiled once.
 
 use super::{Entry, Kernel, Shape, TORQUES};
 use crate::error::TorqueError;
@@ -9,7 +9,7 @@ use polhode_ga::product::Grades;
 use polhode_ga::{Graded, Vector};
 use std::sync::LazyLock;
 
-/// The formulas of an entry, whose arguments are 0.
+/// The formulas of an entry, with all arguments 0.
 struct Compiled {
     torque: FormulaTorque,
     potential: Option<Formula>,
@@ -54,7 +54,7 @@ fn given(entry: &Entry<Torque>, numbers: &[f64], input: &Input) -> Option<Given>
     Graded::new(own, grades(argument.shape)).map(Given::Value)
 }
 
-/// The law of the numbers of all arguments.
+/// Constructs the law from the numbers of all arguments.
 pub(super) fn law(entry: &'static Entry<Torque>, numbers: &[f64]) -> Result<FormulaLaw, TorqueError> {
     let compiled = TORQUES.iter().zip(&*COMPILED).find(|(other, _)| other.name == entry.name);
     let (Kernel::Formula { axis, .. }, Some((_, Some(compiled)))) = (&entry.kernel, compiled) else {

@@ -1,14 +1,23 @@
 //! Registry of laws: for each torque and force its name, arguments, formula and constructor.
 //!
-//! Scenes, ensembles, Python, JAX, reports, files and the page all read it. A law whose formula is cheap needs nothing
-//! else: its torque, and what it conserves, follow from the formulas here ([`Kernel::Formula`]).
+//! Scenes, ensembles, Python, JAX, reports, files and the page all read it. The formulas of a law ([`Kernel::Formula`])
+//! may define its torque and what it conserves, without other code.
 
-/// The numbers of one variant of an enum.
-macro_rules! numbers {
-    ($pattern:pat => $numbers:expr) => {
-        |law| match law {
-            $pattern => Some($numbers),
-            _ => None,
+/// A law with code of its own: name, label, formula, arguments, constructor, and the numbers of such a law.
+macro_rules! native {
+    ($name:expr, $label:expr, $formula:expr, [$($argument:expr),*], $build:expr, $law:pat => $numbers:expr) => {
+        Entry {
+            name: $name,
+            label: $label,
+            formula: $formula,
+            arguments: &[$($argument),*],
+            kernel: Kernel::Native {
+                build: $build,
+                numbers: |law| match law {
+                    $law => Some($numbers),
+                    _ => None,
+                },
+            },
         }
     };
 }
@@ -24,10 +33,10 @@ use crate::units::Quantity;
 pub use forces::FORCES;
 pub use torques::TORQUES;
 
-/// The name of the law that is given by rows at times.
+/// The name of the tabulated torque.
 pub const TABLE: &str = "tabulated";
 
-/// A law as everyone knows it.
+/// A law of the registry.
 #[derive(Debug)]
 pub struct Entry<T: 'static> {
     /// Its name in scenes and in Python.
@@ -36,7 +45,7 @@ pub struct Entry<T: 'static> {
     pub label: &'static str,
     /// The torque in body axes, or the force in space, in the notation of the handout and the names of the arguments.
     pub formula: &'static str,
-    /// What it is given, in the order of Python.
+    /// Its arguments, in the order of Python.
     pub arguments: &'static [Argument],
     /// How it is computed.
     pub kernel: Kernel<T>,
@@ -47,21 +56,21 @@ pub struct Entry<T: 'static> {
 pub struct Argument {
     /// Its name in Python and in the formula.
     pub name: &'static str,
-    /// Its field in the scene's table of the law; empty where the law has no table but this value.
+    /// Its field in the scene's table of the law; empty if the law has this one value instead of a table.
     pub field: &'static str,
-    /// What its numbers measure; `None` for pure numbers.
+    /// The physical quantity; `None` for pure numbers.
     pub quantity: Option<Quantity>,
-    /// How many numbers it has, and what they are.
+    /// Its shape.
     pub shape: Shape,
-    /// Which numbers it may have.
+    /// The allowed numbers.
     pub limit: Limit,
-    /// Its numbers where it is left out: none for an argument that then does not exist.
+    /// The default numbers; empty for an argument without a default value that may be omitted.
     pub default: Option<&'static [f64]>,
-    /// The field that gives 2π over a rate instead.
+    /// The field for the period of a rate, 2π over it; empty if there is none.
     pub period: &'static str,
 }
 
-/// What the numbers of an argument are.
+/// The shape of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// One number.
@@ -70,7 +79,7 @@ pub enum Shape {
     Vector,
     /// Three components over e2e3, e3e1, e1e2.
     Bivector,
-    /// Three factors along the body axes; one number stands for three equal ones.
+    /// Three factors along the body axes, or one for all axes.
     Gains,
     /// Four components, those of a rotor.
     Rotor,
@@ -83,7 +92,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// How many numbers there are; 0 where that is open.
+    /// Number of numbers; 0 if it varies.
     pub const fn size(self) -> usize {
         match self {
             Shape::Scalar => 1,
@@ -108,23 +117,23 @@ impl Shape {
     }
 }
 
-/// Which numbers an argument may have.
+/// The allowed numbers of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// All that are finite.
+    /// Finite.
     Finite,
-    /// None below 0.
+    /// At least 0.
     NotNegative,
-    /// Those above 0.
+    /// Above 0.
     Positive,
-    /// Those of an ellipse.
+    /// At least 0 and below 1.
     Eccentricity,
     /// Not all 0: a direction.
     NotZero,
 }
 
 impl Limit {
-    /// What is wrong with this number, if anything is.
+    /// The reason why a number is not allowed, if it is not.
     pub fn refuses(self, number: f64) -> Option<&'static str> {
         let (allowed, why) = match self {
             Limit::Finite | Limit::NotZero => (true, ""),
@@ -139,23 +148,23 @@ impl Limit {
 /// How a law is computed.
 #[derive(Debug)]
 pub enum Kernel<T> {
-    /// By code of its own.
+    /// By its own code.
     Native {
-        /// The law of the numbers of all arguments; an argument without a default value may be missing at the end.
+        /// Constructs the law from the numbers of all arguments; the last argument may be missing.
         build: fn(&[f64]) -> Result<T, TorqueError>,
-        /// The numbers of all arguments of such a law; `None` of another.
+        /// The numbers of all arguments; `None` for another law.
         numbers: fn(&T) -> Option<Vec<f64>>,
     },
-    /// By its formula, which holds what follows from it too.
+    /// By its formula.
     Formula {
-        /// The largest torque in N m, and of a law with a potential its largest size in J.
+        /// The largest torque in N m, and the largest size of the potential in J.
         size: &'static str,
-        /// The potential energy in J; empty where there is none.
+        /// The potential energy in J; empty if there is none.
         potential: &'static str,
-        /// The argument that is the axis of space about which there is no torque; empty where there is none.
+        /// The argument that is the axis of space about which there is no torque; empty if there is none.
         axis: &'static str,
     },
-    /// By rows at times, which are no numbers of a fixed count.
+    /// By interpolation between rows at times.
     Table,
 }
 
@@ -173,7 +182,7 @@ impl<T> Entry<T> {
         Ok(())
     }
 
-    /// Each argument with its numbers, as many as there are.
+    /// Each argument with its numbers, while there are any.
     pub fn split<'n>(&self, mut numbers: &'n [f64]) -> impl Iterator<Item = (&'static Argument, &'n [f64])> {
         self.arguments.iter().map_while(move |argument| {
             let (own, rest) = numbers.split_at_checked(argument.shape.size())?;
@@ -184,7 +193,7 @@ impl<T> Entry<T> {
 }
 
 impl Entry<Torque> {
-    /// The law of the numbers of all arguments.
+    /// Constructs the law from the numbers of all arguments.
     pub fn build(&'static self, numbers: &[f64]) -> Result<Torque, TorqueError> {
         match self.kernel {
             Kernel::Native { build, .. } => build(numbers),
@@ -193,7 +202,7 @@ impl Entry<Torque> {
         }
     }
 
-    /// The numbers of all arguments of such a law; `None` of another.
+    /// The numbers of all arguments; `None` for another law.
     pub fn numbers(&'static self, torque: &Torque) -> Option<Vec<f64>> {
         match (&self.kernel, torque) {
             (Kernel::Native { numbers, .. }, _) => numbers(torque),
@@ -206,7 +215,7 @@ impl Entry<Torque> {
 }
 
 impl Entry<Push> {
-    /// The force of the numbers of all arguments.
+    /// Constructs the force from the numbers of all arguments.
     pub fn build(&self, numbers: &[f64]) -> Result<Push, TorqueError> {
         match self.kernel {
             Kernel::Native { build, .. } => build(numbers),
@@ -214,7 +223,7 @@ impl Entry<Push> {
         }
     }
 
-    /// The numbers of all arguments of such a force; `None` of another.
+    /// The numbers of all arguments; `None` for another force.
     pub fn numbers(&self, push: &Push) -> Option<Vec<f64>> {
         if let Kernel::Native { numbers, .. } = self.kernel { numbers(push) } else { None }
     }
@@ -225,10 +234,9 @@ const fn argument(name: &'static str, field: &'static str, quantity: Quantity, s
     Argument { name, field, quantity: Some(quantity), shape, limit, default, period: "" }
 }
 
-/// A direction of space; its size is ignored.
-const fn direction(name: &'static str) -> Argument {
-    let vector = argument(name, name, Quantity::Length, Shape::Vector);
-    Argument { quantity: None, limit: Limit::NotZero, ..vector }
+/// An argument of pure numbers.
+const fn pure(name: &'static str, shape: Shape) -> Argument {
+    Argument { quantity: None, ..argument(name, name, Quantity::Angle, shape) }
 }
 
 impl Argument {
@@ -241,7 +249,7 @@ impl Argument {
     }
 }
 
-/// Components of the first, second, … three numbers.
+/// The k-th group of three numbers.
 fn three(numbers: &[f64], k: usize) -> [f64; 3] {
     std::array::from_fn(|i| numbers[3 * k + i])
 }
@@ -257,14 +265,14 @@ pub fn force(name: &str) -> Option<&'static Entry<Push>> {
 }
 
 impl Torque {
-    /// The entry of this law and the numbers of its arguments, if it is one of numbers alone.
+    /// The entry of this law and the numbers of its arguments, if it is in the registry.
     pub fn registered(&self) -> Option<(&'static Entry<Torque>, Vec<f64>)> {
         TORQUES.iter().find_map(|entry| Some((entry, entry.numbers(self)?)))
     }
 }
 
 impl Push {
-    /// The entry of this force and the numbers of its arguments, if it is one of numbers alone.
+    /// The entry of this force and the numbers of its arguments, if it is in the registry.
     pub fn registered(&self) -> Option<(&'static Entry<Push>, Vec<f64>)> {
         FORCES.iter().find_map(|entry| Some((entry, entry.numbers(self)?)))
     }

@@ -1,7 +1,7 @@
-//! Every torque law that is made of arguments.
+//! Registry of torque laws.
 
 use super::Shape::{Bivectors, Gains as Factors, Numbers, Scalar, Vector as Components, Word};
-use super::{Argument, Entry, Kernel, Limit, Shape, TABLE, argument, direction, three};
+use super::{Argument, Entry, Kernel, Limit, Shape, TABLE, argument, pure, three};
 use crate::error::TorqueError;
 use crate::laws::torque::{Gains, Orbit, Torque};
 use crate::units::Quantity;
@@ -9,8 +9,7 @@ use polhode_ga::{Bivector, Rotor, Vector};
 
 /// An attitude, the identity by default.
 const fn attitude(name: &'static str) -> Argument {
-    Argument { quantity: None, ..argument(name, name, Quantity::Angle, Shape::Rotor) }
-        .or(&[1.0, 0.0, 0.0, 0.0])
+    pure(name, Shape::Rotor).or(&[1.0, 0.0, 0.0, 0.0])
 }
 
 fn rotor(numbers: &[f64]) -> Result<Rotor, TorqueError> {
@@ -20,137 +19,46 @@ fn rotor(numbers: &[f64]) -> Result<Rotor, TorqueError> {
 
 /// Every torque law, in the order in which messages name them.
 pub static TORQUES: [Entry<Torque>; 14] = [
-    Entry {
-        name: "damping",
-        label: "Damping",
-        formula: "-g I(Ω)",
-        arguments: &[argument("g", "", Quantity::DecayRate, Scalar)],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::Damping(x[0])),
-            numbers: numbers!(Torque::Damping(g) => vec![*g]),
+    native!("damping", "Damping", "-g I(Ω)", [argument("g", "", Quantity::DecayRate, Scalar)],
+        |x| Ok(Torque::Damping(x[0])), Torque::Damping(g) => vec![*g]),
+    native!("quadratic_damping", "Quadratic damping", "-k norm(Ω) Ω",
+        [argument("k", "", Quantity::QuadraticRotaryDamping, Scalar).not_negative()],
+        |x| Ok(Torque::QuadraticDamping(x[0])), Torque::QuadraticDamping(k) => vec![*k]),
+    native!("viscous_damping", "Viscous damping", "-d(Ω)",
+        [argument("d", "", Quantity::RotaryDamping, Factors).not_negative()],
+        |x| Ok(Torque::ViscousDamping(Gains::new(three(x, 0)))), Torque::ViscousDamping(d) => d.along().to_vec()),
+    native!("gravity_gradient", "Gravity gradient", "3 n^2 (a/r)^3 u × I(u)",
+        [Argument { period: "period", ..argument("n", "rate", Quantity::AngularRate, Scalar) },
+            Argument { limit: Limit::Eccentricity, ..pure("eccentricity", Scalar).or(&[0.0]) },
+            argument("mean_anomaly", "mean_anomaly", Quantity::Angle, Scalar).or(&[0.0])],
+        |x| Orbit::new(x[0], x[1], x[2]).map(Torque::GravityGradient),
+        Torque::GravityGradient(orbit) => vec![orbit.rate(), orbit.eccentricity(), orbit.anomaly()]),
+    native!("constant_body", "Constant in the body", "N", [argument("N", "", Quantity::Torque, Shape::Bivector)],
+        |x| Ok(Torque::ConstantBody(Bivector(three(x, 0)))), Torque::ConstantBody(torque) => torque.0.to_vec()),
+    native!("constant_space", "Constant in space", "~R N R", [argument("N", "", Quantity::Torque, Shape::Bivector)],
+        |x| Ok(Torque::ConstantSpace(Bivector(three(x, 0)))), Torque::ConstantSpace(torque) => torque.0.to_vec()),
+    native!("magnetic", "Magnetic dipole", "dipole∧(~R field R)",
+        [argument("dipole", "dipole", Quantity::MagneticDipole, Components),
+            argument("field", "field", Quantity::MagneticField, Components)],
+        |x| Ok(Torque::Magnetic { dipole: Vector(three(x, 0)), field: Vector(three(x, 1)) }),
+        Torque::Magnetic { dipole, field } => [dipole.0, field.0].concat()),
+    native!("torsion_spring", "Torsion spring", "k ⟨log((~rest R)^2)⟩_2",
+        [argument("k", "stiffness", Quantity::TorsionalStiffness, Scalar), attitude("rest")],
+        |x| Ok(Torque::TorsionSpring { stiffness: x[0], rest: rotor(&x[1..])? }),
+        Torque::TorsionSpring { stiffness, rest } => [&[*stiffness][..], &rest.components()].concat()),
+    native!("gyrostat", "Wheel", "Ω×h", [argument("h", "", Quantity::AngularMomentum, Shape::Bivector)],
+        |x| Ok(Torque::Wheel(Bivector(three(x, 0)))), Torque::Wheel(h) => h.0.to_vec()),
+    native!("pd_control", "PD control", "kp(⟨log((~target R)^2)⟩_2) - kd(Ω)",
+        [argument("kp", "kp", Quantity::TorsionalStiffness, Factors).not_negative(),
+            argument("kd", "kd", Quantity::RotaryDamping, Factors).not_negative(), attitude("target")],
+        |x| {
+            let (stiffness, damping) = (Gains::new(three(x, 0)), Gains::new(three(x, 1)));
+            Ok(Torque::Control { stiffness, damping, target: rotor(&x[6..])? })
         },
-    },
-    Entry {
-        name: "quadratic_damping",
-        label: "Quadratic damping",
-        formula: "-k norm(Ω) Ω",
-        arguments: &[argument("k", "", Quantity::QuadraticRotaryDamping, Scalar).not_negative()],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::QuadraticDamping(x[0])),
-            numbers: numbers!(Torque::QuadraticDamping(k) => vec![*k]),
-        },
-    },
-    Entry {
-        name: "viscous_damping",
-        label: "Viscous damping",
-        formula: "-d(Ω)",
-        arguments: &[argument("d", "", Quantity::RotaryDamping, Factors).not_negative()],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::ViscousDamping(Gains::new(three(x, 0)))),
-            numbers: numbers!(Torque::ViscousDamping(d) => d.along().to_vec()),
-        },
-    },
-    Entry {
-        name: "gravity_gradient",
-        label: "Gravity gradient",
-        formula: "3 n^2 (a/r)^3 u × I(u)",
-        arguments: &[
-            Argument { period: "period", ..argument("n", "rate", Quantity::AngularRate, Scalar) },
-            Argument {
-                quantity: None,
-                limit: Limit::Eccentricity,
-                ..argument("eccentricity", "eccentricity", Quantity::Angle, Scalar).or(&[0.0])
-            },
-            argument("mean_anomaly", "mean_anomaly", Quantity::Angle, Scalar).or(&[0.0]),
-        ],
-        kernel: Kernel::Native {
-            build: |x| Orbit::new(x[0], x[1], x[2]).map(Torque::GravityGradient),
-            numbers: numbers!(Torque::GravityGradient(orbit) =>
-                vec![orbit.rate(), orbit.eccentricity(), orbit.anomaly()]),
-        },
-    },
-    Entry {
-        name: "constant_body",
-        label: "Constant in the body",
-        formula: "N",
-        arguments: &[argument("N", "", Quantity::Torque, Shape::Bivector)],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::ConstantBody(Bivector(three(x, 0)))),
-            numbers: numbers!(Torque::ConstantBody(torque) => torque.0.to_vec()),
-        },
-    },
-    Entry {
-        name: "constant_space",
-        label: "Constant in space",
-        formula: "~R N R",
-        arguments: &[argument("N", "", Quantity::Torque, Shape::Bivector)],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::ConstantSpace(Bivector(three(x, 0)))),
-            numbers: numbers!(Torque::ConstantSpace(torque) => torque.0.to_vec()),
-        },
-    },
-    Entry {
-        name: "magnetic",
-        label: "Magnetic dipole",
-        formula: "dipole∧(~R field R)",
-        arguments: &[
-            argument("dipole", "dipole", Quantity::MagneticDipole, Components),
-            argument("field", "field", Quantity::MagneticField, Components),
-        ],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::Magnetic { dipole: Vector(three(x, 0)), field: Vector(three(x, 1)) }),
-            numbers: numbers!(Torque::Magnetic { dipole, field } => [dipole.0, field.0].concat()),
-        },
-    },
-    Entry {
-        name: "torsion_spring",
-        label: "Torsion spring",
-        formula: "k ⟨log((~rest R)^2)⟩_2",
-        arguments: &[argument("k", "stiffness", Quantity::TorsionalStiffness, Scalar), attitude("rest")],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::TorsionSpring { stiffness: x[0], rest: rotor(&x[1..])? }),
-            numbers: numbers!(Torque::TorsionSpring { stiffness, rest } =>
-                [&[*stiffness][..], &rest.components()].concat()),
-        },
-    },
-    Entry {
-        name: "gyrostat",
-        label: "Wheel",
-        formula: "Ω×h",
-        arguments: &[argument("h", "", Quantity::AngularMomentum, Shape::Bivector)],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::Wheel(Bivector(three(x, 0)))),
-            numbers: numbers!(Torque::Wheel(h) => h.0.to_vec()),
-        },
-    },
-    Entry {
-        name: "pd_control",
-        label: "PD control",
-        formula: "kp(⟨log((~target R)^2)⟩_2) - kd(Ω)",
-        arguments: &[
-            argument("kp", "kp", Quantity::TorsionalStiffness, Factors).not_negative(),
-            argument("kd", "kd", Quantity::RotaryDamping, Factors).not_negative(),
-            attitude("target"),
-        ],
-        kernel: Kernel::Native {
-            build: |x| {
-                let (stiffness, damping) = (Gains::new(three(x, 0)), Gains::new(three(x, 1)));
-                Ok(Torque::Control { stiffness, damping, target: rotor(&x[6..])? })
-            },
-            numbers: numbers!(Torque::Control { stiffness, damping, target } =>
-                [&stiffness.along()[..], &damping.along(), &target.components()].concat()),
-        },
-    },
-    Entry {
-        name: "larmor",
-        label: "Larmor",
-        formula: "dual(L_B)∧(~R b R)",
-        arguments: &[argument("b", "", Quantity::AngularRate, Components)],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::Larmor(Vector(three(x, 0)))),
-            numbers: numbers!(Torque::Larmor(b) => b.0.to_vec()),
-        },
-    },
+        Torque::Control { stiffness, damping, target } =>
+            [&stiffness.along()[..], &damping.along(), &target.components()].concat()),
+    native!("larmor", "Larmor", "dual(L_B)∧(~R b R)", [argument("b", "", Quantity::AngularRate, Components)],
+        |x| Ok(Torque::Larmor(Vector(three(x, 0)))), Torque::Larmor(b) => b.0.to_vec()),
     // The "cannonball": a sphere of this cross-section takes up the momentum of sunlight, whatever its attitude, at the
     // centre of its surface (O. Montenbruck and E. Gill, Satellite Orbits, Springer 2000, sec. 3.4).
     Entry {
@@ -160,11 +68,8 @@ pub static TORQUES: [Entry<Torque>; 14] = [
         arguments: &[
             argument("area", "area", Quantity::Area, Scalar).not_negative(),
             argument("offset", "offset", Quantity::Length, Components),
-            direction("sun"),
-            Argument {
-                quantity: None,
-                ..argument("coefficient", "coefficient", Quantity::Area, Scalar).not_negative().or(&[1.0])
-            },
+            Argument { limit: Limit::NotZero, ..pure("sun", Components) },
+            pure("coefficient", Scalar).not_negative().or(&[1.0]),
             argument("pressure", "pressure", Quantity::Pressure, Scalar).not_negative().or(&[4.56e-6]),
         ],
         kernel: Kernel::Formula {
@@ -185,14 +90,6 @@ pub static TORQUES: [Entry<Torque>; 14] = [
         ],
         kernel: Kernel::Table,
     },
-    Entry {
-        name: "heavy",
-        label: "Gravity",
-        formula: "(~R e3 R)∧c",
-        arguments: &[argument("c", "", Quantity::Torque, Components)],
-        kernel: Kernel::Native {
-            build: |x| Ok(Torque::Heavy(Vector(three(x, 0)))),
-            numbers: numbers!(Torque::Heavy(c) => c.0.to_vec()),
-        },
-    },
+    native!("heavy", "Gravity", "(~R e3 R)∧c", [argument("c", "", Quantity::Torque, Components)],
+        |x| Ok(Torque::Heavy(Vector(three(x, 0)))), Torque::Heavy(c) => c.0.to_vec()),
 ];

@@ -1,4 +1,4 @@
-//! Torque laws that are functions of the caller.
+//! Torque laws defined by user functions.
 
 use crate::error::TorqueError;
 use crate::state::phase::{Gyrostat, Phase};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// axes.
 type Call = dyn Fn(f64, Rotor, Bivector) -> Result<Bivector, TorqueError> + Send + Sync;
 
-/// A torque law that is a function of the caller.
+/// A torque law defined by a user function.
 #[derive(Clone)]
 pub struct FunctionTorque {
     call: Arc<Call>,

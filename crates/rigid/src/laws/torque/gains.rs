@@ -1,4 +1,4 @@
-//! Gains along body axes, as of dampers and controllers.
+//! Gains of dampers and controllers along body axes.
 
 use polhode_ga::{Bivector, Rotor};
 use std::array::from_fn;

@@ -1,7 +1,7 @@
 //! Kernels of torques for bodies in lanes, in principal axes; a single body has one lane.
 //!
 //! Between the stages of a step the norm of a rotor differs from 1, and other formulas for the same rotation would give
-//! other torques there: every stepper uses these.
+//! other torques, so every stepper uses these.
 
 use polhode_ga::simd::lanes::{Lanes, composed, cross, dot};
 

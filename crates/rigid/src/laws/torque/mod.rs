@@ -1,4 +1,4 @@
-//! Torque laws, which add up. A torque is a bivector; its components are those of the axial vector.
+//! Torque laws; torques add up. A torque is a bivector; its components are those of the axial vector.
 
 mod formula;
 mod function;
@@ -290,7 +290,11 @@ pub fn turn_from(rest: Rotor, rotor: Rotor) -> Bivector {
 }
 
 /// The sum of all laws at a state, without damping and wheels.
-pub(crate) fn exerted(torques: &[Torque], body: &Gyrostat, state: &Phase) -> Result<Bivector, SimulateError> {
+pub(crate) fn total_torque(
+    torques: &[Torque],
+    body: &Gyrostat,
+    state: &Phase,
+) -> Result<Bivector, SimulateError> {
     let mut total = Bivector::default();
     for law in torques {
         let failed = |error: TorqueError| SimulateError::Torque { time: state.time, message: error.0 };

@@ -1,4 +1,4 @@
-//! Laws of the registry that are computed by their formulas.
+//! Laws of the registry computed by formulas.
 
 use super::FormulaTorque;
 use crate::laws::formula::Formula;
@@ -7,7 +7,7 @@ use crate::state::phase::{Gyrostat, Phase};
 use crate::state::point::Point;
 use polhode_ga::{Rotor, Vector};
 
-/// A law with the formulas of its torque and of what follows from it.
+/// A law with the formulas of its torque and potential.
 #[derive(Clone, Debug)]
 pub struct FormulaLaw {
     /// Its name in the registry.

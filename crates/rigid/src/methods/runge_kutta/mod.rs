@@ -25,7 +25,7 @@ mod tableau;
 use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
-use crate::laws::forcing::{Alone, Forcing, Place};
+use crate::laws::forcing::{BodyForcing, Forcing, Place};
 use crate::laws::torque::Torque;
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
@@ -286,7 +286,7 @@ impl RungeKutta {
         let fastest = Lanes([fastest.max(self.body.least_rate())]);
         let mut at = Points::NONE;
         at.set(0, from);
-        let mut acting = Alone::new(&self.body, &self.torques, self.translation.as_ref());
+        let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref());
         let (tableau, alone, h): (_, _, One) = (self.tableau, &self.alone, Lanes([h]));
         let (to, error) = match self.translation {
             None => step::<6, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),

@@ -33,7 +33,7 @@ pub(crate) mod turns;
 use super::kicks::fixed_momentum;
 use crate::error::SimulateError;
 use crate::exact::free::FreeMotion;
-use crate::laws::forcing::Alone;
+use crate::laws::forcing::BodyForcing;
 use crate::laws::torque::Torque;
 use crate::state::phase::{Gyrostat, Phase};
 use polhode_ga::simd::lanes::One;
@@ -89,7 +89,7 @@ impl Splitting {
 
     /// The same step, with what rounding has left out of the sum of kicks.
     pub(crate) fn carry(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
-        let mut acting = Alone::new(&self.body, &self.torques, None);
+        let mut acting = BodyForcing::new(&self.body, &self.torques, None);
         let mut spin = Spin {
             rotor: One::each(state.rotor.components()),
             momentum: One::each(state.momentum.0),

@@ -1,11 +1,11 @@
-//! Ensembles: what is read, what is refused, and that the bodies are distributed as the file says.
+//! Tests of `[ensemble]`: reading, errors, and distributions.
 
 use super::*;
 use crate::laws::registry::{Argument, Shape, torque};
 use crate::laws::torque::Torque;
 use crate::scene::parameters::PARAMETERS;
 
-/// The least scene with these lines in `[ensemble]`.
+/// The minimal scene with these lines in `[ensemble]`.
 fn with(ensemble: &str) -> String {
     format!("{LEAST}[ensemble]\n{ensemble}\n")
 }
@@ -22,8 +22,8 @@ fn drawn(text: &str, bodies: Range<usize>) -> Drawn {
     ensemble(&scene).draw(&scene, (&body, &laws), bodies).unwrap()
 }
 
-/// The largest distance of a sample from a distribution, times the root of its size: more than 2.6 happens with
-/// 3 seeds in a million (Kolmogorov).
+/// Kolmogorov's distance of a sample from a distribution, times the root of its size: 2.6 is exceeded for 3 seeds in a
+/// million.
 fn distance(mut sample: Vec<f64>, below: impl Fn(f64) -> f64) -> f64 {
     sample.sort_by(f64::total_cmp);
     let n = sample.len() as f64;
@@ -37,7 +37,7 @@ fn moments(numbers: &[f64]) -> (f64, f64) {
     (numbers.iter().sum::<f64>() / n, numbers.iter().map(|x| x * x).sum::<f64>() / n)
 }
 
-/// Whether numbers have the mean 0 and this standard deviation, as far as five times what is usual for their number.
+/// Whether mean and standard deviation are 0 and this within five standard errors.
 fn is_normal(numbers: &[f64], deviation: f64) -> bool {
     let (mean, square) = moments(numbers);
     let usual = 5.0 / (numbers.len() as f64).sqrt();
@@ -95,7 +95,7 @@ fn an_ensemble_is_read() {
 }
 
 #[test]
-fn what_is_wrong_with_an_ensemble_has_its_place() {
+fn errors_in_ensembles_have_a_place() {
     let table = [
         ("attitud = 'uniform'", "12:1: unknown field `attitud`, expected `attitude`"),
         ("attitude = 'unifrm'", "12:12: unknown attitude `unifrm`, expected `uniform`"),
@@ -202,7 +202,7 @@ fn numbers_and_seeds_have_bounds() {
 }
 
 #[test]
-fn everything_wrong_is_told_at_once_even_where_the_scene_is_wrong() {
+fn errors_are_reported_together_with_those_of_the_scene() {
     let text = with("number = 0\nspin = { norml = 1 }\ntorque.dampng = 1")
         .replace("[run]", "[torque]\ndamping = '1 s'\n[run]");
     let found = errors(&text);
@@ -214,7 +214,7 @@ const RICH: &str = "number = 1000\nseed = 3\nattitude = 'uniform'\nspin = { dire
     moments = { relative = 0.1 }\nposition = { normal = 1 }\nvelocity = { uniform = 1 }";
 
 #[test]
-fn a_body_depends_on_seed_and_number_alone() {
+fn a_body_depends_only_on_its_seed_and_number() {
     let all = drawn(&with(RICH), 0..1000);
     // A part, in a smaller ensemble.
     let part = drawn(&with(&RICH.replace("1000", "20")), 7..20);
@@ -238,9 +238,9 @@ fn a_body_depends_on_seed_and_number_alone() {
     assert_ne!(all.centers[0][..3], all.centers[0][3..]);
 }
 
-/// The numbers of a release are those of every later one.
+/// Draws must not change between releases.
 #[test]
-fn bodies_stay_what_they_are() {
+fn draws_are_reproducible() {
     let bodies = drawn(&with(RICH), 41..42);
     assert_eq!(
         bodies.rotors[0],
@@ -265,7 +265,7 @@ fn bodies_stay_what_they_are() {
 }
 
 #[test]
-fn uniform_attitudes_are_all_alike() {
+fn uniform_attitudes_are_uniform() {
     let n = 50_000;
     let bodies = drawn(&with(&format!("number = {n}\nattitude = 'uniform'")), 0..n);
     let rotors: Vec<Rotor> = bodies.rotors.iter().map(|r| Rotor::from_components(*r).unwrap()).collect();
@@ -332,7 +332,7 @@ fn spins_spread_in_the_axes_in_which_they_are_given() {
     let wide = omegas(&text("spin = { uniform = 2 }")).omegas;
     assert!(distance(component(&wide, 2, 4.0), |x| 0.25 * (2.0 + x)) < 2.6);
 
-    // Archimedes: the components of a direction lie in [−1, 1] all alike.
+    // Archimedes: the components of a direction are uniform in [−1, 1].
     let turned = omegas(&text("spin = { direction = 'uniform' }")).omegas;
     assert!(turned.iter().all(|row| (Bivector(*row).norm() - 5.0).abs() < 4.0 * f64::EPSILON * 5.0));
     for k in 0..3 {
@@ -341,7 +341,7 @@ fn spins_spread_in_the_axes_in_which_they_are_given() {
 }
 
 #[test]
-fn every_draw_of_moments_is_a_body() {
+fn drawn_moments_are_physical() {
     let n = 20_000;
     for given in ["[3, 2, 1.5]", "[3, 2, 1]", "[1, 1, 1]", "[2, 1, 1]"] {
         let text = with(&format!("number = {n}\nmoments = {{ relative = 1 }}")).replace("[3, 2, 1]", given);
@@ -350,7 +350,7 @@ fn every_draw_of_moments_is_a_body() {
         let nominal = integrals(scene(&text).build_body().unwrap().inertia.principal_moments());
         for k in 0..3 {
             let ratio = |inertia: &crate::Inertia| integrals(inertia.principal_moments())[k] / nominal[k];
-            // What is flat stays flat; the other integrals have factors whose logarithms are normal, and lose
+            // Flat bodies stay flat; the other integrals have factors whose logarithms are normal, and lose
             // no more digits in the differences than 1 in 1e8 of the moments.
             if nominal[k] == 0.0 {
                 let largest = |i: &crate::Inertia| i.principal_moments().into_iter().fold(0.0, f64::max);
@@ -401,7 +401,7 @@ fn gravity_varies_as_the_acceleration() {
 }
 
 #[test]
-fn parameters_of_one_law_are_drawn_each_by_itself() {
+fn parameters_of_one_law_are_drawn_independently() {
     let laws = "[torque]\nmagnetic = { dipole = [1, 2, 3], field = [0, 0, 1] }\nviscous_damping = 2\n\
                 pd_control = { kp = [1, 2, 3], kd = 1 }\ntorque_body = 'Ω'\n[run]";
     let text = |more: &str| with(&format!("number = 5\n{more}")).replace("[run]", laws);
@@ -426,7 +426,7 @@ fn parameters_of_one_law_are_drawn_each_by_itself() {
         let off = [0, 1, 2].map(|k| stiffness.along()[k] - (k as f64 + 1.0));
         assert!(off[0] != off[1] && off[1] != off[2] && damping.along() == [1.0; 3]);
     }
-    // What does not vary is there once.
+    // Constant laws have a single row.
     assert_eq!(one.laws.iter().map(Vec::len).collect::<Vec<_>>(), [5, 1, 1, 1]);
 }
 
@@ -452,7 +452,7 @@ fn every_parameter_is_read_and_set() {
 }
 
 #[test]
-fn a_body_beyond_the_range_has_its_number() {
+fn overflow_is_reported_with_the_body_number() {
     let text = with("number = 9\nmoments = { relative = 10 }").replace("[3, 2, 1]", "[3e307, 2e307, 2e307]");
     let scene = scene(&text);
     let (body, laws) = scene.build().unwrap();

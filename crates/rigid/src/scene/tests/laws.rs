@@ -1,4 +1,4 @@
-//! `[torque]`, `[force]` and `[method]`: what they say is what is built, and what is wrong has its place.
+//! Tests of `[torque]`, `[force]` and `[method]`.
 
 use super::*;
 use crate::laws::force::Force;
@@ -10,7 +10,7 @@ fn laws(torque: &str) -> Vec<Torque> {
     scene.torques.into_iter().map(|law| law.torque).collect()
 }
 
-/// The same laws, by what they show of themselves.
+/// Compares laws by their debug output.
 fn assert_same(found: &[Torque], expected: &[Torque]) {
     assert_eq!(format!("{found:?}"), format!("{expected:?}"));
 }
@@ -91,7 +91,7 @@ fn formulas_are_torques() {
 }
 
 #[test]
-fn what_is_wrong_with_a_law_has_its_place() {
+fn errors_in_laws_have_a_place() {
     // The table begins in line 5.
     let table = [
         ("dampin = 1", "6:1: unknown field `dampin`, expected `damping`"),
@@ -149,7 +149,7 @@ fn what_is_wrong_with_a_law_has_its_place() {
 }
 
 #[test]
-fn the_motion_keeps_its_names() {
+fn names_of_the_motion_cannot_be_redefined() {
     let text =
         format!("[define]\nR = 'e1e2'\n{}", LEAST.replace("[run]", "[torque]\ntorque_body = 'Ω'\n[run]"));
     assert_eq!(errors(&text), ["8:16: `R` is given by the motion; rename your value"]);

@@ -1,14 +1,14 @@
-//! What a scene says is what is read.
+//! Tests of reading scenes.
 
 mod ensembles;
+mod errors;
 mod laws;
-mod refusals;
 
 use super::*;
 use crate::body::solids::{Amount, Solid};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A scene with most of what a scene may say.
+/// A scene with most fields.
 const GOOD: &str = r#"# A T-handle, spinning about its middle axis.
 title = "T-handle"
 
@@ -34,7 +34,7 @@ rtol = 1e-10
 drift_bound = 1e-8
 "#;
 
-/// The least that a scene must say.
+/// A scene with only the required fields.
 const LEAST: &str = "[body]\nmoments = [3, 2, 1]\n[initial]\nspin = { vector = [0, 0, 1] }\n\
                      [run]\nduration = 10\n";
 
@@ -96,7 +96,7 @@ fn a_full_scene_is_read() {
 }
 
 #[test]
-fn times_are_in_equal_ratios_from_a_first_one_on() {
+fn times_may_be_a_geometric_progression() {
     let run = |more: &str| scene(&LEAST.replace("[run]", &format!("[run]\n{more}"))).run;
     let (even, uneven) = (run("samples = 6").offsets(), run("samples = 6\nfirst = 0.25").offsets());
     let end = even[5];
@@ -117,7 +117,7 @@ fn times_are_in_equal_ratios_from_a_first_one_on() {
 }
 
 #[test]
-fn what_is_left_out_has_its_default() {
+fn omitted_fields_have_defaults() {
     let scene = scene(LEAST);
     assert_eq!(scene.title, None);
     let (moments, center_of_mass) = ([3.0, 2.0, 1.0], Vector::default());
@@ -182,7 +182,7 @@ fn the_unit_of_a_mesh_has_a_name_or_a_size() {
 }
 
 #[test]
-fn an_inertia_may_have_a_mass_and_a_place() {
+fn an_inertia_may_have_a_mass_and_a_centre() {
     let inertia =
         "inertia = [['3 kg m^2', 0, 0], [0, 2, 0.5], [0, 0.5, 1]]\nmass = 2\ncenter_of_mass = [0, 0, 1]";
     let body = scene(&LEAST.replace("moments = [3, 2, 1]", inertia)).body;
@@ -191,7 +191,7 @@ fn an_inertia_may_have_a_mass_and_a_place() {
     assert_eq!(body, BodySpec::Inertia { matrix, mass: Some(2.0), center_of_mass });
 }
 
-/// Every way to say a quarter turn in e1e2 says the same.
+/// All forms give the same quarter turn in e1e2.
 #[test]
 fn the_attitude_has_four_forms() {
     let quarter = Rotor::from_plane_angle(Bivector([0.0, 0.0, 1.0]), FRAC_PI_2).unwrap();
@@ -238,7 +238,7 @@ fn planes_are_named_by_two_basis_vectors() {
 }
 
 #[test]
-fn formulas_stand_for_attitude_spin_plane_and_pivot() {
+fn attitude_spin_plane_and_pivot_may_be_formulas() {
     let define = "[define]\n'θ' = '30 deg'\nn = 'cos(θ) e3 + sin(θ) e1'\n'unit(B)' = 'B/norm(B)'\nrate = 3\n";
     let with = |old: &str, new: &str| scene(&format!("{define}{}", LEAST.replace(old, new)));
     let spin = with("{ vector = [0, 0, 1] }", "'5 rev/s undual(n)'").spin;
@@ -256,7 +256,7 @@ fn formulas_stand_for_attitude_spin_plane_and_pivot() {
 }
 
 #[test]
-fn a_spin_in_space_axes_is_turned_to_the_body() {
+fn a_spin_in_space_axes_is_converted_to_body_axes() {
     // R turns e1 to e2 by 90°, so ~R turns e2, dual to e3e1, back to e1.
     let text = LEAST.replace(
         "spin = { vector = [0, 0, 1] }",

@@ -1,4 +1,4 @@
-//! What is wrong with a scene is told, at its place; and any text has an answer.
+//! Tests of errors in scenes and their places, and that no text panics.
 
 use super::*;
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ fn a_misspelt_field_is_shown_with_its_correction() {
 }
 
 #[test]
-fn everything_wrong_with_a_file_is_reported_in_its_order() {
+fn all_errors_of_a_file_are_reported_in_order() {
     let text = "title = 3\ntilte = 1\n[body]\nsolid = 'bx'\n[initial]\nspin = { rate = '5 m' }\n[gravty]\n\
                 [run]\nduration = -1\nsamples = 1\nmethod = 'euler'\nrtol = 2\n";
     assert_eq!(
@@ -183,14 +183,14 @@ fn syntax_errors_have_a_place() {
 }
 
 #[test]
-fn very_many_errors_are_cut_off() {
+fn the_number_of_reported_errors_is_limited() {
     let text: String = (0..100_000).map(|i| format!("a{i} = 1\n")).collect();
     let errors = errors(&text);
     assert_eq!((errors.len(), errors[100].as_str()), (101, "and 99903 more"));
 }
 
 #[test]
-fn what_turns_out_wrong_later_finds_its_place() {
+fn later_errors_are_reported_at_their_field() {
     let scene = scene(GOOD);
     let at = |field| scene.diagnose(field, "m").position;
     assert_eq!(at("body.mesh"), Some((5, 8)));
@@ -206,13 +206,13 @@ fn what_turns_out_wrong_later_finds_its_place() {
 
 proptest! {
     #[test]
-    fn any_text_has_an_answer(text in "(\\PC|[\t\r\n=\\[\\]{}\"'.,#])*") {
+    fn no_text_panics(text in "(\\PC|[\t\r\n=\\[\\]{}\"'.,#])*") {
         let _ = parse(&text);
     }
 
     /// Bytes deleted, doubled or replaced, and the end cut off.
     #[test]
-    fn any_mutation_of_a_scene_has_an_answer(
+    fn no_mutation_of_a_scene_panics(
         edits in prop::collection::vec((0usize..GOOD.len(), 0u8..3, any::<u8>()), 0..4),
         end in 0usize..2 * GOOD.len(),
     ) {
@@ -241,7 +241,7 @@ proptest! {
 }
 
 #[test]
-fn formulas_are_wrong_at_a_place_of_the_file() {
+fn errors_in_formulas_have_a_place_in_the_file() {
     let table = [
         ("'fast'", "4:9: `fast` has no value as one name; read as adjacent letters, f, a, s, t have none"),
         ("'5 rev/s e1'", "4:8: expected a bivector, found a part of grade 1"),
@@ -263,7 +263,7 @@ fn formulas_are_wrong_at_a_place_of_the_file() {
 }
 
 #[test]
-fn definitions_are_wrong_at_their_place() {
+fn errors_in_definitions_have_a_place() {
     let table = [
         ("a = 'b'\nb = 1", "2:6: `b` has no value; no names have values here"),
         ("'a b' = 1", "2:1: expected a name"),

@@ -25,7 +25,7 @@ pub(super) struct Flow<S, const C: usize = 1> {
     pub omega: [[[f64; C]; 3]; 3],
 }
 
-/// In one form or the other.
+/// A flow in either form.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum AnyFlow {
     Circular(Flow<Circular>),

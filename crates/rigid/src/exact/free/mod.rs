@@ -202,7 +202,7 @@ fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
 }
 
-/// Any other motion.
+/// A motion that is not steady.
 fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     let (whole, rest) = orbit.start;
     // AGM(1, k) = π/2K'.

@@ -65,7 +65,7 @@ pub(crate) const THIRD: [f64; 2] = [1.0, 0.0];
 pub(crate) const FOURTH: [f64; 2] = [-1.0, 0.0];
 
 /// −1 for odd n.
-fn sign(n: usize) -> f64 {
+pub(crate) fn sign(n: usize) -> f64 {
     if n % 2 == 1 { -1.0 } else { 1.0 }
 }
 

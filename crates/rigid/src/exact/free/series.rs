@@ -10,7 +10,7 @@
 //!
 //! all with `p_{n+1} = 2x p_n − p_{n−1}`. The factors sin v etc. keep the relative accuracy where a function vanishes.
 
-use crate::numerics::lanes::{exp_minus, horner_in_lane, in_lane, sin_cos_turns};
+use crate::numerics::lanes::{exp_minus, half_turns, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// Largest nome of the trigonometric series.
@@ -256,13 +256,7 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         for l in 0..W {
             // Half periods, f = v/π in [−½, ½] and a rest.
             let turn = turns[l];
-            let whole = if turn > 0.25 {
-                1.0
-            } else if turn < -0.25 {
-                -1.0
-            } else {
-                0.0
-            };
+            let whole = half_turns(turn);
             let f = 2.0 * turn - whole;
             odd[l] = 1.0 - 2.0 * f64::abs(whole);
             side[l] = 1f64.copysign(f);

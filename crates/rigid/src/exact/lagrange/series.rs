@@ -5,7 +5,7 @@
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
 use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, sign};
-use crate::numerics::lanes::{exp_minus, horner, sin_cos_turns};
+use crate::numerics::lanes::{exp_minus, half_turns, horner, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
@@ -181,13 +181,7 @@ impl Series for Hyperbolic {
         for l in 0..W {
             // Half periods, v/π in [−½, ½] and a rest.
             let turn = turns[l];
-            let whole = if turn > 0.25 {
-                1.0
-            } else if turn < -0.25 {
-                -1.0
-            } else {
-                0.0
-            };
+            let whole = half_turns(turn);
             let part = 2.0 * turn - whole;
             let odd = 1.0 - 2.0 * f64::abs(whole);
             let side = 1f64.copysign(part);

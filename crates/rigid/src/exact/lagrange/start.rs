@@ -124,7 +124,7 @@ impl Start {
             return Err(SimulateError::BadValue { what, value: fastest });
         }
         let scale = power_of_two([fastest, 0.0, 0.0]);
-        let frame = quaternion::<Wide>(axes.frame);
+        let frame = quaternion(axes.frame);
         let [s, x, y, z] = product(quaternion(rotor), frame);
         let norm = s * s + x * x + y * y + z * z;
         let (alpha, beta) = ([s, z], [y, -x]);

@@ -1,5 +1,4 @@
-//! The inertia map against its definition `I(B) = ∫ρ x∧(x·B)`, which moments a body can have, and the
-//! composition of bodies.
+//! The inertia map against its definition `I(B) = ∫ρ x∧(x·B)`, valid moments, and the composition of bodies.
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::{Amount, Body, BodyError, Inertia, Solid};
@@ -97,7 +96,7 @@ proptest! {
         prop_assert!(error <= 64.0 * EPS * largest(inertia.matrix()));
     }
 
-    /// Two parts of a cloud, each moved as the whole is, make the moved whole.
+    /// Two parts of a cloud, moved alike, combine to the moved whole.
     #[test]
     fn parts_make_the_whole((masses, positions) in points(), r in rotor(), x in vector()) {
         let body = |range: std::ops::Range<usize>| {
@@ -126,7 +125,7 @@ proptest! {
         prop_assert!((about.apply(b) - expected).norm() <= 64.0 * EPS * largest(about.matrix()) * b.norm());
     }
 
-    /// About a point P, `Σ m g (x − P)`; on the body about P no other direction is that of its weight.
+    /// About a point P, `Σ m g (x − P)`; no other direction is a weight moment about P.
     #[test]
     fn weights_of_points((masses, positions) in points(), p in vector(), g in 0.1..20.0_f64) {
         let body = Body::from_points(&masses, &positions).unwrap();
@@ -146,7 +145,7 @@ proptest! {
         prop_assert!(held.has_weight_moment(c) && held.has_weight_moment(turned(1e-7)));
         prop_assert!(!held.has_weight_moment(-c) && !held.has_weight_moment(turned(1e-5)));
         prop_assert!(held.has_weight_moment(Vector::default()));
-        // Were the centre of mass at the fixed point but for rounding, it would take no such weight.
+        // A centre of mass at the fixed point up to rounding has no such weight moment.
         let centered = Body { center_of_mass: held.center_of_mass * 1e-16, ..held };
         prop_assert!(!centered.has_weight_moment(c) && centered.has_weight_moment(c * 1e-16));
     }
@@ -162,7 +161,7 @@ proptest! {
         prop_assert!(Inertia::from_principal_moments([a, b, c]).is_ok());
     }
 
-    /// A rod has no moment about itself in any direction, to the last bit.
+    /// A rod has exactly zero moment about its axis in any direction.
     #[test]
     fn rods_are_singular_in_any_direction(r in rotor(), length in 0.1..10.0_f64) {
         let rod = Solid::Rod { length }.body(Amount::Mass(1.0)).unwrap();
@@ -180,9 +179,9 @@ proptest! {
 }
 
 proptest! {
-    /// Any numbers at all give a body or a message; what is accepted is possible.
+    /// Any numbers give a valid body or an error.
     #[test]
-    fn any_numbers_are_answered(
+    fn any_numbers_give_a_body_or_an_error(
         m in prop::array::uniform3(prop::array::uniform3(prop::num::f64::ANY)),
         masses in prop::collection::vec(prop::num::f64::POSITIVE, 3),
     ) {
@@ -262,7 +261,7 @@ fn far_away_points_keep_their_digits() {
 }
 
 #[test]
-fn impossible_inertias_say_which_numbers() {
+fn errors_of_impossible_inertias() {
     let moments = |m| Inertia::from_principal_moments(m).unwrap_err().to_string();
     assert_eq!(
         moments([1.0, 1.0, 3.0]),
@@ -299,9 +298,8 @@ fn impossible_inertias_say_which_numbers() {
     );
 }
 
-/// A matrix that is symmetric but for the rounding of its making is taken.
 #[test]
-fn rounding_is_no_asymmetry() {
+fn rounding_is_not_asymmetry() {
     let m = [[2.0, 0.1, 0.0], [0.1 + EPS, 2.0, 0.3], [0.0, 0.3 - EPS, 2.0]];
     let matrix = Inertia::from_matrix(m).unwrap().matrix();
     assert_eq!(matrix[0][1], matrix[1][0]);
@@ -309,7 +307,7 @@ fn rounding_is_no_asymmetry() {
 }
 
 #[test]
-fn impossible_bodies_say_why() {
+fn errors_of_impossible_bodies() {
     let inertia = Inertia::from_principal_moments([1.0; 3]).unwrap();
     let body = |mass, x| Body::new(mass, inertia, Vector([0.0, x, 0.0])).unwrap_err().to_string();
     assert_eq!(body(0.0, 0.0), "mass must be positive and finite, got 0.0 kg");

@@ -1,8 +1,7 @@
-//! What is said to be conserved is, and what does not fit is not said to be.
+//! Reported quantities are conserved, and others are not reported.
 //!
-//! A step of the classical Runge–Kutta method of length 1e-3 follows `R' = −½ R Ω` and `m' = Ω × I(Ω) + T`
-//! to h⁵, some roundings. Over it a conserved quantity changes by roundings of its terms, any other by a
-//! thousandth of them.
+//! A classical Runge–Kutta step of length 1e-3 follows `R' = −½ R Ω` and `m' = Ω × I(Ω) + T` to h⁵, some roundings. A
+//! conserved quantity changes by roundings of its terms, any other by a thousandth of them.
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::laws::conserved::Conserved;
@@ -65,7 +64,7 @@ impl Case {
         (value(&end) - value(&self.start)).abs() / quantity.scale(&self.body, &self.torques, &self.start)
     }
 
-    /// All that is said to be conserved is, and has these names.
+    /// The reported quantities have these names and are conserved.
     fn holds(&self, names: &[&str]) {
         assert_eq!(self.names(), names);
         for quantity in Conserved::under(&self.body, &self.torques, &self.start) {
@@ -74,7 +73,7 @@ impl Case {
         }
     }
 
-    /// These fewer are said to be, and the quantities of another case are not here.
+    /// A quantity of another case is not reported, and changes.
     fn breaks(&self, other: &Case, broken: &str) {
         assert!(!self.names().contains(&broken), "{broken} is said to be conserved");
         let quantity = Conserved::under(&other.body, &other.torques, &other.start);
@@ -215,7 +214,7 @@ fn satellites() {
     case(SYMMETRIC, vec![ellipse]).holds(&["spin_angular_momentum"]);
 }
 
-/// A quantity that vanishes, or a body at rest, is still measured against what its terms become.
+/// The scale of a quantity that vanishes, or of a body at rest, is the size its terms reach.
 #[test]
 fn scales_do_not_vanish() {
     let mut top = case([2.0, 2.0, 1.0], vec![heavy([1.0, 0.0, 0.0])]);
@@ -228,7 +227,7 @@ fn scales_do_not_vanish() {
 
 /// A law without effect restricts nothing.
 #[test]
-fn laws_that_are_zero_are_none() {
+fn zero_laws_change_nothing() {
     let nothing = Vector::default();
     let still = vec![heavy([0.0; 3]), Torque::Damping(0.0), magnetic(nothing), Torque::Larmor(nothing)];
     case(ASYMMETRIC, still).holds(&["energy", "angular_momentum"]);

@@ -1,4 +1,4 @@
-//! The damped body and the sphere in a field: against reference states, and against their own laws.
+//! The damped body and the sphere in a field: against reference states and conservation laws.
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::exact::damped::DampedTop;
@@ -70,7 +70,7 @@ fn damped_momentum() {
     }
 }
 
-/// Weak damping for a long time: the phase keeps its digits, though τ has only so many.
+/// Weak damping for a long time: the phase is accurate beyond the rounding of τ.
 #[test]
 fn damped_phase() {
     let g = 1e-6;
@@ -170,7 +170,7 @@ fn larmor_at_long_times() {
     }
 }
 
-/// Moments that differ by rounding count as equal, and the certificate says what that neglects; a tolerance below
+/// Moments that differ by rounding count as equal; the certificate reports the neglected angle, and a tolerance below
 /// it leads to steps.
 #[test]
 fn a_neglected_difference_of_moments_is_an_error_estimate() {

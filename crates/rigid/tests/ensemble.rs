@@ -1,4 +1,4 @@
-//! Many bodies at once are as each alone.
+//! An ensemble gives each body the results of a single run.
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -85,7 +85,7 @@ fn dampings(count: usize) -> Rows<Torque> {
 const TIMES: [f64; 5] = [-1.0, 0.0, 0.25, 2.0, 5.0];
 
 #[test]
-fn a_body_among_others_is_as_alone() {
+fn bodies_match_single_runs() {
     let count = 45;
     let wheel = Rows::new(vec![Torque::Wheel(Bivector([0.1, 0.2, -0.3]))]);
     let lists = [
@@ -130,7 +130,7 @@ fn a_body_among_others_is_as_alone() {
 }
 
 #[test]
-fn no_body_depends_on_threads_or_on_others() {
+fn bodies_are_independent_of_threads_and_each_other() {
     let count = 70;
     let all = ensemble(count, vec![weights(count), dampings(count)]);
     for method in ["rk4", "strang", "kahan_li6"] {
@@ -153,7 +153,7 @@ fn no_body_depends_on_threads_or_on_others() {
 }
 
 #[test]
-fn a_body_that_fails_is_told_and_the_others_go_on() {
+fn failures_are_reported_and_the_others_continue() {
     let count = 40;
     let healthy = ensemble(count, vec![Rows::new(vec![Torque::ConstantBody(Bivector::default()); count])]);
     let mut broken = healthy.clone();

@@ -1,4 +1,4 @@
-//! Bodies side by side, each by steps of its own.
+//! Ensembles with adaptive steps, independent for each body.
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -52,7 +52,7 @@ fn dop853(rtol: f64) -> Options {
     Options { method: Method::from_name("dop853"), rtol: Some(rtol), ..Options::default() }
 }
 
-/// A number between 0 and 1 that looks like none before.
+/// A pseudorandom number between 0 and 1.
 fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1_u64 << 53) as f64
@@ -102,7 +102,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 const TIMES: [f64; 6] = [-7.0, -2.5, 0.0, 1.0, 1.0, 12.0];
 
-/// Body by body as the single run: the points to the tolerance, the certificate's numbers of the same size.
+/// Each body as in a single run: points to the tolerance, and a similar certificate.
 fn assert_as_alone(ensemble: &Ensemble, times: &[f64], options: &Options, rtol: f64) {
     let batch = run(ensemble, times, options);
     assert!(batch.summary.failures.is_empty(), "{:?}", batch.summary.failures);
@@ -154,9 +154,9 @@ fn as_single_bodies() {
     }
 }
 
-/// Without a method and a step free bodies are exact, by few times and by many; others go by dop853, splittings too.
+/// Without a method and a step, bodies with a closed form are exact, for few times and many; others use dop853.
 #[test]
-fn what_is_known_is_exact() {
+fn closed_forms_are_the_default() {
     let many: Vec<f64> = (-30..70).map(|i| 0.37 * f64::from(i)).collect();
     for times in [&TIMES[..], &many] {
         assert_as_alone(&bodies(5, vec![]), times, &Options::default(), 1e-14);
@@ -172,9 +172,9 @@ fn what_is_known_is_exact() {
     assert!(far.summary.failures.len() == 2 && far.rotors.iter().all(|x| x.is_nan()));
 }
 
-/// What becomes of a body does not depend on the others, their number, their order, or the threads.
+/// Results do not depend on the other bodies, their number and order, or the threads.
 #[test]
-fn bodies_do_not_know_of_each_other() {
+fn bodies_are_independent() {
     let all = bodies(53, laws());
     let one = run_with(&all, &TIMES, &dop853(1e-8), 1, &mut |_| true).unwrap();
     for threads in [2, 5] {
@@ -198,7 +198,7 @@ fn bodies_do_not_know_of_each_other() {
     }
 }
 
-/// One body turns a thousand times as fast: it takes as many more steps, the others none more.
+/// A body that turns a thousand times as fast takes more steps, the others do not.
 #[test]
 fn a_hard_body_among_easy_ones() {
     let easy = bodies(20, vec![laws()[0].clone()]);
@@ -215,9 +215,9 @@ fn a_hard_body_among_easy_ones() {
     assert!(apart(&alone.rotors[0].components(), &b.rotors[16..20]) <= 2e-7);
 }
 
-/// A body that fails is told with when and why, as a single one is, and nothing is known of it; the others go on.
+/// A failure is reported with time and cause as for a single body, its rows are NaN, and the others continue.
 #[test]
-fn failures_are_told_and_the_others_go_on() {
+fn failures_are_reported_and_the_others_continue() {
     let table = |end: f64| {
         let rows = vec![Bivector([0.1, 0.0, 0.2]), Bivector([0.3, -0.1, 0.0]), Bivector([0.0, 0.2, 0.1])];
         let table = Table::new(vec![-1.0, 0.6, end], rows, Axes::Body, Kind::Linear).unwrap();
@@ -257,8 +257,7 @@ fn failures_are_told_and_the_others_go_on() {
     }
 }
 
-/// Steps end where a table bends, for each body where its own does: in front of a bend and behind it the motion is smooth,
-/// and hardly a step is refused.
+/// Steps end at the bends of each body's table, between which the motion is smooth, so few steps are rejected.
 #[test]
 fn steps_end_where_a_table_bends() {
     let table = |body: usize| {
@@ -283,7 +282,7 @@ fn steps_end_where_a_table_bends() {
 }
 
 #[test]
-fn a_run_that_is_told_to_stop_stops() {
+fn a_run_can_be_stopped() {
     let mut all = bodies(40, vec![laws()[0].clone()]);
     all.starts.iter_mut().for_each(|start| start.omega = start.omega * 1e4);
     let mut calls = 0;
@@ -297,9 +296,9 @@ fn a_run_that_is_told_to_stop_stops() {
     assert!(seen.is_sorted() && seen.iter().all(|x| (0.0..1.0).contains(x)), "{seen:?}");
 }
 
-/// Other methods by name, functions of the caller's and forces that change go one by one.
+/// Other methods, user functions and varying forces run body by body.
 #[test]
-fn what_lanes_have_no_form_for_is_followed_alone() {
+fn unsupported_laws_run_body_by_body() {
     let mut all = bodies(2, vec![laws()[0].clone()]);
     let splitting = Options { method: Method::from_name("strang"), rtol: Some(1e-5), ..Options::default() };
     assert_as_alone(&all, &TIMES, &splitting, 1e-5);
@@ -330,7 +329,7 @@ struct Known<'t> {
     omega: Vec<f64>,
 }
 
-/// The references of all laws in one batch for each time, each law of a case beside the others of no size.
+/// The references of all laws in one batch for each time; the other laws of a case are zero.
 #[test]
 fn references_are_met() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/reference/motion_cases.json");

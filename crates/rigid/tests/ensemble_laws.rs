@@ -1,4 +1,4 @@
-//! Every law on bodies side by side: what becomes of a body is what becomes of it alone, whoever is beside it.
+//! Every law in an ensemble: the results of a body are those of a single run.
 
 use polhode_ga::formula::{Given, Input, Meaning, Names, Type};
 use polhode_ga::product::Grades;
@@ -173,7 +173,7 @@ fn assert_as_alone(ensemble: &Ensemble, run: &Run, label: &str) {
 }
 
 #[test]
-fn each_law_is_that_of_a_body_alone() {
+fn each_law_matches_single_runs() {
     let all: Vec<usize> = (0..BODIES).collect();
     for (kind, (name, _)) in laws(0).iter().enumerate() {
         for own in [false, true] {
@@ -198,7 +198,7 @@ fn laws_add_up() {
 }
 
 #[test]
-fn a_body_does_not_know_who_is_beside_it() {
+fn bodies_are_independent() {
     let kinds: Vec<usize> = (0..laws(0).len()).collect();
     let all: Vec<usize> = (0..BODIES).collect();
     let by_one = run(&ensemble(&all, &kinds, true), 1);
@@ -220,7 +220,7 @@ fn a_body_does_not_know_who_is_beside_it() {
 /// norm 1 by `(hω/2)²` at most, and the weight of a formula is another function of it there: a difference in the error of
 /// the method, `h⁴`.
 #[test]
-fn formulas_are_the_laws_they_say() {
+fn formulas_match_the_built_in_laws() {
     let rounding = 16.0 * f64::EPSILON * STEPS;
     type Make = fn([f64; 3], f64) -> Torque;
     let pairs: [(&str, Axes, f64, Make); 4] = [
@@ -247,12 +247,11 @@ fn formulas_are_the_laws_they_say() {
     }
 }
 
-/// Bodies of which some fail: the others have the bits they have where none does.
+/// Only these bodies fail; the others have the same bits as without failures.
 fn assert_only_these_fail(healthy: &Ensemble, ill: &Ensemble, failing: &[usize]) {
     let (expected, found) = (run(healthy, 2), run(ill, 2));
     assert!(expected.summary.failures.is_empty());
-    let told: Vec<usize> = found.summary.failures.iter().map(|failure| failure.body).collect();
-    assert_eq!(told, failing);
+    assert_eq!(found.summary.failures.iter().map(|failure| failure.body).collect::<Vec<_>>(), failing);
     for failure in &found.summary.failures {
         let alone = ill.problem(failure.body).simulate(&TIMES, options(), &mut |_| true).unwrap_err();
         assert_eq!(failure.error, alone);

@@ -1,4 +1,4 @@
-//! The free top: against states computed by other formulas to 34 digits, and against its own laws.
+//! The free top: against states computed by other formulas to 34 digits, and against conservation laws.
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor};
@@ -112,9 +112,9 @@ proptest! {
         prop_assert!(change.abs() <= 32.0 * EPS * energy(omega), "E off by {change:e}");
     }
 
-    /// Through the start, and from any state on, the motion is the same: a later part of it. Rounded states of
-    /// either are off by some roundings, and by that e-fold after the fastest radian. (Where a component of the spin
-    /// is small beside its amplitude, its own rounding in u0, a few of u0, is what the others may be off by.)
+    /// The motion passes through its start, and restarted from a later state it continues. Rounded states are off by some
+    /// roundings, e-fold after the fastest radian. (A small component of the spin is rounded in u0, which shifts the
+    /// others by some roundings.)
     #[test]
     fn the_flow_is_a_group((i, w) in bodies(), t in times(), part in -1.0..1.0f64) {
         let motion = FreeMotion::in_principal_axes(i, start(), Bivector(w));
@@ -201,16 +201,16 @@ fn many_bodies_give_the_same_bits() {
     }
 }
 
-/// A tile has the first motions that there are, and tells the first that cannot be made.
+/// A tile takes the first motions, and reports the first error.
 #[test]
-fn tiles_tell_what_is_wrong() {
+fn tiles_report_the_first_error() {
     let body = FreeMotion::in_principal_axes([1.0, 2.0, 3.0], start(), Bivector([0.25, -0.5, 1.0]));
     let made = |bad: usize| (0..2 * TILE).map(move |k| if k >= bad { Err(k) } else { Ok(body) });
     assert_eq!(Tile::new(made(TILE)).map(|tile| tile.horizons().len()), Ok(TILE));
     assert_eq!(Tile::new(made(17)).map(|_| ()), Err((17, 17)));
 }
 
-/// On the separatrix, each of its four branches is left and reached where it should be.
+/// Each branch of the separatrix starts and ends at the right pole.
 #[test]
 fn the_separatrix_ends_in_the_middle_axis() {
     for signs in 0..8 {

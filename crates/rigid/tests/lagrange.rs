@@ -1,4 +1,4 @@
-//! Lagrange's top: against states computed by other formulas to 34 digits, and against its own laws.
+//! Lagrange's top: against states computed by other formulas to 34 digits, and against conservation laws.
 
 use polhode_ga::simd::threads::Threads;
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -14,8 +14,8 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(0.0, |m: f64, x| if x.is_nan() { x } else { m.max(x.abs()) })
 }
 
-/// Roundings that the rate may be off by. Beside the unstable upright, after a time t, the tilt is `θ e^{λt}` in the
-/// midst of a period of about `ln (8/θ)`, whose rounding is one of the tilt and of the rate besides.
+/// Tolerance of the rate in roundings. Near the unstable upright the tilt grows as `θ e^{λt}` in a period of about
+/// `ln (8/θ)`, whose rounding adds to that of the rate.
 fn roundings(kind: &str, [s, x, y, z]: [f64; 4]) -> f64 {
     let tilt = s.hypot(z).min(x.hypot(y));
     if kind.starts_with("vertical_up") && tilt > 0.0 { 8.0 - (tilt / 8.0).ln() } else { 8.0 }
@@ -155,7 +155,7 @@ fn starts<'a>(tilts: &'a [f64], spins: &'a [f64]) -> impl Iterator<Item = (f64, 
     spun.flat_map(|(tilt, push, spin)| [true, false].map(|up| (tilt, push, spin, up)))
 }
 
-/// What rounding keeps from being symmetric is reported as an angle; beside the upright it grows with the fall.
+/// Neglected asymmetry by rounding is reported as an angle; near the upright it grows with the fall.
 #[test]
 fn neglected_asymmetry() {
     let top = |moments: [f64; 3], c: [f64; 3], r: [f64; 4]| {

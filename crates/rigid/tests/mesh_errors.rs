@@ -1,4 +1,4 @@
-//! Every way in which a mesh or its file can be wrong, with the message that it gets.
+//! Error messages of meshes and mesh files.
 
 use polhode_ga::Vector;
 use polhode_rigid::body::mesh::MeshFormat;
@@ -404,7 +404,7 @@ fn impossible_amounts() {
     }
 }
 
-/// Two boxes of which the second takes more away than the first has at a distance: no body.
+/// A distant cavity that subtracts more than the body has.
 #[test]
 fn impossible_moments() {
     let shifted = |v: &Vector| *v * 0.9 + Vector([5.0, 0.0, 0.0]);

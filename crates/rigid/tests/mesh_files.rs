@@ -1,4 +1,4 @@
-//! The file formats: the same box from each of their dialects, and no panic from any bytes.
+//! Mesh file formats: the same box in each dialect, and no panic for any bytes.
 
 use polhode_ga::Vector;
 use polhode_rigid::body::mesh::MeshFormat;
@@ -91,7 +91,7 @@ fn text_ply() -> String {
     text
 }
 
-/// Faces first, and a list before and behind what is wanted.
+/// Faces first, and unused lists before and after the used properties.
 fn binary_ply(big_endian: bool) -> Vec<u8> {
     let order = if big_endian { "big" } else { "little" };
     let header = format!(
@@ -215,7 +215,7 @@ fn samples() -> Vec<(MeshFormat, Vec<u8>)> {
     ]
 }
 
-/// Whatever comes out, its body and its message can be had.
+/// Parsing, the body and messages do not panic.
 fn survive(bytes: &[u8], format: MeshFormat) {
     match TriangleMesh::parse(bytes, format, "file") {
         Ok(mesh) => drop(mesh.body(Amount::Density(1.0)).map_err(|e| e.to_string())),

@@ -1,4 +1,4 @@
-//! Integrals over meshes: exact for polyhedra, covariant, unharmed by distance.
+//! Integrals over meshes: exact for polyhedra, covariant, accurate far from the origin.
 
 use polhode_ga::{Rotor, Vector};
 use polhode_rigid::{Amount, Body, Solid, TriangleMesh};
@@ -61,8 +61,8 @@ fn tetrahedron_is_exact() {
     assert!((0..3).all(|k| (moments[k] - [5.0, 5.0, 8.0][k]).abs() <= 32.0 * EPS), "{moments:?}");
 }
 
-/// Coordinates of the size of 2⁴⁰ with a box of a few metres: the differences are exact, so that nothing
-/// may be lost. (About the origin the second moment would be 2⁸⁰ times as large and all digits gone.)
+/// A box of a few metres at coordinates of 2⁴⁰: differences are exact. (The second moment about the origin would be 2⁸⁰
+/// times as large and lose all digits.)
 #[test]
 fn far_away_boxes_keep_their_digits() {
     let far = [2.0_f64.powi(40), -(2.0_f64.powi(41)), 2.0_f64.powi(39)];
@@ -72,7 +72,7 @@ fn far_away_boxes_keep_their_digits() {
     assert_eq!((body.mass, body.inertia), (near.mass, near.inertia));
 }
 
-/// A vertex that no triangle has is nowhere.
+/// Unused vertices are ignored.
 #[test]
 fn stray_vertices_do_not_count() {
     let mesh = cuboid([0.0; 3], [1.0, 2.0, 3.0]);

@@ -148,7 +148,7 @@ fn volumes() {
 }
 
 #[test]
-fn impossible_solids_say_why() {
+fn errors_of_impossible_solids() {
     let error = |solid: Solid, amount| solid.body(amount).unwrap_err().to_string();
     let mass = Amount::Mass(1.0);
     assert_eq!(error(Solid::Sphere { radius: 0.0 }, mass), "radius must be positive and finite, got 0.0 m");

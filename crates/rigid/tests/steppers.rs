@@ -1,4 +1,4 @@
-//! What each method of stepping promises by its construction: order, symmetry, what it conserves, where it refuses.
+//! Properties of the stepping methods: order, symmetry, conservation, errors.
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::laws::torque::{Orbit, Torque};
@@ -40,7 +40,7 @@ fn start(body: &Gyrostat) -> Phase {
     Phase { rotor, momentum: body.momentum(Bivector([0.5, 0.25, 1.5])), time: 0.0 }
 }
 
-/// Every method that is fit for the laws.
+/// Every method that supports the laws.
 fn steppers(body: Gyrostat, torques: &[Torque]) -> Vec<Stepper> {
     let from = start(&body);
     let mut all = Vec::new();
@@ -139,7 +139,7 @@ fn orders_of_bodies_with_a_wheel() {
     assert_orders(body, &[wheel, heavy(), Torque::Damping(0.25)]);
 }
 
-/// What Runge–Kutta methods are not: a step forth and the same step back returns.
+/// A step forward and the same step back return, except for Runge–Kutta methods.
 #[test]
 fn symmetric_methods_return() {
     let (gyrostat, wheel) = with_wheel();
@@ -187,7 +187,7 @@ fn drifts(stepper: &Stepper, body: &Gyrostat, potential: impl Fn(&Phase) -> f64)
 }
 
 #[test]
-fn free_bodies_keep_what_each_method_promises() {
+fn conserved_quantities_of_free_bodies() {
     // 20,000 steps of up to 51 roundings at random.
     let rounding = 4.0 * EPS * (51.0 * 20_000.0_f64).sqrt();
     let (gyrostat, wheel) = with_wheel();
@@ -223,7 +223,7 @@ fn heavy_bodies_keep_vertical_momentum_and_do_not_gain_energy() {
 
 /// `γ` is the third row of the matrix of R.
 #[test]
-fn what_is_vertical() {
+fn vertical_direction() {
     let from = start(&body());
     let expected = from.rotor.reverse().apply(Vector([0.0, 0.0, 1.0]));
     assert!((from.vertical() - expected).norm() < 4.0 * EPS);
@@ -307,7 +307,7 @@ fn steps_that_are_too_long_are_errors() {
 }
 
 #[test]
-fn methods_say_what_they_are_not_fit_for() {
+fn methods_have_names() {
     use polhode_rigid::methods::{Method, methods};
     let names: Vec<&str> = methods().map(Method::name).collect();
     assert_eq!(

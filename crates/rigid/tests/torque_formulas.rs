@@ -1,4 +1,4 @@
-//! Torques that are formulas, as a scene makes them: with names, values and functions defined before.
+//! Torque formulas as in scenes, with names, values and functions.
 
 use polhode_ga::formula::{Error, Given, Input, Meaning, Names, Space, Type, define};
 use polhode_ga::product::Grades;
@@ -27,7 +27,7 @@ fn state() -> (Gyrostat, Phase) {
 }
 
 #[test]
-fn a_formula_has_the_bits_of_the_law_it_says() {
+fn formulas_match_the_built_in_laws() {
     let (body, state) = state();
     let heavy = Torque::Heavy(Vector([0.5, 0.25, 1.0])).value(&body, &state).unwrap();
     for text in ["(~R e3 R) ∧ c", "pull(~R e3 R, c)"] {
@@ -60,7 +60,7 @@ fn a_formula_is_in_the_axes_of_the_body() {
 }
 
 #[test]
-fn what_it_depends_on_is_what_it_uses() {
+fn dependence_follows_from_the_variables() {
     let depends = |text: &str| {
         let law = law(text, Axes::Body).unwrap();
         (law.dependence(), law.is_autonomous())
@@ -73,7 +73,7 @@ fn what_it_depends_on_is_what_it_uses() {
 }
 
 #[test]
-fn what_is_no_torque_is_refused_at_its_place() {
+fn invalid_torques_are_errors_with_a_place() {
     for (text, part) in [
         ("R e3 ~R", "the bivector `I v`"),
         ("Ω Ω_S", "grades 0, 2"),

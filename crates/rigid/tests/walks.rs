@@ -1,4 +1,4 @@
-//! Walks along a motion: their progress, and forces and events of the core's own making.
+//! Runs: progress, interruption, and functions as forces and events.
 
 use polhode_ga::{Bivector, Rotor, Vector};
 use polhode_rigid::Inertia;
@@ -31,7 +31,7 @@ fn progress_rises_over_both_signs_of_time() {
 }
 
 #[test]
-fn a_run_that_is_told_to_stop_stops() {
+fn a_run_can_be_stopped() {
     let mut calls = 0;
     let options = Options { step: Some(1.0 / 64.0), ..Options::default() };
     let motion = problem().simulate(&[1e6], options, &mut |_| {
@@ -62,7 +62,7 @@ fn functions_of_forces_and_events() {
 }
 
 #[test]
-fn what_fails_is_told_with_its_time() {
+fn errors_have_a_time() {
     let late = |seen: &polhode_rigid::state::point::Seen| {
         if seen.time > 0.5 { Err(TorqueError("too late".into())) } else { Ok(Vector::default()) }
     };

@@ -17,10 +17,10 @@ use crate::error::MathError;
 use crate::product::Grades;
 use std::f64::consts::PI;
 
-/// Beyond this `cosh` and `sinh` are exponentials that no longer nearly cancel in `e^(ζ+√w) ± e^(ζ−√w)`.
+/// Beyond this `e^(ζ+√w) ± e^(ζ−√w)` do not cancel.
 const LARGE: f64 = 1.0;
 
-/// Below this `|M M̄|/|M|²` is rounding: each of its two parts sums four products of terms up to |M|².
+/// Below this `|M M̄|/|M|²` is rounding of two sums of four products.
 const SINGULAR: f64 = 8.0 * f64::EPSILON;
 
 /// `M = ζ + V`, `V² = w`.
@@ -92,8 +92,8 @@ impl Function {
 
     /// The grades of the value for an argument of grades `g`.
     ///
-    /// Two grades that square to a number, such as scalar and vector, are closed under products, and so
-    /// under power series and inverse. Roots and logarithms leave them, except the even elements.
+    /// Two grades that square to a number, such as scalar and vector, are closed under products, power series and
+    /// inverse, but of these only the even elements under roots and logarithms.
     pub fn grades(self, g: Grades) -> Grades {
         const CLOSED: [u16; 3] = [0b0101, 0b0011, 0b1001];
         // Inverse: M̄ times a number, when M M̄ has no trivector part.
@@ -115,7 +115,7 @@ impl Multivector {
         [1, 2, 3, 7].iter().all(|&i| self.0[i] == 0.0)
     }
 
-    /// Size and rotor of an even element, `M = |M| R`; none of zero.
+    /// Size and rotor of an even element, `M = |M| R`; None for zero.
     fn polar(self) -> Option<(f64, Rotor)> {
         let rotor = Rotor::from_components([self.0[0], self.0[4], self.0[5], self.0[6]]).ok()?;
         Some((self.norm(), rotor))
@@ -138,8 +138,8 @@ impl Multivector {
         in_range(join(zeta * reciprocal, v, -reciprocal) / scale)
     }
 
-    /// `exp M = e^ζ (cosh √w + V sinh √w / √w)`; both are even in √w, so either root serves. For a large
-    /// real part of √w the exponents are added first: `e^(ζ ± √w)` may exist where `cosh √w` does not.
+    /// `exp M = e^ζ (cosh √w + V sinh √w / √w)`, even in √w. For a large real part of √w the exponents are added first:
+    /// `e^(ζ ± √w)` may be finite where `cosh √w` is not.
     pub fn exp(self) -> Result<Multivector, MathError> {
         finite(self)?;
         if self.is_even() {
@@ -159,10 +159,9 @@ impl Multivector {
         in_range(join(factor * root.cosh(), v, factor * root.sinhc()))
     }
 
-    /// A logarithm, `exp(log M) = M`. For an even M it is even: `log|M|` plus the log of a rotor; for
-    /// others the principal one, `½(log λ+ + log λ−) + V (log λ+ − log λ−)/(2√w)`. Where `√w/ζ` is small
-    /// the difference cancels, unless the two logarithms lie on either side of the cut; it is then
-    /// `2 artanh(√w/ζ)`.
+    /// A logarithm, `exp(log M) = M`. For an even M it is even: `log|M|` plus the log of a rotor; otherwise the
+    /// principal one, `½(log λ+ + log λ−) + V (log λ+ − log λ−)/(2√w)`. For small `√w/ζ` the difference, unless it
+    /// crosses the cut, is computed as `2 artanh(√w/ζ)`.
     pub fn log(self) -> Result<Multivector, MathError> {
         finite(self)?;
         let scale = scale_of(&self.0);

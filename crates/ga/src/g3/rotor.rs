@@ -1,4 +1,4 @@
-//! Rotors: the unit even elements, which turn everything by `X ↦ R X ~R`.
+//! Rotors: the unit even elements, which rotate by `X ↦ R X ~R`.
 //!
 //! `R = exp(−Bθ/2)` turns by `θ` in the plane and sense of the unit bivector `B` (handout eq. 2.4).
 //! Active; `S*R` turns by `R` first. Components `(1, e2e3, e3e1, e1e2)`. `R` and `−R` turn alike.
@@ -12,8 +12,7 @@ use crate::rows::rotor_functions;
 use std::f64::consts::PI;
 use std::ops::{Mul, Neg};
 
-/// A squared norm within this of 1 is not rescaled: four components, each rounded in a product of norm 1, and the sum
-/// of their squares.
+/// A squared norm within this of 1 is not rescaled: the rounding of a product of rotors and of the squares.
 const UNIT_SQUARED: f64 = 8.0 * f64::EPSILON;
 
 /// A unit even element `s + b`; the constructors keep it so.
@@ -27,8 +26,7 @@ impl Rotor {
     /// The identity.
     pub const IDENTITY: Rotor = Rotor { scalar: 1.0, bivector: Bivector([0.0; 3]) };
 
-    /// From components `(1, e2e3, e3e1, e1e2)`, divided by their norm; those that are unit to rounding
-    /// are kept as they are.
+    /// From components `(1, e2e3, e3e1, e1e2)`, divided by their norm unless it is 1 to rounding.
     pub fn from_components(c: [f64; 4]) -> Result<Rotor, MathError> {
         if !c.iter().all(|x| x.is_finite()) {
             return Err(MathError::NotFinite);
@@ -37,7 +35,7 @@ impl Rotor {
         if length == 0.0 {
             return Err(MathError::ZeroRotor);
         }
-        // Scaling by a power of two first: the quotient stays accurate for subnormal components.
+        // Scaling by a power of two keeps the quotient accurate for subnormal components.
         let scale = super::values::scale_of(&c);
         let d = c.map(|x| x / scale);
         let n = norm(&d);
@@ -76,9 +74,8 @@ impl Rotor {
     /// Turns the direction of `a` into that of `b` in the plane `a∧b`; for opposite directions in a
     /// plane through `a` and the basis vector farthest from it.
     ///
-    /// For unit vectors `c = a + b` halves the angle, and `R = ĉ a` reflects twice. Where the angle is
-    /// near π, `c` is a small difference: taking out its rounding along `d = a − b`, to which it is
-    /// perpendicular, keeps its direction exact.
+    /// For unit vectors `c = a + b` halves the angle, and `R = ĉ a` reflects twice. For angles near π the rounding of
+    /// the small `c` along `d = a − b`, to which it is perpendicular, is removed.
     pub fn from_vectors(a: Vector, b: Vector) -> Result<Rotor, MathError> {
         let a = Vector(unit3(a.0).ok_or(MathError::NoDirection)?);
         let b = Vector(unit3(b.0).ok_or(MathError::NoDirection)?);
@@ -181,8 +178,8 @@ impl Rotor {
         shorter.log().dual() * -2.0
     }
 
-    /// `log R`, the bivector with `exp(log R) = R` and `|log R| <= π`: the whole double cover.
-    /// `log(−1) = π e1e2`, any plane being as good. Each component is within 2 ulps.
+    /// `log R`, the bivector with `exp(log R) = R` and `|log R| <= π`, on the double cover; `log(−1) = π e1e2` by
+    /// convention. Each component is within 2 ulps.
     pub fn log(self) -> Bivector {
         Bivector(rotor_functions::log_one(self.components()))
     }
@@ -233,8 +230,8 @@ impl Rotor {
         Multivector([m.0[0], a[0], a[1], a[2], b[0], b[1], b[2], m.0[7]])
     }
 
-    /// `S*R`, rescaled where its norm differs from 1 by more than the rounding of one product: by
-    /// `(1 + x)^(−½) = 1 − x/2 + 3x²/8 − …`, which serves rotors of single precision too.
+    /// `S*R`, rescaled by `(1 + x)^(−½) = 1 − x/2 + 3x²/8 − …` if its norm differs from 1 by more than the rounding of
+    /// one product, as for rotors of single precision.
     #[inline(always)]
     pub fn compose(self, r: Rotor) -> Rotor {
         let product = self * r;
@@ -249,7 +246,7 @@ impl Rotor {
     pub fn renormalized(self) -> Rotor {
         let c = self.components();
         let excess = c.iter().map(|x| x * x).sum::<f64>() - 1.0;
-        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+        // Adding rounds shrinking and growing alike; multiplying by 1 + x would not.
         let missing = -0.5 * excess;
         Rotor {
             scalar: self.scalar + self.scalar * missing,

@@ -240,7 +240,7 @@ impl Multivector {
 
     fn signed(self, factor: impl Fn(usize) -> f64) -> Multivector {
         const GRADE: [usize; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
-        // A part that is dropped is 0 whatever it was: 0 · NaN would not be.
+        // A dropped part is 0 even if it is NaN.
         let part = |i: usize| match factor(GRADE[i]) {
             0.0 => 0.0,
             f => f * self.0[i],
@@ -275,8 +275,7 @@ impl Mul for Multivector {
     }
 }
 
-/// The geometric product: for each component, the pairs of blades that the table sends there, in order
-/// of the left one.
+/// The geometric product written out, terms in order of the left factor's blades.
 #[inline(always)]
 pub(crate) fn geometric(m: [f64; 8], n: [f64; 8]) -> [f64; 8] {
     let [m0, m1, m2, m3, m4, m5, m6, m7] = m;

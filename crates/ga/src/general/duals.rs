@@ -1,8 +1,8 @@
 //! Complements, independent of the metric, and the dual, which depends on it.
 //!
 //! The right complement of a basis blade E is the blade with `E ∧ rc(E) = I`; the left one has
-//! `lc(E) ∧ E = I`, and each undoes the other. They exchange a subspace and its complement
-//! in the whole space, also in degenerate algebras, where `A I⁻¹` does not exist.
+//! `lc(E) ∧ E = I`, and each is the inverse of the other. They also exist in degenerate algebras, where `A I⁻¹` does
+//! not.
 
 use super::Calculus;
 use crate::error::MathError;
@@ -26,7 +26,7 @@ impl Calculus {
         self.to_basis(&self.complement(&wedge, |a, b| (b, a)))
     }
 
-    /// `A I⁻¹`; the metric dual, which only a metric without null generators has.
+    /// `A I⁻¹`, the metric dual; an error if there are null generators.
     pub fn dual(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let last = self.size() - 1;
         let square = self.sign(last, last);
@@ -43,7 +43,7 @@ impl Calculus {
         self.to_basis(&self.product(&self.to_bits(m), &pseudoscalar))
     }
 
-    /// Each blade goes to that of the other generators, with the sign of the product of the two in `order`.
+    /// Maps each blade to that of the other generators, with the sign of their product in `order`.
     fn complement(&self, m: &[f64], order: impl Fn(usize, usize) -> (usize, usize)) -> Vec<f64> {
         let all = self.size() - 1;
         let mut out = vec![0.0; self.size()];

@@ -8,7 +8,7 @@
 
 use std::array::from_fn;
 
-/// Convergence is quadratic: five or six sweeps suffice, the rest is a bound.
+/// A bound; convergence is quadratic, in five or six sweeps.
 const SWEEPS: usize = 32;
 
 /// Ascending eigenvalues of `a` (its upper triangle) and the unit eigenvectors, `vectors[k]` for the
@@ -89,8 +89,8 @@ mod tests {
         assert_eq!(symmetric_eigen(a), expected);
     }
 
-    /// `[[1, b], [b, d]]` with d = 1e-16 and b² = d/4 has eigenvalues near 1 and ¾d(1 − d/4 …): the
-    /// small one must be right to rounding of itself, though it is below rounding of the large one.
+    /// `[[1, b], [b, d]]` with d = 1e-16 and b² = d/4 has eigenvalues near 1 and ¾d(1 − d/4 …); the small one must be
+    /// accurate relative to itself.
     #[test]
     fn graded_matrix_keeps_relative_accuracy() {
         let a = [[1.0, 0.5e-8, 0.0], [0.5e-8, 1e-16, 0.0], [0.0, 0.0, 1.0]];

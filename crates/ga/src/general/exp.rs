@@ -6,21 +6,20 @@
 //!   `exp V = C + V φ` with `C = cosh √S` and `φ = sinh √S / √S`, by series and doubling in that ring;
 //! - any other: the series of `exp(M/2ᵏ)`, squared k times.
 //!
-//! The ring does not mix the sizes of the parts: the number of doublings depends on the angles alone, however large a
-//! translation or boost.
+//! In the ring the number of doublings depends only on the angles, not on translations or boosts.
 
 use super::pair::{Pair, Ring, SPLITS};
 use super::{Calculus, add_scaled, grade, part, scaled};
 use crate::error::MathError;
 use crate::g3::values::{norm, scale_of};
 
-/// Beyond this `cosh` and `sinh` are exponentials that no longer nearly cancel.
+/// Beyond this the exponentials in `cosh` and `sinh` do not cancel.
 const LARGE: f64 = 1.0;
 
-/// Below this part of a bivector its half counts as small.
+/// A half of a bivector is small below this fraction of it.
 const SMALL_HALF: f64 = 0.25;
 
-/// Beyond this binary logarithm of an angle its rounding alone may be a turn.
+/// Beyond this binary logarithm of an angle its rounding may be a turn.
 const MOST_HALVINGS: f64 = 52.0;
 
 /// Terms of `exp`: for a size of at most 1/2 the next is below 2⁻⁵³ of the sum.
@@ -36,7 +35,7 @@ impl Calculus {
         self.write(&result)
     }
 
-    /// Of balanced components in bit order.
+    /// The exponential of balanced components in bit order.
     pub(super) fn exp_bits(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let (s, mut v) = (m[0], m.to_vec());
         v[0] = 0.0;
@@ -82,8 +81,8 @@ impl Calculus {
     }
 
     /// The half `P F` of a bivector, with the idempotent `P = ½(1 + U/root)`, `root² = U²`, for U of
-    /// grade 4 that commutes with it. In a small half a second P takes out the rounding of the first; the
-    /// halves of a nearly simple one are not small, and must remain F in sum, for U is uncertain.
+    /// grade 4 that commutes with it. Applying P again to a small half removes the rounding of the first. The halves of
+    /// a nearly simple bivector, for which U is uncertain, are not small, and their sum must remain F.
     pub(super) fn half(&self, f: &[f64], unit: &[f64], root: f64) -> Vec<f64> {
         let halve = |f: &[f64]| {
             let mut half = part(&self.product(f, unit), |k| k == 2);
@@ -122,8 +121,8 @@ pub(super) fn unit_of_grade_4(m: &[f64]) -> (Vec<f64>, f64) {
     (if size > 0.0 { scaled(&four, 1.0 / size) } else { four }, size)
 }
 
-/// `e^s cosh √w` and `e^s sinh √w / √w`, given `w / scale²`. For a large root the exponents are added
-/// first: `e^(s ± √w)` may exist where `cosh √w` does not.
+/// `e^s cosh √w` and `e^s sinh √w / √w`, given `w / scale²`. For a large root the exponents are added first:
+/// `e^(s ± √w)` may be finite where `cosh √w` is not.
 fn cosh_sinhc(s: f64, w: f64, scale: f64) -> (f64, f64) {
     let root = w.abs().sqrt() * scale;
     if root == 0.0 {
@@ -138,7 +137,7 @@ fn cosh_sinhc(s: f64, w: f64, scale: f64) -> (f64, f64) {
     }
 }
 
-/// The number of halvings of an argument of this binary logarithm that reach 1/2; an error beyond the precision.
+/// The number of halvings to 1/2 from this binary logarithm; an error beyond the precision.
 fn halvings(log2: f64) -> Result<u32, MathError> {
     if log2.is_nan() || log2 > MOST_HALVINGS {
         return Err(MathError::AngleTooLarge);
@@ -146,7 +145,7 @@ fn halvings(log2: f64) -> Result<u32, MathError> {
     Ok((log2 + 1.0).ceil().max(0.0) as u32)
 }
 
-/// `e^s M`, where `e^s` may be out of range and the product in it.
+/// `e^s M`, also if `e^s` alone is out of range.
 fn times_exp(mut m: Vec<f64>, s: f64) -> Vec<f64> {
     let root = (0.5 * s).exp();
     m.iter_mut().for_each(|x| *x = *x * root * root);

@@ -1,8 +1,7 @@
 //! The inverse: `M X = 1` is a linear system for the components of X.
 //!
-//! In a finite algebra a right inverse is the left one too. Multiplication by X is the inverse map of
-//! multiplication by M, so the condition number of the system is read off once X is known:
-//! `‖M‖ ‖X‖`, with the sum of magnitudes as norm, which bounds both maps.
+//! In a finite algebra a right inverse is also the left one. Multiplication by X inverts multiplication by M, so the
+//! condition number of the system is at most `‖M‖ ‖X‖` with the sum of magnitudes as norm.
 
 use super::{Calculus, clifford_conjugate, grade, reverse, scaled};
 use crate::error::MathError;
@@ -15,7 +14,7 @@ impl Calculus {
     /// `M⁻¹`, with `M M⁻¹ = M⁻¹ M = 1`.
     pub fn inverse(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let mut m = self.read(m)?;
-        // Only what has no null generator can be invertible, and it sets the scale.
+        // The part without null generators decides invertibility and sets the scale.
         let scale = scale_of(&self.without_null(&m));
         m.iter_mut().for_each(|x| *x /= scale);
         // Scaled up, small parts with null generators would count in the condition.
@@ -63,8 +62,7 @@ impl Calculus {
         })
     }
 
-    /// Solves `M X = 1` by elimination with row pivots. The inverse of an even element is even, of an odd
-    /// one odd, which halves the system.
+    /// Solves `M X = 1` by elimination with row pivots, in half the unknowns for an even or odd element.
     fn solve(&self, m: &[f64]) -> Option<Vec<f64>> {
         let holds = |parity: u32| (0..m.len()).any(|b| m[b] != 0.0 && grade(b) % 2 == parity);
         let unknowns: Vec<usize> = match (holds(0), holds(1)) {

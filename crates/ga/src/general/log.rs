@@ -8,12 +8,12 @@
 //! B = F g(C),   g(c) = arcosh c / √(c² − 1) = Σ tⱼ zʲ,   z = (1 − c)/2,   tⱼ/tⱼ₋₁ = 2j/(2j + 1).
 //! ```
 //!
-//! With up to five generators C is `x + yU` (see `pair`), and the halvings take a few numbers. With more they are done in
+//! With up to five generators C is `x + yU` (see `pair`), and the halvings work on a few numbers. With more they work in
 //! the algebra (see `sqrt`).
 //!
-//! The halvings lead to the logarithm whose numbers `x ± y√q` have imaginary parts within ±π. It has no
-//! start where one of those of C is −1 or less: there R turns by a whole turn in some plane, or boosts
-//! besides, and R commutes with a bivector Y of that plane; then `log R = Y + log(R exp(−Y))`.
+//! The halvings lead to the logarithm whose numbers `x ± y√q` have imaginary parts within ±π. They fail if one of those
+//! of C is −1 or less: then R makes a whole turn in some plane, perhaps with a boost, and commutes with a bivector Y of
+//! that plane; `log R = Y + log(R exp(−Y))`.
 //!
 //! Every result is checked: `exp(log R)` must equal R.
 
@@ -25,7 +25,7 @@ use crate::error::MathError;
 use crate::g3::values::{norm, scale_of};
 use std::f64::consts::FRAC_PI_2;
 
-/// The most that the size of a logarithm may loosen its check.
+/// Largest factor by which the size of a logarithm loosens its check.
 const MOST_LENIENT: f64 = 1e3;
 
 /// Tolerances for components rounded to a spacing `epsilon` of numbers at 1.
@@ -36,7 +36,7 @@ pub(super) struct Tolerances {
     /// Largest distance of `R~R` from a number, and of `exp(log R)` from R per unit of `1 + |log R|`: the rounding
     /// of thousands of products.
     pub versor: f64,
-    /// No logarithm is given that is less certain than this, relative to R: half of the digits.
+    /// Largest relative uncertainty of a logarithm: half of the digits.
     pub least_certain: f64,
     /// The value of [`SAME_DIRECTION`] for them.
     pub direction: f64,
@@ -71,13 +71,12 @@ impl Calculus {
     /// The logarithm `ln|M| + B`, B a bivector, of a positive number times an even versor; `exp(log M) = M`.
     /// `log 1 = 0`; `log(−1) = π E` with E the first basis plane of square −1.
     ///
-    /// With up to five generators it is found wherever there is one, as far as rounding lets it be seen:
-    /// with two generators or more of either sign, a large boost may drown the rotation beside it. With
-    /// more generators, where the sum of the angles of B over its planes is below π, and in most other
-    /// cases. Otherwise it is an error.
+    /// With up to five generators it is found if it exists, up to rounding: with two or more generators of either sign,
+    /// a large boost may hide a rotation. With more generators it is found if the angles of B over its planes sum to
+    /// less than π, and in most other cases. Otherwise it is an error.
     ///
-    /// Of parts with null generators that are not a versor's, as of the rounding that is left where larger
-    /// ones cancel, those nearest by are taken: `exp(log M)` is M to `√ε` of its largest part.
+    /// Parts with null generators that are not a versor's, such as rounding left where larger parts cancelled, are
+    /// replaced by the nearest: `exp(log M)` is M to `√ε` of its largest part.
     pub fn log(&self, m: &[f64]) -> Result<Vec<f64>, MathError> {
         let polar = self.polar(&self.read(m)?)?.ok_or(MathError::NoLogarithm)?;
         let mut log = polar.bivector;
@@ -94,10 +93,10 @@ impl Calculus {
         self.write(&root)
     }
 
-    /// Size and bivector of an even versor; none of zero.
+    /// Size and bivector of an even versor; None for zero.
     ///
-    /// Where `M~M = 1` to rounding the size is exactly 1: for a boost by more than 18, `M~M` is the
-    /// difference of numbers too large to tell it. Elsewhere it is such that `size · exp B` is nearest to M.
+    /// If `M~M = 1` to rounding the size is exactly 1, since for a boost above 18 `M~M` is all rounding. Otherwise
+    /// `size · exp B` is nearest to M.
     fn polar(&self, m: &[f64]) -> Result<Option<Polar>, MathError> {
         if m.iter().all(|&x| x == 0.0) {
             return Ok(None);
@@ -128,10 +127,9 @@ impl Calculus {
 
     /// A balanced even versor times a number, or the error that it is not one.
     ///
-    /// Its part without null generators is judged on its own scale. The parts with them may be the rounding
-    /// of larger ones that cancelled, as in `~M M`: balanced, this rounding is as large as any part. So where
-    /// they do not fit, the versor nearest by is taken, if what that changes is within
-    /// `least_certain` of the larger of both parts before they were balanced.
+    /// The part without null generators is checked on its own scale. The parts with them may be rounding of larger ones
+    /// that cancelled, as in `~M M`, which balancing magnifies. If they do not fit, the nearest versor is taken, if the
+    /// change is within `least_certain` of the unbalanced size.
     fn read_versor(&self, m: Vec<f64>, null_factor: f64) -> Result<Vec<f64>, MathError> {
         let deviation = self.deviation(&m);
         if self.null == 0 || deviation <= self.tolerances.rounding {
@@ -162,7 +160,7 @@ impl Calculus {
         if deviation <= self.tolerances.versor { Ok(m) } else { Err(MathError::NotVersor { deviation }) }
     }
 
-    /// The larger of what in `M~M` is not a number and the odd part, relative to `|M|²` and `|M|`.
+    /// The larger of the non-scalar part of `M~M` and the odd part, relative to `|M|²` and `|M|`.
     fn deviation(&self, m: &[f64]) -> f64 {
         let square = self.product(m, &reverse(m));
         let size = norm(m);
@@ -208,8 +206,8 @@ impl Calculus {
         found.ok_or(MathError::NoBivectorLogarithm)
     }
 
-    /// The size of R in units of `exp(log)`; none where R does not lie along it. The rounding of a large R
-    /// leaves `R~R = 1`, the size of R and of its halves, uncertain by `ε|R|²`.
+    /// The size of R in units of `exp(log)`; None if R is not along it. The rounding of a large R makes `R~R = 1`
+    /// uncertain by `ε|R|²`.
     fn size_beside(&self, log: &[f64], r: &[f64]) -> Option<f64> {
         let length = norm(r);
         let (r, exp) = (scaled(r, 1.0 / length), scaled(&self.exp_bits(log).ok()?, 1.0 / length));
@@ -222,7 +220,7 @@ impl Calculus {
         (close && (ratio - 1.0).abs() <= tolerance).then_some(ratio)
     }
 
-    /// The result of the halvings, unchecked; none where they cannot start.
+    /// The result of the halvings, unchecked; None if they fail.
     fn principal_log(&self, r: &[f64]) -> Option<Vec<f64>> {
         if self.generators > 5 {
             return self.log_by_roots(r);
@@ -247,9 +245,9 @@ impl Calculus {
         Some(self.times(&f, &unit, turned.or_else(|| sinh_factor(ring, c))?))
     }
 
-    /// The factor κ with `B = F κ` where a number of C is negative, so that 1 + C would cancel. Of `F = PS`,
-    /// P² = −1, turned back by a quarter, `−R P = S − C P`, S takes the part of C: `B = P(π/2 − C g(S))`. None
-    /// where F does not turn only, or `F²` is rounding.
+    /// The factor κ with `B = F κ` if a number of C is negative, so that 1 + C would cancel. With `F = PS`, P² = −1, a
+    /// quarter turn back `−R P = S − C P` exchanges S and C: `B = P(π/2 − C g(S))`. None if F is not a pure rotation, or
+    /// `F²` is rounding.
     fn turned_factor(&self, ring: Ring, c: Pair, f: &[f64], unit: &[f64]) -> Option<Pair> {
         let square = self.square_in_ring(f, unit);
         if ring.radius(square) <= self.tolerances.rounding * norm(f).powi(2) {
@@ -267,7 +265,7 @@ impl Calculus {
         let square = multiple * self.scalar_product(&f, &f);
         let sinh = square.abs().sqrt() * scale;
         if c > 0.0 {
-            // κ is smooth in F² = 0, so that the sign which rounding gives it does not matter.
+            // κ is smooth at F² = 0, so the sign of a rounded F² does not matter.
             let b = if square < 0.0 { sinh.atan2(c) } else { sinh.asinh() };
             Some(if sinh > 0.0 { b / sinh } else { 1.0 })
         } else {
@@ -276,8 +274,8 @@ impl Calculus {
         }
     }
 
-    /// The unit U along the part Q of grade 4, and `Q = yU`; none where it is rounding, for a simple rotor.
-    /// As `F∧F = 2⟨R⟩Q`, either gives the direction: that with less rounding is taken.
+    /// The unit U along the part Q of grade 4, and `Q = yU`; None if it is rounding, for a simple rotor. The direction is
+    /// that of Q or of `F∧F = 2⟨R⟩Q`, whichever has less rounding.
     fn unit_and_component(&self, r: &[f64], f: &[f64]) -> Option<(Vec<f64>, f64)> {
         let length = norm(f).powi(2);
         let (unit, size, rounding) = if length < r[0].abs() {

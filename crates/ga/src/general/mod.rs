@@ -5,9 +5,8 @@
 //! generators in the bits of `b`. There the product of blades `i` and `j` is the blade `i ^ j`, and one
 //! table of signs is the whole algebra.
 //!
-//! Modules: [`inverse`](Calculus::inverse) solves a linear system, [`exp`](Calculus::exp) and
-//! [`log`](Calculus::log) use that a bivector's square is nearly a number (`pair`), `duals` has the
-//! complements, `subspaces` the blades as subspaces: join and meet.
+//! [`inverse`](Calculus::inverse) solves a linear system; [`exp`](Calculus::exp) and [`log`](Calculus::log) use the
+//! squares of bivectors (`pair`); `duals` has the complements, `subspaces` join and meet.
 
 mod duals;
 pub mod eigen;
@@ -72,7 +71,7 @@ impl Calculus {
     /// The value of `f` at `m`.
     ///
     /// # Panics
-    /// As all methods here: if a row has not 2ⁿ components.
+    /// As all methods here: if a row does not have 2ⁿ components.
     pub fn apply(&self, f: Function, m: &[f64]) -> Result<Vec<f64>, MathError> {
         match f {
             Function::Inverse => self.inverse(m),
@@ -168,9 +167,8 @@ impl Calculus {
         out
     }
 
-    /// Scales the generators of square 0 by a power of two, which is an automorphism: nothing but their
-    /// number in a blade fixes the size of its component. Afterwards the largest component with such a
-    /// generator is about 1, so that far translations do not drown the rotations. Returns the factor.
+    /// Scales the generators of square 0 by a power of two, which is an automorphism, so that the largest component with
+    /// such a generator is about 1 and far translations do not hide rotations. Returns the factor.
     fn balance(&self, m: &mut [f64]) -> f64 {
         // Even a component with all r of them must not leave the range.
         let limit = 900.0 / f64::from(self.null.count_ones().max(1));

@@ -1,11 +1,10 @@
 //! Squares of bivectors as numbers `x + yU`, with U of grade 4 and `U² = q` a number.
 //!
-//! With up to five generators a bivector has `B² = s + W`, W of grade 4, and `W²` is a number: complex
-//! numbers for q < 0, dual ones for q = 0, split ones for q > 0. Every function below is smooth in q, so
-//! rotations, boosts, translations and everything between need no special cases. Only where q is well
-//! above 0 the two numbers are better kept apart: one may be a large boost, the other a rotation.
+//! With up to five generators a bivector has `B² = s + W`, W of grade 4, and `W²` is a number: complex numbers for q < 0,
+//! dual ones for q = 0, split ones for q > 0. All functions are smooth in q, so rotations, boosts and translations need
+//! no special cases. Only well above q = 0 the two numbers are kept apart: one may be a large boost, the other a rotation.
 
-/// From this q on the idempotents `½(1 ± U/√q)` split the ring into two numbers, losing but three bits.
+/// Above this q the idempotents `½(1 ± U/√q)` split the ring into two numbers, losing three bits.
 pub(super) const SPLITS: f64 = 1.0 / 64.0;
 
 /// The ring of the pairs with `U² = q`.
@@ -53,13 +52,13 @@ impl Ring {
         Pair { x: b.x, y: -b.y }.scale(1.0 / determinant / scale)
     }
 
-    /// The root whose numbers `x ± y√q` have positive real part; none where one of those of `a` is on
-    /// the negative axis or 0. With `(u + vU)² = a`: `u² = (x + √(x² − q y²))/2`, `v = y/2u`.
+    /// The root whose numbers `x ± y√q` have positive real part; None if one of those of `a` is 0 or on the negative
+    /// axis. With `(u + vU)² = a`: `u² = (x + √(x² − q y²))/2`, `v = y/2u`.
     pub fn sqrt(self, a: Pair) -> Option<Pair> {
         let scale = self.radius(a);
         let b = a.scale(1.0 / scale);
         let root = (b.x * b.x - self.q * b.y * b.y).sqrt();
-        // For complex ones of negative real part, x + |z| = q y²/(x − |z|) cancels as it stands.
+        // For a negative real part x + |z| = q y²/(x − |z|) avoids cancellation.
         let square = if b.x >= 0.0 { b.x + root } else { self.q * b.y * b.y / (b.x - root) };
         let u = (0.5 * square).sqrt();
         let result = Pair { x: u, y: b.y / (2.0 * u) }.scale(scale.sqrt());

@@ -8,8 +8,8 @@ use crate::g3::values::norm;
 const MOST_STEPS: u32 = 40;
 
 impl Calculus {
-    /// The bivector logarithm of a rotor by the halvings of `log`, with C and F as elements of the algebra;
-    /// none where the principal logarithm is not a bivector.
+    /// The bivector logarithm of a rotor by the halvings of `log`, with C and F as elements of the algebra; None if the
+    /// principal logarithm is not a bivector.
     pub(super) fn log_by_roots(&self, r: &[f64]) -> Option<Vec<f64>> {
         let mut c = r.to_vec();
         add_scaled(&mut c, &reverse(r), 1.0);
@@ -50,7 +50,7 @@ impl Calculus {
     }
 
     /// `√A` and its inverse by the iteration of Denman and Beavers, `Y ← ½(Y + Z⁻¹)`, `Z ← ½(Z + Y⁻¹)`,
-    /// from `Y = A`, `Z = 1`; none where it does not converge, for A with numbers on the negative axis.
+    /// from `Y = A`, `Z = 1`; None if it does not converge, for A with numbers on the negative axis.
     fn root_and_inverse(&self, a: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut y, mut z) = (a.to_vec(), self.scalar(1.0));
         for _ in 0..MOST_STEPS {

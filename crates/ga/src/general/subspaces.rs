@@ -25,11 +25,10 @@ impl Calculus {
 
     /// The meet: the unit blade of the subspace common to both, the scalar 1 where that is zero only.
     ///
-    /// Join J and meet M are oriented together: with `A = A'∧M` and `B = M∧B'`, `J = A'∧M∧B'`. Of the
-    /// two ways left, J has the sign of `A∧B` and `M = 1` where nothing is in common; the signs are those of
-    /// A and B where one contains the other: `J = A`, `M = B` where A contains B, else `J = B`, `M = A`.
-    /// Elsewhere the first of the largest components of J is positive: if together they span the space,
-    /// `J = I` and M has the sign of `A∨B`.
+    /// Join J and meet M are oriented together: with `A = A'∧M` and `B = M∧B'`, `J = A'∧M∧B'`. If nothing is in common,
+    /// `M = 1` and J has the sign of `A∧B`. If A contains B, `J = A` and `M = B`; if B contains A, `J = B` and `M = A`.
+    /// Otherwise the first of the largest components of J is positive: if A and B span the space, `J = I` and M has the
+    /// sign of `A∨B`.
     pub fn meet(&self, a: &[f64], b: &[f64]) -> Result<Vec<f64>, MathError> {
         Ok(self.join_and_meet(a, b)?.1)
     }
@@ -74,8 +73,8 @@ impl Calculus {
 
     /// The subspace of a blade; an error if it is not a blade.
     ///
-    /// The vectors of a blade are its contractions by all blades one grade lower; the k most independent
-    /// of them span it, and the wedge of these is the blade again if it is one.
+    /// Contractions by all blades one grade lower give vectors of the blade; the wedge of the k most independent ones is
+    /// the blade again if it is one.
     fn subspace(&self, m: &[f64]) -> Result<Subspace, MathError> {
         let size = norm(m);
         if size == 0.0 {
@@ -119,7 +118,7 @@ fn extend(base: &[Vec<f64>], candidates: &[Vec<f64>], most: usize, tolerance: f6
     while found.len() < most {
         let residual = |v: &Vec<f64>| {
             let mut v = v.clone();
-            // Twice is enough (Kahan): the second pass takes out the rounding of the first.
+            // The second pass removes the rounding of the first (Kahan: twice is enough).
             for u in base.iter().chain(&found).chain(base).chain(&found) {
                 let along = dot(&v, u);
                 add_scaled(&mut v, u, -along);

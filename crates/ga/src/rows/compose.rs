@@ -32,7 +32,7 @@ impl<const W: usize> Kernel<W> for Compose {
     }
 }
 
-/// The rotors that turn by the second first, row by row: one row of either meets every row of the other.
+/// The products S R, which turn by R first, row by row; a single row is broadcast.
 ///
 /// # Panics
 /// If the numbers of rows do not fit together.

@@ -1,8 +1,7 @@
 //! Curves: functions of one number, such as a time, whose values are two rows of numbers, in lanes.
 //!
-//! A [`Curve`] is written once, as plain arithmetic over `W` arguments without branches, and compiled for the
-//! widest instructions of the machine. One argument is lanes of one: the same bits on every machine and path,
-//! for one argument or many, whichever threads share them.
+//! A [`Curve`] is branch-free arithmetic over `W` arguments, compiled for the widest instructions of the machine. Its
+//! values have the same bits on every machine and path, for any number of arguments and threads.
 
 use crate::simd::map::{BUILT_WITH_FMA, alone};
 use crate::simd::threads::{Threads, for_each};
@@ -10,9 +9,8 @@ use crate::simd::{Kernel, LANES, Lane, Path};
 
 /// A function of one number with rows of `A` and of `B` numbers for values, at most [`MOST`] together.
 pub trait Curve<const A: usize, const B: usize>: Sync {
-    /// Its values for `W` arguments, by components. No branches; `#[inline(always)]` down to the arithmetic,
-    /// so that each path compiles it for its own instructions. With `FMA` a fused product and sum is one
-    /// instruction, but it must not change a result: [`crate::simd::double`] says how.
+    /// Its values for `W` arguments, by components. No branches; `#[inline(always)]` down to the arithmetic, so that each
+    /// path compiles it for its own instructions. `FMA` must not change results: see [`crate::simd::double`].
     fn values<const W: usize, const FMA: bool>(&self, arguments: &[f64; W])
     -> ([[f64; W]; A], [[f64; W]; B]);
 }
@@ -20,7 +18,7 @@ pub trait Curve<const A: usize, const B: usize>: Sync {
 /// Numbers in the two rows of a curve.
 pub const MOST: usize = 8;
 
-/// Arguments from which another thread pays: they take as long as starting it.
+/// Number of arguments from which another thread pays.
 const SHARED: usize = 4096;
 
 /// The value of a curve, the same bits as [`sample`].
@@ -122,7 +120,7 @@ fn side_by_side<const A: usize, const B: usize>(
 struct OnLanes<'a, C, const A: usize, const B: usize>(&'a C);
 
 impl<C: Curve<A, B>, const A: usize, const B: usize> OnLanes<'_, C, A, B> {
-    /// `N` at a time: intermediate results of a curve then stay in registers.
+    /// `N` at a time, so that intermediate results stay in registers.
     #[inline(always)]
     fn lanes<const FMA: bool, const N: usize, const W: usize>(
         &self,

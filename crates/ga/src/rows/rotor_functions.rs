@@ -1,8 +1,8 @@
 //! Functions of rotors over many rows: exp, log and powers.
 //!
-//! The formulas are those of [`crate::Rotor`]. Double-double numbers (`simd::double`) keep what rounding
-//! loses, and where these do not suffice, integers (`simd::payne_hanek`). The steps
-//! of a formula are loops of their own: processors overlap short chains of operations, not long ones.
+//! The formulas are those of [`crate::Rotor`] in double-double arithmetic (`simd::double`), or in integers
+//! (`simd::payne_hanek`) where that is not accurate enough. Each step of a formula is a loop of its own, because
+//! processors overlap only short chains of operations.
 
 use crate::g3::values::scale_of;
 use crate::simd::double::{Size, Tangent, common_reciprocal, divide, quarter_turns, sin_cos};
@@ -19,8 +19,8 @@ pub(crate) struct Exp;
 impl Map<3, 0, 4> for Exp {
     #[inline(always)]
     fn short<const W: usize, const FMA: bool>(b: [&[f64; W]; 3], _: [&[f64; W]; 0]) -> [[f64; W]; 4] {
-        /// `r` is known to 2⁻¹⁰² |B|, which must be nothing to it. Asking for so much of |B|² leaves the long
-        /// way all from |B| = 10⁶ on, too.
+        /// `r` has an error of 2⁻¹⁰² |B|, which must be negligible. Compared with |B|² this also selects the long
+        /// method from |B| = 10⁶ on.
         const KEPT: f64 = 1.0 / (1u64 << 40) as f64;
         let [mut hi, mut lo, mut reciprocal, mut r, mut rest, mut sin] = [[0.0; W]; 6];
         for l in 0..W {
@@ -68,8 +68,8 @@ pub(crate) struct Log;
 impl Map<4, 0, 3> for Log {
     #[inline(always)]
     fn short<const W: usize, const FMA: bool>(c: [&[f64; W]; 4], _: [&[f64; W]; 0]) -> [[f64; W]; 3] {
-        /// Between these squares and their rounding errors are exact. A rotor is beyond them only if it is
-        /// −1 but for a tiny bivector.
+        /// Between these bounds rounding errors of squares are exact. Only rotors that are −1 up to a tiny bivector are
+        /// outside.
         const LEAST: f64 = 1e-100;
         const MOST: f64 = 1e100;
         let [s, x, y, z] = c;
@@ -150,7 +150,7 @@ impl Map<4, 1, 4> for Power {
     }
 }
 
-/// Sine and cosine of a finite angle, the sine as `hi + lo`; NaN where the short way knows too little.
+/// Sine and cosine of a finite angle, the sine as `hi + lo`; NaN if the short method is not accurate enough.
 #[inline(always)]
 fn circular<const FMA: bool>(x: f64) -> ((f64, f64), f64) {
     /// As for [`Exp`].
@@ -167,7 +167,7 @@ fn circular_long(x: f64) -> ((f64, f64), f64) {
     odd(x, sin_cos::<BUILT_WITH_FMA>(k, r, rest))
 }
 
-/// The sine has the sign of the angle, too.
+/// Gives the sine the sign of the angle.
 #[inline(always)]
 fn odd(x: f64, ((sin, rest), cos): ((f64, f64), f64)) -> ((f64, f64), f64) {
     let sign = 1f64.copysign(x);
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_bad_row_is_named() {
+    fn the_first_bad_row_is_reported() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for at in 0..4 {
                 for row in [0, 3, 69, 130] {
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn powers_turn_so_many_times_as_far() {
+    fn powers_multiply_the_angle() {
         let r = exp_one([0.3, -0.2, 0.5]);
         let mut out = [0.0; 12];
         power(Threads::ONE, &r, &[0.0, 1.0, -3.0], &mut out).unwrap();

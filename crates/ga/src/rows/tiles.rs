@@ -7,10 +7,9 @@
 //! l1 h1 l2 h2 = (−1)^(|h1| |l2|) (l1 l2) (h1 h2)
 //! ```
 //!
-//! for `l2` passes `h1` to the left, and any two different generators anticommute. So the products of a
-//! coset by a coset fall into one coset, and are, but for signs, the 8 × 8 products of the first three
-//! generators: a tile, written out here once. The signs are one of `h1 h2` for all of it, and one more for
-//! odd `l2` if `h1` is odd. The rest of an algebra is a short list of pairs of cosets.
+//! since `l2` passes `h1` and different generators anticommute. So a coset times a coset is a coset, with up to signs
+//! the 8 × 8 products of the first three generators: a tile, written once. The signs are that of `h1 h2`, and one more
+//! for odd `l2` if `h1` is odd. An algebra is then a short list of pairs of cosets.
 //!
 //! Generators of square +1 come first, those of square 0 last: with at least three that do not square to 0,
 //! the first three square to +1 or −1, and no product in a tile vanishes.
@@ -148,7 +147,7 @@ fn tile<const P: usize, const FUSED: bool, const W: usize>(
 }
 
 impl ByRow for Tiles {
-    /// Always by blocks, which round as no other way does.
+    /// Always by blocks, whose rounding differs from rows.
     const FEW: usize = 0;
 
     fn row(&self, _: &[f64], _: &[f64], _: &mut [f64]) {

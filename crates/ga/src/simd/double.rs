@@ -2,10 +2,9 @@
 //!
 //! There are no branches, so loops over lanes are vectorised.
 //!
-//! A rounding error of a product is itself a number (T. J. Dekker, *A floating-point technique for
-//! extending the available precision*, Numer. Math. 18, 1971). Machines with fused multiply-add find it
-//! in one instruction (`FMA`), others by splitting the factors: the same number bit for bit. Nothing
-//! else here is fused, so that every machine gives the same results.
+//! The rounding error of a product is a float (T. J. Dekker, *A floating-point technique for extending the available
+//! precision*, Numer. Math. 18, 1971), computed by fused multiply-add (`FMA`) or by splitting the factors, with the same
+//! bits. Nothing else here is fused, so that every machine gives the same results.
 
 /// `a + b` and its rounding error (Knuth).
 #[inline(always)]
@@ -44,8 +43,7 @@ fn exact_product_plus<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FMA { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// `c − a b` rounded once, for `a b` so near to c that without its own rounding error it leaves an exact
-/// difference.
+/// `c − a b` rounded once, for rounded `a b` so near to c that their difference is exact.
 #[inline(always)]
 fn remainder<const FMA: bool>(c: f64, a: f64, b: f64) -> f64 {
     if FMA {
@@ -163,9 +161,8 @@ pub fn sin_cos<const FMA: bool>(k: u64, r: f64, rest: f64) -> ((f64, f64), f64) 
     ((flip(sin.0, minus_sin), flip(sin.1, minus_sin)), flip(cos.0 + cos.1, minus_cos))
 }
 
-/// Whether the point `(c, size)` lies below 67.5°, and above 22.5°. To leave at most 22.5° either way it is
-/// turned back by 0 where it is only below, by 90° where it is only above, and else by 45°:
-/// `(c, size)` becomes `(below c + above size, below size − above c)`, up to a factor.
+/// Whether the point `(c, size)` lies below 67.5°, and above 22.5°. Turned back by 0 if only below, by 90° if only above,
+/// else by 45°, it is within ±22.5°: `(c, size)` becomes `(below c + above size, below size − above c)` up to a factor.
 #[inline(always)]
 fn turned_back(size: f64, c: f64) -> (bool, bool) {
     const TAN_22_5: f64 = 0.414_213_562_373_095_03;
@@ -180,8 +177,7 @@ pub(crate) fn common_reciprocal(size: f64, s: f64) -> f64 {
     1.0 / (size * (only(above, size) + only(below, c)))
 }
 
-/// The angle in [0, π/2] of the point `(|s|, size)`, not both 0, to some roundings of it: [`Tangent::angle`] without the
-/// second numbers.
+/// The angle in [0, π/2] of the point `(|s|, size)`, not both 0, to a few roundings: [`Tangent::angle`] in single floats.
 #[inline(always)]
 pub(crate) fn angle(size: f64, s: f64) -> f64 {
     let c = s.abs();
@@ -193,12 +189,12 @@ pub(crate) fn angle(size: f64, s: f64) -> f64 {
     eighths * std::f64::consts::FRAC_PI_4 + (tangent.u + tangent.excess())
 }
 
-/// A quotient `u + rest` whose arc tangent is at most 22.5°, and how it makes up an angle.
+/// A quotient `u + rest` whose arc tangent is at most 22.5°, and the eighths of a turn to add.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tangent {
     pub u: f64,
     pub rest: f64,
-    /// By how many eighths of a turn it was turned back.
+    /// Eighths of a turn by which it was turned back.
     pub eighths: f64,
 }
 

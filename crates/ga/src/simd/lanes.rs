@@ -1,10 +1,8 @@
-//! Some numbers worked on together, one in each lane: the arithmetic of many bodies side by side.
+//! SIMD arithmetic of many bodies, one number in each lane.
 //!
-//! All is plain loops over lanes, which the compiler turns into the widest instructions where it may: inside
-//! [`fastest`]. `FUSED` says whether a product and a sum are one instruction, rounded once; then results differ from
-//! those of one lane alone, which is not fused, by roundings. Lanes never depend on each other.
-//!
-//! Closures do not inherit the instructions of the function around them, so that arithmetic is written in loops.
+//! Plain loops over lanes, which the compiler vectorises inside [`fastest`]. With `FUSED` a product and a sum are one
+//! instruction, rounded once, so results differ by roundings from those of a single lane, which is not fused. Lanes are
+//! independent of each other. Closures do not inherit the target features of their function, so arithmetic is in loops.
 
 use super::Path;
 use super::double;
@@ -17,16 +15,16 @@ pub struct Lanes<const W: usize, const FUSED: bool>(pub [f64; W]);
 /// One number, as of a single body.
 pub type One = Lanes<1, false>;
 
-/// Work that is compiled for each set of instructions and done by the best one that this machine has.
+/// Work compiled for each instruction set and run with the best one of the machine.
 pub trait Work {
     /// Its result.
     type Output;
 
-    /// Does it. `#[inline(always)]`, as is all arithmetic that it calls; `FUSED` for [`Lanes`].
+    /// Runs it. `#[inline(always)]`, like all arithmetic that it calls; `FUSED` for [`Lanes`].
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
-/// Does the work by the widest instructions of this machine.
+/// Runs the work with the widest instructions of this machine.
 pub fn fastest<T: Work>(work: T) -> T::Output {
     Path::best().run(work)
 }
@@ -82,8 +80,7 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
         result
     }
 
-    /// The angle in [0, π/2] whose tangent is `self/|s|`, for `self >= 0` and not both 0: to some roundings of it, however
-    /// small.
+    /// The angle in [0, π/2] whose tangent is `self/|s|`, for `self >= 0` and not both 0, to a few relative roundings.
     #[inline(always)]
     pub fn angle(self, s: Self) -> Self {
         let mut result = self;
@@ -115,7 +112,7 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
 }
 
 impl One {
-    /// Some numbers, each a lane of its own.
+    /// Each number as a single lane.
     #[inline(always)]
     pub fn each<const N: usize>(numbers: [f64; N]) -> [One; N] {
         numbers.map(|x| Lanes([x]))
@@ -222,7 +219,7 @@ pub fn mapped<const W: usize, const F: bool>(
     [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
 }
 
-/// The transpose of a matrix times a vector: what a rotation does backwards.
+/// The transpose of a matrix times a vector: the inverse of a rotation.
 #[inline(always)]
 pub fn mapped_back<const W: usize, const F: bool>(
     m: &[[Lanes<W, F>; 3]; 3],
@@ -270,7 +267,7 @@ mod tests {
 
     /// On every path they are those of the typed values, to a few roundings.
     #[test]
-    fn products_are_those_of_single_values() {
+    fn products_match_single_values() {
         let [s, r] = rotors().map(Rotor::from_unit_components);
         let [a, b] = VECTORS.map(Vector);
         let mut expected = (s * r).components().to_vec();
@@ -291,7 +288,7 @@ mod tests {
 
     /// On every path within 2 ulps of the library's, from no angle to a quarter turn, and none for NaN.
     #[test]
-    fn angles_are_those_of_the_library() {
+    fn angles_match_the_standard_library() {
         #[derive(Clone, Copy)]
         struct Angles([f64; 16], [f64; 16]);
 

@@ -1,21 +1,20 @@
 //! A function of a row as a kernel over rows.
 //!
-//! Nearly every row is computed by arithmetic without branches, for many rows at once. It says by NaN
-//! where it knows too little, and such rows are computed again, one by one, the long way. A single row
-//! is lanes of one: the same bits on every machine and path, for one row or many.
+//! Branch-free arithmetic computes many rows at once. NaN marks rows that need the long method, which computes them one
+//! by one. The bits are the same on every machine and path, for one row or many.
 
 use super::threads::Threads;
 use super::traverse::sweep;
 use super::{ByRow, Element, Kernel, LANES, Lane, Path};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether every machine of this build fuses. If not, the lanes of some still do.
+/// Whether every machine of this build has fused multiply-add.
 pub(crate) const BUILT_WITH_FMA: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 /// A function of a row of `A` numbers and one of `B`.
 pub(crate) trait Map<const A: usize, const B: usize, const OUT: usize>: Sync {
-    /// Its values for `W` rows, given by components; the first number is NaN where the row needs the long
-    /// way. No branches.
+    /// Its values for `W` rows, given by components; the first number is NaN if the row needs the long method. No
+    /// branches.
     fn short<const W: usize, const FMA: bool>(a: [&[f64; W]; A], b: [&[f64; W]; B]) -> [[f64; W]; OUT];
 
     /// Its value for any finite row.
@@ -59,7 +58,7 @@ impl<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize> Mapped
         value
     }
 
-    /// Rows `N` at a time: intermediate results of a map then stay in registers.
+    /// Rows `N` at a time, so that intermediate results stay in registers.
     #[inline(always)]
     fn lanes<const FMA: bool, const N: usize, const W: usize>(
         &self,
@@ -141,7 +140,7 @@ pub(crate) fn block<M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT
     !kernel.failed.into_inner()
 }
 
-/// Sweeps a map over rows; the first row that has no value, if there is one.
+/// Sweeps a map over rows. Fails with the first row that has no value.
 pub(crate) fn run<T: Element, M: Map<A, B, OUT>, const A: usize, const B: usize, const OUT: usize>(
     map: M,
     (path, threads): (Path, Threads),

@@ -1,11 +1,9 @@
-//! Lanes: rows of numbers turned so that each component is contiguous, and the widest instructions of
-//! the machine to work on them.
+//! Lanes: rows of numbers transposed so that each component is contiguous, and kernels over them.
 //!
-//! The arithmetic of a `Kernel` is plain loops over lanes, compiled once for each `Path`. None fuses
-//! a product with a sum unless a kernel asks for it (see `Kernel::fused_block`), so all give the same
-//! numbers bit for bit, on any machine; only that of large algebras asks where it changes the result: the
-//! portable path rounds once more at each term. Only the turning of rows into lanes and back is written by
-//! hand, because compilers do it badly.
+//! The arithmetic of a `Kernel` is plain loops over lanes, compiled once for each `Path`. Products and sums are fused only
+//! if a kernel asks for it (see `Kernel::fused_block`), so all paths give the same bits on any machine, except for
+//! products of large algebras, where the portable path rounds once more at each term. Only the transposition of rows into
+//! lanes and back is written by hand, because compilers do it badly.
 //!
 //! This module holds all the unsafe code of the crate.
 #![allow(unsafe_code)]
@@ -55,11 +53,10 @@ impl<const W: usize> Lane<W> {
         Lane([x; W])
     }
 
-    /// Room for as many numbers as the lanes hold.
+    /// The lanes as a flat slice of numbers.
     pub fn flat<T: Element>(lanes: &mut [Lane<W>]) -> &mut [T] {
         let count = lanes.len() * W;
-        // SAFETY: a lane is an array of `W` numbers and nothing else; a `T` is no larger, and any bits
-        // are one.
+        // SAFETY: a lane is an array of `W` numbers; a `T` is not larger, and any bits are valid.
         unsafe { std::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), count) }
     }
 }
@@ -85,7 +82,7 @@ impl Element for f32 {
 
 /// A function of two rows, one by one: the numbers that it gives as a [`Kernel`].
 pub(crate) trait ByRow: Sync {
-    /// Whether rows are so fast one by one that lanes pay only where they are made by hand.
+    /// Whether single rows are so fast that lanes pay only with hand-written transposes.
     const FAST_ROWS: bool = false;
 
     /// Below this number of rows, transposing them into lanes does not pay.
@@ -101,8 +98,7 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     /// compiles them for its own instructions.
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]);
 
-    /// The same where `mul_add` is one instruction; elsewhere it is a call, a hundred times slower. For sums
-    /// of many terms, and for kernels that find by it what they find otherwise in more steps: the rounding
+    /// The same if `mul_add` is one instruction; otherwise it is a slow call. For sums of many terms, and for rounding
     /// errors of products.
     #[cfg_attr(target_family = "wasm", allow(dead_code))] // which has no such instruction
     #[inline(always)]
@@ -143,8 +139,8 @@ impl<const N: usize> Kernel<8> for Chains<N> {
     }
 }
 
-/// For measuring what a machine can do at most: does independent multiply-adds in registers, and says how
-/// many. Few enough chains fit the registers of AVX2, many enough hide the latency of AVX-512.
+/// Measures peak throughput: runs independent multiply-adds in registers and returns their number. 48 chains fit the
+/// registers of AVX2, 96 hide the latency of AVX-512.
 #[doc(hidden)]
 pub fn multiply_adds(many: bool) -> usize {
     fn run<const N: usize>() -> usize {
@@ -195,7 +191,7 @@ impl Path {
         Path::available().next_back().unwrap_or(Path(Level::Portable))
     }
 
-    /// Whether rows are turned into lanes by hand.
+    /// Whether this is the portable path, without hand-written transposes.
     pub fn is_portable(self) -> bool {
         self.0 == Level::Portable
     }
@@ -249,8 +245,7 @@ impl Path {
         }
     }
 
-    /// Turns at most `W` rows of `lanes.len()` numbers into lanes. Places beyond the rows keep what
-    /// they held.
+    /// Transposes at most `W` rows of `lanes.len()` numbers into lanes; places beyond the rows are unchanged.
     pub fn gather<T: Element, const W: usize>(self, rows: &[T], lanes: &mut [Lane<W>]) {
         assert!(!lanes.is_empty() && rows.len() <= lanes.len() * W);
         let done = match self.0 {
@@ -305,8 +300,8 @@ impl Path {
         }
     }
 
-    /// Copies whole cache lines past the caches, where the path can: faster for what would be driven out
-    /// of them before it is read. [`Path::fence`] completes it.
+    /// Copies whole cache lines past the caches if the path can, faster for data that would be evicted before it is read.
+    /// [`Path::fence`] completes it.
     pub fn stream<T: Element>(self, from: &[T], to: &mut [T]) {
         assert!(from.len() == to.len() && to.len().is_multiple_of(in_line::<T>()) && to_next_line(to) == 0);
         match self.0 {
@@ -366,7 +361,7 @@ mod tests {
 
     /// Numbers of rows around the widths of the registers, and every number of components.
     #[test]
-    fn lanes_hold_the_rows_and_give_them_back() {
+    fn gather_and_scatter_round_trip() {
         round_trip::<f64, 64>();
         round_trip::<f32, 64>();
         round_trip::<f64, 8>();

@@ -1,11 +1,11 @@
 //! Reduction of the angle of any bivector modulo quarter turns, beyond double-double precision.
 //!
-//! It is needed where the angle is huge, or so near to a multiple of π/2 that nearly all of it cancels.
+//! Needed if the angle is huge, or so near to a multiple of π/2 that nearly all of it cancels.
 //!
-//! Whole numbers do not round. `N = |B|²` is counted in units of 2⁻⁵¹², its root `R` in units of 2⁻²⁵⁶,
-//! and `R` is multiplied by the digits of 2/π that matter (M. Payne and R. Hanek, *Radian reduction for
-//! trigonometric functions*, SIGNUM Newsletter 18, 1983). Triples of binary64 numbers are fewer than 2¹⁹²,
-//! so that none is expected nearer to a multiple of π/2 than 2⁻¹⁹²; that leaves 64 bits of what remains.
+//! Integers are exact: `N = |B|²` in units of 2⁻⁵¹², its root `R` in units of 2⁻²⁵⁶, multiplied by the digits of 2/π that
+//! matter (M. Payne and R. Hanek, *Radian reduction for trigonometric functions*, SIGNUM Newsletter 18, 1983). There are
+//! fewer than 2¹⁹² triples of binary64 numbers, so none is expected nearer to a multiple of π/2 than 2⁻¹⁹², which leaves
+//! 64 bits of the remainder.
 
 use super::double::{quick_two_sum, two_product};
 
@@ -103,8 +103,8 @@ pub(crate) fn quarter_turns(components: [f64; 3]) -> (u64, f64, f64) {
 
 /// The root of N, whose remainder is left in its place.
 ///
-/// With `h` the leading digits of the root, `δ = ρ/2h` of the remainder `ρ = N − R²` is what R lacks to 50
-/// bits; then `ρ − 2Rδ − δ²` remains.
+/// With the leading digits `h` of the root and the remainder `ρ = N − R²`, `δ = ρ/2h` corrects R to 50 bits and leaves
+/// `ρ − 2Rδ − δ²`.
 fn root(square: &mut [u64], limbs: usize) -> [u64; ROOT] {
     /// Bits of δ behind the point of a quotient of leading digits.
     const BITS: i32 = 20;

@@ -1,8 +1,8 @@
 //! Conversion between rows and lanes by square transposes, for instruction sets of any width.
 
-/// Rows to lanes and back by square transposes of `$n` rows by `$n` columns. The last square of a long
-/// row overlaps the one before. A short row is read, or written, with the beginning of the next one,
-/// whose own numbers are written later; so a group is done only if that next one is there.
+/// Rows to lanes and back by square transposes of `$n` rows by `$n` columns. The last square of a long row overlaps the
+/// previous one. A short row is read or written with the beginning of the next one, which is overwritten later; so a
+/// group is processed only if the next row exists.
 macro_rules! squares {
     ($feature:tt, $n:literal, $zero:ident, $load:ident, $store:ident, $transpose:ident, $gather:ident, $scatter:ident) => {
         /// # Safety

@@ -29,8 +29,8 @@ impl Threads {
         self.0
     }
 
-    /// Splits rows into one contiguous range for each thread, though none of fewer than `least` rows. To
-    /// start a thread takes some 30 µs, and a range should take longer.
+    /// Splits rows into one contiguous range for each thread, of at least `least` rows. Starting a thread takes some
+    /// 30 µs; a range should take longer.
     pub fn ranges(self, rows: usize, least: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
         let count = self.0.min(rows / least.max(1)).max(1);
         (0..count).map(move |i| i * rows / count..(i + 1) * rows / count)

@@ -1,8 +1,7 @@
 //! Application of kernels to rows of numbers.
 //!
-//! Values lie row by row, `(rows, components)`. A block of rows is turned into lanes, each component
-//! contiguous; the kernel works on the lanes; the block is turned back. Beyond the caches memory
-//! is the bottleneck: rows are prefetched, and results bypass the caches.
+//! Values are stored row by row, `(rows, components)`. A block of rows is transposed into lanes, the kernel works on the
+//! lanes, and the result is transposed back. Data beyond the caches is prefetched, and results bypass the caches.
 
 use super::threads::Threads;
 use super::{ByRow, Element, Kernel, Lane, Path, in_line, to_next_line};
@@ -11,7 +10,7 @@ use std::ops::{ControlFlow, Range};
 /// From this many bytes on, factors and product together, the product bypasses the caches.
 pub(crate) const STREAMED: usize = 16 << 20;
 
-/// Numbers per thread from which another thread pays; they take three times as long as starting it.
+/// Numbers per thread from which another thread pays.
 pub(crate) const SHARED: usize = 1 << 19;
 
 /// Whether factors and product together exceed the caches.
@@ -45,7 +44,7 @@ impl<'a, T: Element> Factor<'a, T> {
         if self.one { self.data } else { &self.data[first * self.size..(first + count) * self.size] }
     }
 
-    /// Fills the lanes from rows, or once and for all, at the first block, from the one row.
+    /// Fills the lanes from rows, or at the first block from the single row.
     pub fn load<const W: usize>(&self, path: Path, first: usize, count: usize, lanes: &mut [Lane<W>]) {
         if !self.one {
             path.gather(self.rows(first, count), lanes);
@@ -72,8 +71,8 @@ impl<'a, T> Target<'a, T> {
     }
 }
 
-/// Rows written one block after the other past the caches, where only whole cache lines are fast. What
-/// does not fill a line waits in the buffer for the next block.
+/// Rows written block by block past the caches, in whole cache lines. The rest of a line stays in the buffer until the
+/// next block.
 struct Stream<'a, T, const W: usize> {
     path: Path,
     out: &'a mut [T],
@@ -93,7 +92,7 @@ impl<'a, T: Element, const W: usize> Stream<'a, T, W> {
         let filled = self.waiting + count * lanes.len();
         self.path.scatter(lanes, &mut buffer[self.waiting..filled]);
         let out = &mut self.out[self.written..self.written + filled];
-        // Before the first line, and in it only.
+        // Numbers before the first whole line.
         let head = to_next_line(out).min(filled);
         let tail = (filled - head) % in_line::<T>();
         out[..head].copy_from_slice(&buffer[..head]);
@@ -110,8 +109,7 @@ impl<'a, T: Element, const W: usize> Stream<'a, T, W> {
     }
 }
 
-/// Does `work` for each block of rows, given its first row, their number and the lanes, and writes what
-/// the lanes then hold to the targets.
+/// Calls `work` for each block with its first row, number of rows and lanes, and writes the lanes to the targets.
 pub(crate) fn by_blocks<T: Element, const W: usize>(
     (path, streamed): (Path, bool),
     total: usize,

@@ -25,8 +25,7 @@ pub(super) fn apply_avx512<const W: usize, K: Kernel<W>>(
     kernel.fused_block(a, b, out);
 }
 
-/// A cache line. A function that holds one has all its memory aligned to cache lines; else registers that are put aside
-/// may lie across two.
+/// A cache line. A local one aligns the stack frame to cache lines, so that no spilled register spans two.
 #[derive(Default)]
 #[repr(align(64))]
 struct Line {
@@ -245,9 +244,9 @@ unsafe fn scatter_few<T: Element, const W: usize, const SIZE: usize>(
     whole * 8
 }
 
-/// Indices that pick each register of a result from `SIZE` registers, taken in one by one: of the
-/// permute that takes in the source `s`, index `i` is `8 + at` where number `i` of the result is number
-/// `at` of `s`, and keeps what is there otherwise. The first permute takes in the sources 0 and 1.
+/// Indices of the permutes that pick each result register from `SIZE` sources, one source at a time. For source `s`,
+/// index `i` is `8 + at` if number `i` of the result is number `at` of `s`, and otherwise keeps the number. The first
+/// permute combines sources 0 and 1.
 type Indices<const SIZE: usize> = [[[i64; 8]; SIZE]; SIZE];
 
 struct Picks<const SIZE: usize>;

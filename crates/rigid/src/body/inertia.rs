@@ -20,8 +20,7 @@ use polhode_ga::general::eigen::symmetric_eigen;
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
 
-/// Tolerance of relations between moments, relative to the largest: a matrix from a sum or product of matrices is
-/// rounded a few dozen times before its moments are computed.
+/// Tolerance of relations between moments, relative to the largest: a few dozen roundings of sums of matrices.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A moment of a full matrix below this fraction of the largest is rounding of its entries.
@@ -43,8 +42,8 @@ impl Inertia {
         Ok(Inertia { matrix, moments, frame: Rotor::IDENTITY })
     }
 
-    /// The map with this matrix on bivector components. The principal moments come out ascending; of the
-    /// rotors to the principal axes, which may point either way, the one nearest to 1 is taken.
+    /// The map with this matrix on bivector components. The principal moments ascend; the frame is the rotor nearest
+    /// to 1 among those to the principal axes, which may point either way.
     pub fn from_matrix(m: [[f64; 3]; 3]) -> Result<Inertia, BodyError> {
         let inertia = Inertia::from_symmetric(checked_symmetric(m)?)?;
         check_moments(inertia.moments)?;
@@ -89,8 +88,8 @@ impl Inertia {
         Ok(Inertia::from_principal_moments([b + c, c + a, a + b])?.rotated(axes))
     }
 
-    /// The second moments `∫x_k² dm`, and the axes: along the body axes where these are principal, up to rounding, and
-    /// otherwise along the principal axes, with the rotor that takes them to body axes.
+    /// The second moments `∫x_k² dm` along the body axes if these are principal up to rounding; otherwise along the
+    /// principal axes, with the rotor that takes them to body axes.
     pub fn second_moments(&self) -> ([f64; 3], Option<Rotor>) {
         let m = &self.matrix;
         let largest = self.moments.into_iter().fold(0.0, f64::max);
@@ -105,8 +104,7 @@ impl Inertia {
         Bivector(from_fn(|i| (0..3).map(|j| self.matrix[i][j] * b.0[j]).sum()))
     }
 
-    /// The angular velocity with the angular momentum `l`: in the principal frame, a division by the
-    /// moments. An error for a thin rod, which has no momentum about its axis.
+    /// The angular velocity for the angular momentum `l`. An error for a thin rod, which has no moment about its axis.
     pub fn inverse(&self, l: Bivector) -> Result<Bivector, BodyError> {
         if let Some(k) = self.moments.iter().position(|&i| i == 0.0) {
             let mut axis = Vector::default();
@@ -132,7 +130,7 @@ impl Inertia {
         self.frame
     }
 
-    /// The map of the turned body, `B ↦ R I(~R B R) ~R`. The moments stay, the frame turns.
+    /// The map of the turned body, `B ↦ R I(~R B R) ~R`: the same moments in a turned frame.
     pub fn rotated(&self, rotor: Rotor) -> Inertia {
         let r = rotor.to_matrix();
         let rows: [[f64; 3]; 3] = from_fn(|i| self.apply(Bivector(r[i])).0);
@@ -143,12 +141,12 @@ impl Inertia {
     }
 }
 
-/// Any axes are principal axes of a sphere: the body's own, to which nothing has to be turned, and rounded.
+/// Whether any axes are principal axes; the body's own then avoid a rounded rotation.
 fn is_sphere([a, b, c]: [f64; 3]) -> bool {
     equal(a, b) && equal(b, c) && equal(a, c)
 }
 
-/// Finite, none negative, none larger than the sum of the other two, up to rounding.
+/// Checks that the moments are finite, not negative, and at most the sum of the other two, up to rounding.
 fn check_moments(moments: [f64; 3]) -> Result<(), BodyError> {
     if let Some(k) = moments.iter().position(|i| !i.is_finite()) {
         return Err(BodyError::NotFinite { what: format!("the moment i{}", k + 1), value: moments[k] });
@@ -165,7 +163,7 @@ fn check_moments(moments: [f64; 3]) -> Result<(), BodyError> {
     Ok(())
 }
 
-/// The matrix with its two halves averaged, if they agree up to rounding.
+/// The symmetric part of the matrix, if it is symmetric up to rounding.
 fn checked_symmetric(m: [[f64; 3]; 3]) -> Result<[[f64; 3]; 3], BodyError> {
     for i in 0..3 {
         for j in 0..3 {
@@ -189,10 +187,10 @@ fn checked_symmetric(m: [[f64; 3]; 3]) -> Result<[[f64; 3]; 3], BodyError> {
     Ok(from_fn(|i| from_fn(|j| 0.5 * m[i][j] + 0.5 * m[j][i])))
 }
 
-/// The rotor from the basis to the axes, each taken either way so that its scalar part is largest.
+/// The rotor from the basis to the axes, with the directions of the axes chosen so that its scalar part is largest.
 ///
-/// Two axes reversed are a half turn about the third, and `F e1e2` has the scalar part `−F_{e1e2}`: the
-/// four choices bring each component of `F` into the scalar place. On equal ones the first is taken.
+/// Reversing two axes is a half turn about the third, and `F e1e2` has the scalar part `−F_{e1e2}`: the four choices
+/// make each component of `F` the scalar part. Ties take the first.
 fn nearest_frame(mut axes: [[f64; 3]; 3]) -> Rotor {
     if Vector(axes[0]).cross(Vector(axes[1])).dot(Vector(axes[2])) < 0.0 {
         axes[2] = axes[2].map(|x| -x);
@@ -206,7 +204,6 @@ fn nearest_frame(mut axes: [[f64; 3]; 3]) -> Rotor {
     let place = components.iter().position(|x| x.abs() >= tied).unwrap_or(0);
     let nearest = match place {
         0 => frame,
-        // A half turn's rotor is its plane.
         k => frame * half_turn(k - 1),
     };
     if nearest.components()[0] < 0.0 { -nearest } else { nearest }
@@ -219,14 +216,14 @@ fn half_turn(k: usize) -> Rotor {
     Rotor::from_components(components).unwrap_or(Rotor::IDENTITY)
 }
 
-/// Two moments equal to this relative accuracy are equal: the rounding of a matrix brought to its axes.
+/// Relative tolerance of equal moments: the rounding of a diagonalised matrix.
 const SAME_MOMENT: f64 = 8.0 * f64::EPSILON;
 
 pub(crate) fn equal(x: f64, y: f64) -> bool {
     (x - y).abs() <= SAME_MOMENT * x.abs().max(y.abs())
 }
 
-/// By what part of them two positive moments differ.
+/// Relative difference of two positive moments.
 pub(crate) fn apart(x: f64, y: f64) -> f64 {
     if x == y { 0.0 } else { (x - y).abs() / x.max(y) }
 }

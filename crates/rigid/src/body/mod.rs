@@ -1,8 +1,7 @@
 //! Bodies: mass, centre of mass and inertia.
 //!
-//! All that the motion of a rigid body needs of its shape is the mass, the centre of mass and the inertia
-//! map about it (handout eq. 4.15, 4.18). Moving the point from the centre of mass by `d` adds the
-//! inertia of the whole mass at distance `d`, the theorem of parallel axes:
+//! The motion of a rigid body depends on its shape only through the mass, the centre of mass and the inertia map about
+//! it (handout eq. 4.15, 4.18). About a point at `d` from the centre of mass (parallel axis theorem)
 //!
 //! ```text
 //! I_P(B) = I(B) + m d∧(d·B).
@@ -19,9 +18,9 @@ use inertia::Inertia;
 use polhode_ga::{Rotor, Vector};
 use std::array::from_fn;
 
-/// Largest angle in rad between a weight's moment and the centre of mass that counts as rounding of typed numbers.
+/// Largest angle in rad between a weight's moment and the centre of mass that counts as rounding.
 const ALIGNED: f64 = 1e-6;
-/// Larger accelerations in m/s² are those of a centre of mass that lies at the fixed point but for rounding.
+/// Larger accelerations in m/s² mean that the centre of mass is at the fixed point up to rounding.
 const LARGEST_ACCELERATION: f64 = 1e6;
 
 /// A rigid body: mass in kg, centre of mass in m, inertia about the centre of mass in kg m², all in body
@@ -30,7 +29,7 @@ const LARGEST_ACCELERATION: f64 = 1e6;
 pub struct Body {
     /// Mass, positive.
     pub mass: f64,
-    /// Where the centre of mass is in body axes.
+    /// Centre of mass in body axes.
     pub center_of_mass: Vector,
     /// The inertia map about the centre of mass.
     pub inertia: Inertia,
@@ -60,7 +59,7 @@ impl Body {
     pub fn from_points(masses: &[f64], positions: &[Vector]) -> Result<Body, BodyError> {
         check_points(masses, positions)?;
         let Some(&first) = positions.first() else { return Err(BodyError::NoPoints) };
-        // Relative to the first point: points far from the origin then lose no digits.
+        // Positions relative to the first point keep the digits of points far from the origin.
         let mut mass = Sum::default();
         let mut moment = [Sum::default(); 3];
         for (&m, &x) in masses.iter().zip(positions) {
@@ -107,8 +106,8 @@ impl Body {
         Body::new(self.mass, self.inertia.rotated(rotor), rotor.apply(self.center_of_mass) + position)
     }
 
-    /// The two bodies joined rigidly. About their common centre of mass the parallel axes of both
-    /// together amount to one term: the reduced mass `m1 m2/(m1 + m2)` at their distance.
+    /// The two bodies joined rigidly. Their inertias about the common centre of mass add, and that of the reduced mass
+    /// `m1 m2/(m1 + m2)` at their distance.
     pub fn combine(&self, other: &Body) -> Result<Body, BodyError> {
         let mass = self.mass + other.mass;
         let distance = other.center_of_mass - self.center_of_mass;

@@ -17,8 +17,8 @@ pub enum Amount {
     Density(f64),
 }
 
-/// A uniform solid; lengths in metres. All are centred on the origin except the cone, whose base
-/// stands on the e1e2 plane; axes of revolution lie along e3.
+/// A uniform solid; lengths in metres. All are centred on the origin except the cone, whose base is in the e1e2 plane;
+/// axes of revolution are along e3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum Solid {
@@ -125,7 +125,7 @@ impl Solid {
         Body::extended(mass, Inertia::from_principal_moments(moments)?, self.center())
     }
 
-    /// The volume in m³; none for a rod, a disc, a thin shell, and for lengths that no solid has.
+    /// The volume in m³; None for a rod, a disc, a thin shell and invalid lengths.
     pub fn volume(self) -> Option<f64> {
         self.check().ok()?;
         match self {
@@ -133,13 +133,13 @@ impl Solid {
             Solid::Ellipsoid { semi_axes: [a, b, c] } => Some(4.0 / 3.0 * PI * a * b * c),
             Solid::Sphere { radius: r } => Some(4.0 / 3.0 * PI * r * r * r),
             Solid::HollowSphere { outer_radius: r, inner_radius: s } => {
-                // r³ − s³, with the small difference taken first.
+                // r³ − s³ without cancellation.
                 (r > s).then(|| 4.0 / 3.0 * PI * (r - s) * (r * r + r * s + s * s))
             }
             Solid::Cylinder { radius: r, height: h } => Some(PI * r * r * h),
             Solid::Cone { radius: r, height: h } => Some(PI / 3.0 * r * r * h),
             Solid::Rod { .. } | Solid::Disc { .. } => None,
-            // Pappus: the area of the tube's section times the way of its centre.
+            // Pappus: the area of the tube's section times the path of its centre.
             Solid::Torus { major_radius: a, minor_radius: r } => Some(2.0 * PI * PI * a * r * r),
             Solid::Capsule { radius: r, height: h } => Some(PI * r * r * (h + 4.0 / 3.0 * r)),
         }
@@ -183,7 +183,7 @@ impl Solid {
         }
     }
 
-    /// The centre of mass: the origin, but for the cone a quarter of the way to its apex.
+    /// The centre of mass: the origin, or for a cone a quarter of the way to its apex.
     fn center(self) -> Vector {
         match self {
             Solid::Cone { height, .. } => Vector([0.0, 0.0, 0.25 * height]),
@@ -191,18 +191,13 @@ impl Solid {
         }
     }
 
+    /// The name of a solid that may lack a volume, for errors.
     fn name(self) -> &'static str {
         match self {
-            Solid::Box { .. } => "box",
-            Solid::Ellipsoid { .. } => "ellipsoid",
-            Solid::Sphere { .. } => "sphere",
             Solid::HollowSphere { .. } => "hollow sphere with equal radii",
-            Solid::Cylinder { .. } => "cylinder",
-            Solid::Cone { .. } => "cone",
             Solid::Rod { .. } => "rod",
             Solid::Disc { .. } => "disc",
-            Solid::Torus { .. } => "torus",
-            Solid::Capsule { .. } => "capsule",
+            _ => "solid",
         }
     }
 

@@ -1,8 +1,7 @@
 //! Surfaces of bodies as triangle meshes, for drawing.
 //!
-//! A solid of revolution is a profile, points `(r, z)` from the lower pole to the upper one, swept about e3. A body of
-//! which only the inertia is known is drawn as a uniform box with that inertia, and a symmetric body on a fixed point
-//! as a spinning top.
+//! A solid of revolution is a profile, points `(r, z)` from the lower pole to the upper one, swept about e3. A body known
+//! only by its inertia is drawn as a uniform box, or as a spinning top if it is symmetric and has a fixed point.
 
 use super::mesh::TriangleMesh;
 use super::solids::Solid;
@@ -11,7 +10,7 @@ use std::array::from_fn;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Faces around an axis of revolution; a multiple of four, so that no face lies in two quadrants.
+/// Faces around an axis of revolution; a multiple of four, so that each face lies in one quadrant.
 const SIDES: usize = 64;
 /// Faces from pole to pole of a sphere, and around the tube of a torus.
 const STACKS: usize = 32;
@@ -44,8 +43,8 @@ pub struct Surface {
     pub vertices: Vec<Vector>,
     /// Triangles as indices of vertices.
     pub faces: Vec<[u32; 3]>,
-    /// A number per triangle for its colour, which shows how the body turns: 0, 1 for alternating quadrants of a solid
-    /// of revolution; 2, 3, 4 for the sides of a box across e1, e2, e3; 0 for a mesh.
+    /// Colour number of each triangle: 0, 1 for alternating quadrants of a solid of revolution; 2, 3, 4 for the sides
+    /// of a box across e1, e2, e3; 0 for a mesh.
     pub tints: Vec<u32>,
 }
 
@@ -56,7 +55,7 @@ impl Surface {
         Surface { vertices: mesh.vertices().to_vec(), tints: vec![0; faces.len()], faces }
     }
 
-    /// The outer surface of a solid in its own axes. A rod and a disc get the least thickness that is drawn.
+    /// The outer surface of a solid in its own axes; a rod and a disc get the least thickness.
     pub fn of_solid(solid: Solid) -> Surface {
         match solid {
             Solid::Box { lengths } => cuboid(lengths),
@@ -86,11 +85,11 @@ impl Surface {
         }
     }
 
-    /// The surface of a body of which only the mass and the inertia are known: a uniform box with these principal
-    /// moments, whose `frame` takes principal axes to body axes, or a ball if its sides are nearly equal.
+    /// The surface of a body known only by mass and inertia: a uniform box with these principal moments, or a ball if
+    /// its sides are nearly equal. `frame` takes principal axes to body axes.
     ///
-    /// `arm` leads from the fixed point to the centre of mass, and is 0 for a free body. On an arm along an axis of
-    /// symmetry the body is a spinning top, on any other the box, as large as fits.
+    /// `arm` leads from the fixed point to the centre of mass, 0 for a free body. With an arm along an axis of symmetry
+    /// the surface is a spinning top, with any other the box, scaled to fit.
     pub fn of_inertia(mass: f64, moments: [f64; 3], frame: Rotor, arm: Vector) -> Surface {
         let length = arm.norm();
         if length > 0.0 && symmetric_about(arm, moments, frame) {
@@ -166,8 +165,7 @@ fn arc_point(k: usize) -> [f64; 2] {
     [angle(k.min(STACKS - k)).sin(), -angle(k).cos()]
 }
 
-/// The surface that a profile sweeps about e3. It goes from pole to pole, upwards outside; a profile that begins off the
-/// axis is closed.
+/// The surface that a profile sweeps about e3, from pole to pole; a profile that begins off the axis is closed.
 fn revolved(profile: &[[f64; 2]]) -> Surface {
     let mut vertices = Vec::new();
     let mut ring = |&[r, z]: &[f64; 2]| -> Vec<u32> {
@@ -197,7 +195,7 @@ fn revolved(profile: &[[f64; 2]]) -> Surface {
     Surface { vertices, faces, tints }
 }
 
-/// Catmull and Rom's curve through points, in four steps from each to the next.
+/// The Catmull–Rom spline through points, in four steps from each to the next.
 fn smooth(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let at = |k: usize| points[k.clamp(1, points.len()) - 1];
     let step = |n: usize| {

@@ -1,14 +1,14 @@
-//! A body with the torque `N = −g L`, exact at any time.
+//! A body with the torque `N = −g L` in closed form.
 //!
-//! The momentum falls like `e^{−gt}` and keeps its direction in space. With the time `τ`, `dτ = e^{−gt} dt`, and
-//! `Ω = e^{−gt} Ω̃` the equations `L' = −g L` and `R' = −½ R Ω_B` are those of the free body:
+//! The momentum decays as `e^{−gt}` with constant direction in space. With `dτ = e^{−gt} dt` and `Ω = e^{−gt} Ω̃` the
+//! equations `L' = −g L` and `R' = −½ R Ω_B` become those of the free body:
 //!
 //! ```text
 //! R(t) = R̃(τ),   Ω(t) = e^{−gt} Ω̃(τ),   τ = (1 − e^{−gt})/g.
 //! ```
 //!
-//! The free body turns on to `τ = 1/g` and no farther. The phase needs τ in double-double precision: from its
-//! rounded value a step of its rounding error, with the rates in the middle of the step, leads to the state.
+//! τ tends to `1/g`. It is computed in double-double precision: a midpoint step over its low part corrects the state at
+//! its high part.
 
 use super::free::FreeMotion;
 use crate::body::inertia::Inertia;
@@ -17,17 +17,17 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::state::phase::Gyrostat;
 use polhode_ga::{Bivector, Rotor};
 
-/// So many radians leave so small a rounding error of τ that its cube is nothing.
+/// Up to this many radians the cube of the rounding error of τ is negligible.
 const MOST_RADIANS: f64 = 1e10;
 
-/// Exponents for which the exponential is a number, with some room for the rates.
+/// Largest exponent whose exponential, times the rates, is finite.
 const MOST_EXPONENT: f64 = 600.0;
 
 /// A damped motion: rotor and angular velocity at any time within its [`DampedTop::horizons`].
 #[derive(Clone, Copy, Debug)]
 pub struct DampedTop {
     free: FreeMotion,
-    /// Of the body, with the rotor to them from its axes.
+    /// Principal moments and frame of the body.
     moments: [f64; 3],
     frame: Rotor,
     /// The g of the torque.
@@ -63,7 +63,7 @@ impl DampedTop {
         Ok(DampedTop { free, moments, frame, damping, fastest })
     }
 
-    /// How far in time, in s, the phase is known backwards and forwards. Infinite where the motion dies away.
+    /// How far in time, in s, the phase is accurate, backwards and forwards; infinite where the motion decays.
     pub fn horizons(&self) -> [f64; 2] {
         let most = self.free.horizon().min(MOST_RADIANS / self.fastest);
         let rate = self.damping.abs();
@@ -90,7 +90,7 @@ impl DampedTop {
         (rotor, omega * factor.value())
     }
 
-    /// −gt; what is beyond floating point is dead.
+    /// −gt, bounded where the exponential vanishes.
     fn exponent(&self, t: f64) -> DoubleDouble {
         let rough = -self.damping * t;
         if rough < -MOST_EXPONENT * 1.2 {
@@ -99,7 +99,7 @@ impl DampedTop {
         DoubleDouble::two_product(-self.damping, t)
     }
 
-    /// The free state after a short time, with the rates in the middle of it.
+    /// The free state after a short time, by a midpoint step.
     fn ahead(&self, rotor: Rotor, omega: Bivector, time: f64) -> (Rotor, Bivector) {
         if time == 0.0 {
             return (rotor, omega);

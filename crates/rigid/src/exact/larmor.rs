@@ -7,13 +7,12 @@
 //! R(t) = exp(½ I b t) exp(−½ I (ω(0) + b) t) R(0),
 //! ```
 //!
-//! ω(0) in space; `R' = ½ I b R − ½ A I(ω(0) + b) ~A R = −½ Ω_S R`. Both rates, and the phases, are known in twice the
-//! precision: for a sphere the error does not grow with time. Moments that differ by rounding, by a part d of them,
-//! count as equal; that neglects an angle of about `d |ω| t` ([`LarmorSphere::neglected`]).
+//! ω(0) in space; `R' = ½ I b R − ½ A I(ω(0) + b) ~A R = −½ Ω_S R`. Rates and phases have double-double precision: the
+//! error does not grow with time. Moments with a relative difference d by rounding count as equal, which neglects an
+//! angle of about `d |ω| t` ([`LarmorSphere::neglected`]).
 
 use super::free::{MOST_TURNS, power_of_two};
-use crate::body::inertia::Inertia;
-use crate::body::inertia::{apart, equal};
+use crate::body::inertia::{Inertia, apart, equal};
 use crate::error::SimulateError;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::{Phase, sin_cos_turns};
@@ -30,7 +29,7 @@ pub struct LarmorSphere {
     omega: Bivector,
     field: Turn,
     spin: Turn,
-    /// What the moments differ by, relative to them.
+    /// Relative difference of the moments.
     apart: f64,
 }
 
@@ -50,7 +49,7 @@ impl LarmorSphere {
             return Err(SimulateError::NotSpherical { moments });
         }
         for (what, values) in [("the angular velocity", omega.0), ("the field b", b.0)] {
-            // Squares must be numbers.
+            // Squares must be finite.
             if let Some(&value) = values.iter().find(|x| !(x.abs() * x.abs()).is_finite()) {
                 return Err(SimulateError::BadValue { what, value });
             }
@@ -69,13 +68,12 @@ impl LarmorSphere {
         })
     }
 
-    /// How far in time, in s, the phases are known: to 1e17 turns.
+    /// How far in time, in s, the phases are accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
         MOST_TURNS / self.field.rate().max(self.spin.rate())
     }
 
-    /// About by what angle in rad the motion of the body at time `t` differs from this one, which takes its moments
-    /// as equal.
+    /// Estimated angle in rad at time `t` between the body's motion and this one, which takes its moments as equal.
     pub fn neglected(&self, t: f64) -> f64 {
         self.apart * self.omega.norm() * t.abs()
     }
@@ -84,7 +82,7 @@ impl LarmorSphere {
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
         let spin = self.spin.at(t);
         let rotor = self.field.at(t) * spin * self.rotor;
-        // Ω_B = ~R A Ω_S(0) ~A R, where A is all of R but this.
+        // Ω_B = ~R A Ω_S(0) ~A R, where A is the first factor of R.
         let back = self.rotor.reverse() * spin.reverse() * self.rotor;
         (rotor.renormalized(), back.apply_bivector(self.omega))
     }

@@ -18,7 +18,7 @@ pub enum Regime {
     ShortAxis,
     /// The polhode encircles the axis of the smallest moment.
     LongAxis,
-    /// Exactly between the two: the spin tends to the middle axis.
+    /// Between the two: the spin tends to the middle axis.
     Separatrix,
 }
 
@@ -67,8 +67,8 @@ impl FreeDescription {
         self.precession_rate.map(|rate| 2.0 * PI / rate)
     }
 
-    /// The angle φ by which the body turns about L in a period, at the mean rate of precession:
-    /// `R(T) = −exp(−½ L/|L| φ) R(0)`. The sign is that of a full turn, by which L circles the axis in the body.
+    /// The angle φ by which the body turns about L in a period: `R(T) = −exp(−½ L/|L| φ) R(0)`. The sign is that of the
+    /// full turn of L about the axis in the body.
     pub fn phase_per_period(&self) -> Option<f64> {
         Some(self.precession_rate? * self.period?)
     }

@@ -1,13 +1,11 @@
 //! The free symmetric top in closed form.
 
-use crate::body::inertia::Inertia;
-use crate::body::inertia::equal;
+use crate::body::inertia::{Inertia, equal};
 use polhode_ga::{Bivector, Rotor};
 
 /// The free symmetric top in closed form (handout eq. 4.35):
-/// `R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)` with `Ω_l = L/i1` and `Ω_r = ((i1 − i3)/i1) ω3 I e3`. Phases in simple
-/// precision: the error grows as ε|Ω|t, and with moments that differ by a part d of them as d|Ω|t besides;
-/// [`super::free::FreeMotion`] has neither error.
+/// `R(t) = exp(−½Ω_l t) R(0) exp(−½Ω_r t)` with `Ω_l = L/i1` and `Ω_r = ((i1 − i3)/i1) ω3 I e3`. The error grows as
+/// ε|Ω|t, and for moments with a relative difference d as d|Ω|t; [`super::free::FreeMotion`] has neither error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymmetricTop {
     rotor: Rotor,

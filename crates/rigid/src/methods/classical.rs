@@ -6,9 +6,8 @@
 //! R' = −½ R Ω_B,      i1 ω1' = (i2 − i3) ω2 ω3 + h2 ω3 − h3 ω2 + N1 − g i1 ω1,   and cyclically,
 //! ```
 //!
-//! whose first makes |R| change by a power of the step in every step: it is taken out at the end of each. Nothing but |R|
-//! is conserved by construction. What it has is few operations, so that bodies in lanes stay in registers:
-//! a step of a free body is 146 products, sums and products with sums.
+//! Each step renormalizes R. Nothing else is conserved by construction. The method has few operations, 146 in a step of
+//! a free body, so bodies in lanes stay in registers.
 
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
@@ -21,7 +20,7 @@ use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array;
 
-/// Rotor and angular velocity in principal axes; with place and velocity of the centre of mass where they are stepped too.
+/// Rotor and angular velocity in principal axes; optionally position and velocity of the centre of mass.
 pub(crate) type State<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 
 /// Bodies in lanes, in principal axes.
@@ -112,7 +111,7 @@ fn moved<const N: usize, const W: usize, const F: bool>(
     sum
 }
 
-// Lanes are best copied one by one: a copy of memory takes them out of their registers.
+// Copying lanes one by one keeps them in registers.
 #[allow(clippy::manual_memcpy)]
 #[inline(always)]
 fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
@@ -166,7 +165,7 @@ fn turn<const W: usize, const F: bool>(
     ]
 }
 
-/// `R/|R|` to the third power of what |R|² − 1 is.
+/// `R/|R|` to third order in |R|² − 1.
 #[inline(always)]
 pub(crate) fn renormalize<const N: usize, const W: usize, const F: bool>(y: &mut State<N, W, F>) {
     let mut square = y[0] * y[0];
@@ -174,14 +173,14 @@ pub(crate) fn renormalize<const N: usize, const W: usize, const F: bool>(y: &mut
         square = y[k].times_plus(y[k], square);
     }
     let excess = square - Lanes::all(1.0);
-    // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+    // Adding rounds shrinking and growing alike; multiplying by 1 + x would not.
     let missing = excess * excess.times_plus(Lanes::all(0.375), Lanes::all(-0.5));
     for k in 0..4 {
         y[k] = y[k].times_plus(missing, y[k]);
     }
 }
 
-/// A body, what turns and moves it, to be stepped alone.
+/// A single body and its laws, stepped by the classical method.
 #[derive(Clone, Debug)]
 pub struct Classical {
     body: Gyrostat,

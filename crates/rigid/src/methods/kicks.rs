@@ -1,4 +1,4 @@
-//! Kicks: torques at fixed attitude, solved exactly; restores the momentum after free steps.
+//! Kicks: torques at fixed attitude, solved exactly, and the restoration of momentum after free steps.
 
 use crate::error::SimulateError;
 use crate::laws::torque::{Torque, total_torque};
@@ -21,13 +21,13 @@ impl Kicks {
         Kicks { wheel: body.wheel, body, torques, damping }
     }
 
-    /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
+    /// Solves `m' = N − g (m − h)` for a time t: `m − h` becomes `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
     pub fn kick(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
         let torque = total_torque(&self.torques, &self.body, state)?;
         let mut impulse = h;
         let decay = -self.damping * h;
         if decay != 0.0 {
-            // The loss is added: multiplying m by e^(−gt) would round alike at every step.
+            // Multiplying m by e^(−gt) would round alike at every step.
             let lost = decay.exp_m1();
             state.momentum += (state.momentum - self.wheel) * lost;
             impulse = h * lost / decay;
@@ -49,7 +49,7 @@ pub(crate) fn fixed_momentum(torques: &[Torque], start: &Phase) -> Option<Bivect
 pub(crate) fn restore_momentum(state: &mut Phase, fixed: Bivector) {
     let size = fixed.norm_squared();
     if size > 0.0 {
-        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+        // Adding rounds shrinking and growing alike; multiplying by 1 + x would not.
         let missing = 0.5 * (size - state.momentum.norm_squared()) / size;
         state.momentum += state.momentum * missing;
         let drifted = state.rotor.apply_bivector(state.momentum);

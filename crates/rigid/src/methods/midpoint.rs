@@ -14,9 +14,9 @@
 //! F(m̄) = m̄ + ½h ω̄ x m̄ − m − ½h (N_∥ + √(1 + x²) N_⊥) = 0,    m' = 2m̄ − m,
 //! ```
 //!
-//! `N_∥` being along ω̄. Without a torque `m' − m = h m̄ x ω̄`: its products with m̄ and ω̄ vanish, and they are the changes of
-//! `½|m|²` and of the energy, both quadratic. So these two and L are conserved exactly, and under a torque what is linear
-//! in L is, as by the law. Damping `N = −g I(Ω̄)` shrinks `m − h_w` whatever the step: the rule is A-stable.
+//! with `N_∥` along ω̄. Without a torque `m' − m = h m̄ x ω̄`: its products with m̄ and ω̄, the changes of `½|m|²` and of the
+//! energy, vanish. So these two and L are conserved exactly, and under a torque the linear invariants of L. Damping
+//! `N = −g I(Ω̄)` shrinks `m − h_w` for any step: the rule is A-stable.
 
 use super::kicks::{fixed_momentum, restore_momentum};
 use crate::error::SimulateError;
@@ -27,7 +27,7 @@ use polhode_ga::{Bivector, Rotor, Vector};
 /// Newton's method converges in four or five iterations, with an inexact Jacobian in a few times as many.
 const MOST_ITERATIONS: u32 = 60;
 
-/// A correction this small relative to the momentum is rounding, or the last: the next would be its square.
+/// A correction this small relative to the momentum is the last: the next would be its square.
 const CONVERGED: f64 = 4.0 * f64::EPSILON;
 
 /// Below this, iteration ends when corrections no longer decrease.

@@ -101,7 +101,7 @@ impl Method {
         }
     }
 
-    /// Why it does not support this body and these laws, and what to use instead.
+    /// Why it does not support this body and these laws, with an alternative.
     pub(crate) fn unfit(self, body: &Gyrostat, torques: &[Torque]) -> Option<&'static str> {
         if matches!(self, Method::Classical | Method::RungeKutta(_) | Method::Midpoint) {
             return None;
@@ -148,11 +148,10 @@ fn symmetric(body: &Gyrostat) -> bool {
     equal(a, b) || equal(b, c) || equal(c, a)
 }
 
-/// Typical relative rounding of one step: the increments are small; their sum and the last turn are rounded.
+/// Typical relative rounding of one step: that of the sum and of the last turn.
 pub(crate) const ROUNDING_OF_RUNGE_KUTTA: f64 = 0.4 * f64::EPSILON;
 
-/// The rate of the fastest turn, in rad/s, a scale for steps: what the momentum and the energy allow, and the swing in
-/// the torque.
+/// The rate of the fastest turn, in rad/s, a scale for steps: bounded by momentum, energy and torque.
 pub(crate) fn fastest_rate(body: &Gyrostat, torques: &[Torque], start: &Phase) -> f64 {
     let torque: f64 = torques.iter().map(|t| t.size_at(body, start)).sum();
     let damping: f64 = torques.iter().map(Torque::damping_rate).sum();

@@ -8,17 +8,17 @@
 //!
 //! (crosses of axial vectors). With `h̃ = h (1 + |P|²)` and `m̄ = ½(m + m')` this says `I(P) = ½h̃ m̄` and `m' − m = h̃ m̄ x I⁻¹m̄`:
 //! the implicit midpoint rule ([`super::midpoint`]) with another step, so that the energy, |m| and `R m ~R` are conserved
-//! exactly (R. I. McLachlan & A. Zanna, Found. Comput. Math. 5 (2005) 87). Since `½h|Ω̄| = |P|/(1 + |P|²)` it has a solution for
-//! steps of `h|Ω̄| <= 1` alone.
+//! exactly (R. I. McLachlan & A. Zanna, Found. Comput. Math. 5 (2005) 87). Since `½h|Ω̄| = |P|/(1 + |P|²)`, only steps of
+//! `h|Ω̄| <= 1` have a solution.
 //!
-//! Of order 4 it becomes with the moments `Ĩ_k` of
+//! The order is 4 with the moments `Ĩ_k` of
 //!
 //! ```text
 //! 1/Ĩ_k = (1 + h²s)/I_k + h²d,    s = −(Σ 1/I_k) H/3 + (Σ I_k) C/6Π,    d = (Σ I_k) H/6Π − C/3Π,
 //! ```
 //!
-//! `H = ½ m·I⁻¹m`, `C = ½|m|²`, `Π = I_1 I_2 I_3` (E. Hairer & G. Vilmart, J. Phys. A 39 (2006) 13225): as H and C are constant, so
-//! are these, and conserving `(1 + h²s) H + h²d C` conserves H. With kicks the whole is of order 2.
+//! `H = ½ m·I⁻¹m`, `C = ½|m|²`, `Π = I_1 I_2 I_3` (E. Hairer & G. Vilmart, J. Phys. A 39 (2006) 13225): H and C are
+//! constant, so s and d are, and conserving `(1 + h²s) H + h²d C` conserves H. With kicks the order is 2.
 
 use super::kicks::{Kicks, fixed_momentum, restore_momentum};
 use super::midpoint::{cayley, cross, solved};
@@ -97,7 +97,7 @@ impl MoserVeselov {
     }
 }
 
-/// P with `F(P) = 0`, by Newton's method; none if it does not converge.
+/// P with `F(P) = 0` by Newton's method; None if it does not converge.
 fn half_turn(moments: [f64; 3], m: Bivector, h: f64) -> Option<Bivector> {
     if !moments.iter().all(|i| *i > 0.0) {
         return None;

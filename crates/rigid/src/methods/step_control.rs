@@ -1,4 +1,4 @@
-//! StepController: lengths of adaptive steps, stops and limits, for single bodies and lanes.
+//! Lengths of adaptive steps, stops and limits, for single bodies and lanes.
 
 use crate::error::SimulateError;
 

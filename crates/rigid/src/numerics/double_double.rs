@@ -1,8 +1,8 @@
-//! Numbers of twice the precision: an unevaluated sum `hi + lo`, 106 bits.
+//! Double-double numbers: an unevaluated sum `hi + lo`, 106 bits.
 //!
-//! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971).
-//! Each operation is exact in its error term, so the relative error of a result is a few 2⁻¹⁰⁴. Used
-//! where an angle grows with time: `frac(ν t)` loses as many digits as `ν t` has before the point.
+//! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971). The
+//! relative error of an operation is a few 2⁻¹⁰⁴. Used for angles that grow with time: `frac(ν t)` loses as many digits
+//! as `ν t` has before the point.
 
 use polhode_ga::simd::double;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -46,8 +46,8 @@ impl DoubleDouble {
         DoubleDouble::quick_two_sum(root, rest.hi / (2.0 * root))
     }
 
-    /// `e^x` and `e^x − 1`, for exponents that leave a number. With `x = n ln 2 + 2⁹ r` a few terms of a series give
-    /// `e^r − 1`, and `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` that of its doubles; none cancels.
+    /// `e^x` and `e^x − 1`, if finite. With `x = n ln 2 + 2⁹ r` a short series gives `e^r − 1`, and
+    /// `e^{2r} − 1 = (e^r − 1)(2 + (e^r − 1))` doubles the exponent without cancellation.
     pub fn exp(self) -> [DoubleDouble; 2] {
         const LN_2: DoubleDouble =
             DoubleDouble { hi: std::f64::consts::LN_2, lo: 2.319_046_813_846_299_6e-17 };
@@ -115,8 +115,7 @@ impl Mul for DoubleDouble {
 
 impl Div for DoubleDouble {
     type Output = DoubleDouble;
-    /// What a rounded quotient of the first parts leaves of them, `hi − q o.hi`, is a number; the rest is smaller,
-    /// and needs no more than a rounded quotient again.
+    /// The remainder `hi − q o.hi` of a rounded quotient is exact; a second rounded quotient corrects q.
     fn div(self, o: DoubleDouble) -> DoubleDouble {
         let q = self.hi / o.hi;
         let product = DoubleDouble::two_product(q, o.hi);

@@ -1,8 +1,7 @@
-//! Elliptic integrals in Carlson's symmetric form, which loses no digits in any limit.
+//! Elliptic integrals in Carlson's symmetric form, accurate in all limits.
 //!
-//! B. C. Carlson, *Numerical computation of real or complex elliptic integrals*, Numer. Algorithms 10
-//! (1995) 13–26: duplication brings the arguments together, a Taylor series about their mean ends it. Complete
-//! integrals by arithmetic-geometric means.
+//! B. C. Carlson, *Numerical computation of real or complex elliptic integrals*, Numer. Algorithms 10 (1995) 13–26:
+//! duplication, then a Taylor series about the mean of the arguments. Complete integrals by arithmetic-geometric means.
 
 use super::double_double::DoubleDouble;
 use super::wide::Wide;
@@ -98,7 +97,7 @@ pub(crate) fn mean(mut g: f64) -> f64 {
 /// With `p_0 = p`, `Q_0 = 1` and the means `a_j, g_j` (DLMF 19.8.6)
 /// `p_{j+1} = (p_j² + a_j g_j) / 2p_j`, `Q_{j+1} = ½ Q_j (p_j² − a_j g_j) / (p_j² + a_j g_j)`.
 pub(crate) fn mean_and_sum(kc: Wide, p2: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
-    // The root of k' is in the range of floats, whatever k' is.
+    // The root of any k' is in the range of floats.
     let (mut a, mut g, mut root) = (DoubleDouble::ONE, kc.narrow(), kc.sqrt().narrow());
     let (mut p2, mut p) = (p2, p2.sqrt());
     let (mut term, mut sum) = (DoubleDouble::ONE, DoubleDouble::ZERO);

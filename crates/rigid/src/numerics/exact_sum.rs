@@ -1,11 +1,10 @@
-//! Exact sums: a number as a sum of floats that do not overlap, of rising size.
+//! Exact sums: a number as a sum of non-overlapping floats of increasing size, for differences of nearly equal terms.
 //!
-//! J. R. Shewchuk, *Adaptive precision floating-point arithmetic*, Discrete Comput. Geom. 18 (1997). For
-//! differences that decide what happens and may be as small as they like.
+//! J. R. Shewchuk, *Adaptive precision floating-point arithmetic*, Discrete Comput. Geom. 18 (1997).
 
 use super::double_double::DoubleDouble;
 
-/// Numbers enough for two products of five factors.
+/// Enough parts for two products of five factors.
 const MOST: usize = 32;
 
 /// A sum of floats, exact where no product under- or overflows.
@@ -42,7 +41,7 @@ impl Exact {
         })
     }
 
-    /// Rounded; the largest first, which no other part can cancel.
+    /// The rounded sum, largest part first.
     pub fn value(self) -> DoubleDouble {
         self.parts[..self.count].iter().rev().fold(DoubleDouble::ZERO, |sum, &part| sum + part.into())
     }
@@ -63,7 +62,7 @@ mod tests {
     proptest! {
         /// Whole numbers of 30 bits, so that 128 bits hold the exact result, which nearly cancels.
         #[test]
-        fn as_whole_numbers(a in 1i64..1 << 30, b in 1i64..1 << 30, c in 1i64..1 << 30, e in -9i64..9) {
+        fn sums_of_products_match_integers(a in 1i64..1 << 30, b in 1i64..1 << 30, c in 1i64..1 << 30, e in -9i64..9) {
             let product = |x: [i64; 4]| {
                 let f = x.map(|x| x as f64);
                 Exact::ZERO.plus(f[0]).plus(-f[3]).times(f[1]).times(f[2]).times(f[1])

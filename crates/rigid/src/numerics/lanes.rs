@@ -1,10 +1,10 @@
-//! Arithmetic in lanes: phases reduced, exponentials, sine and cosine. No branches.
+//! Arithmetic in lanes without branches: phase reduction, exponentials, sine and cosine.
 
 use super::double_double::DoubleDouble;
 use polhode_ga::simd::double::{sin_cos, two_product, two_sum};
 use std::f64::consts::FRAC_PI_2;
 
-/// Adding 1.5·2⁵² leaves the nearest integer in the last bits; for numbers beyond 2⁵¹ one near enough.
+/// Adding 1.5·2⁵² rounds to an integer in the last bits, the nearest up to 2⁵¹.
 const INTEGER: f64 = 6_755_399_441_055_744.0;
 
 /// A phase that grows linearly with time, in turns.
@@ -12,14 +12,13 @@ const INTEGER: f64 = 6_755_399_441_055_744.0;
 pub(crate) struct Phase {
     /// Per second.
     pub rate: DoubleDouble,
-    /// At time 0, as a sum: what is large of it is exact.
+    /// At time 0, as a sum whose large part is exact.
     pub start: [f64; 2],
 }
 
 impl Phase {
-    /// The phase at time t less whole turns, in [−½, ½], and its rounding error: what is left of it near a
-    /// quarter turn, too, keeps its digits. The product of rate and time is exact in its first part; off go its
-    /// whole turns, then those that the rest adds.
+    /// The phase at time t less whole turns, in [−½, ½], and its rounding error. Whole turns are subtracted from the
+    /// exact product of the rate's high part and time, then from the sum with the rest.
     #[inline(always)]
     pub fn turns<const FMA: bool>(&self, t: f64) -> (f64, f64) {
         let (product, error) = two_product::<FMA>(self.rate.hi, t);
@@ -41,6 +40,18 @@ pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64
     (sin, cos)
 }
 
+/// The nearest multiple in −1, 0, 1 of half a turn.
+#[inline(always)]
+pub(crate) fn half_turns(turn: f64) -> f64 {
+    if turn > 0.25 {
+        1.0
+    } else if turn < -0.25 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
 /// `e^{−x}` and `e^{−x} − 1`, each to a few roundings, for x in [0, 705].
 ///
 /// `−x = n ln 2 + r` with `|r| <= ½ ln 2`; the series of `e^r − 1` ends below 2⁻⁵⁶ of it.
@@ -48,21 +59,16 @@ pub(crate) fn sin_cos_turns<const FMA: bool>(turns: f64, rest: f64) -> (f64, f64
 pub(crate) fn exp_minus(x: f64) -> (f64, f64) {
     /// ln 2 in two parts, the first of 32 bits, so that its products with n are exact.
     const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
-    /// 1/k! from 2 on.
-    const C: [f64; 12] = [
-        1.0 / 2.0,
-        1.0 / 6.0,
-        1.0 / 24.0,
-        1.0 / 120.0,
-        1.0 / 720.0,
-        1.0 / 5_040.0,
-        1.0 / 40_320.0,
-        1.0 / 362_880.0,
-        1.0 / 3_628_800.0,
-        1.0 / 39_916_800.0,
-        1.0 / 479_001_600.0,
-        1.0 / 6_227_020_800.0,
-    ];
+    /// 1/k! from 2 on; the factorials are exact.
+    const C: [f64; 12] = {
+        let (mut c, mut factorial, mut k) = ([0.0; 12], 1.0, 0);
+        while k < 12 {
+            factorial *= (k + 2) as f64;
+            c[k] = 1.0 / factorial;
+            k += 1;
+        }
+        c
+    };
     let shifted = INTEGER - x * std::f64::consts::LOG2_E;
     let n = shifted - INTEGER;
     let r = (-x - n * LN_2[0]) - n * LN_2[1];
@@ -85,7 +91,7 @@ pub(crate) fn horner<const N: usize>(c: &[f64; N], x: f64) -> f64 {
     sum
 }
 
-/// The same whose coefficients are one number for all lanes, or one for each.
+/// The same with coefficients common to all lanes, or one for each.
 #[inline(always)]
 pub(crate) fn horner_in_lane<const N: usize, const C: usize>(c: &[[f64; C]; N], l: usize, x: f64) -> f64 {
     let mut sum = in_lane(&c[N - 1], l);
@@ -95,7 +101,7 @@ pub(crate) fn horner_in_lane<const N: usize, const C: usize>(c: &[[f64; C]; N], 
     sum
 }
 
-/// What lane l has of one number for all lanes, or one for each.
+/// The number of lane l, from one number for all lanes or one for each.
 #[inline(always)]
 pub(crate) fn in_lane<const C: usize>(numbers: &[f64; C], l: usize) -> f64 {
     numbers[if C == 1 { 0 } else { l }]

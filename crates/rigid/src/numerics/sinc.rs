@@ -1,11 +1,11 @@
-//! The cosine and sine of the many small turns of steps.
+//! Cosine and sine of small turns.
 
 use polhode_ga::simd::lanes::Lanes;
 
 /// `cos x` and `sin x/x` of `x² = square`, to a rounding or two.
 ///
-/// Up to `x = ½` by their series in x², which need no root; the first term left out is `2⁻¹⁶/16!`, below 1e-18. Adjacent
-/// terms are added first, so that many multiplications run at once. Beyond, lane by lane, by the library.
+/// Up to `x = ½` by series in x²; the first omitted term is `2⁻¹⁶/16!`, below 1e-18. Adding adjacent terms first allows
+/// parallel multiplications. Beyond, lane by lane, by the standard library.
 #[inline(always)]
 pub(crate) fn cosine_and_sinc<const W: usize, const F: bool>(
     square: Lanes<W, F>,
@@ -36,7 +36,7 @@ pub(crate) fn cosine_and_sinc<const W: usize, const F: bool>(
     (cos, sinc)
 }
 
-/// Up to this x² the series serve.
+/// Largest x² of the series.
 const SERIES: f64 = 0.25;
 
 #[cold]
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn they_are_those_of_the_library() {
+    fn matches_the_standard_library() {
         for i in 0..=4000 {
             let x = f64::from(i) * 0.0005;
             let (Lanes([cos]), Lanes([sinc])) = cosine_and_sinc(Lanes::<1, false>([x * x]));

@@ -1,7 +1,7 @@
-//! A sum that loses no digits: Neumaier's compensated summation.
+//! Neumaier's compensated summation.
 
-/// Adding `x` rounds; what the rounding cut off is exact in floating point and is kept beside the total.
-/// The error of the result is that of rounding the exact sum once, plus `n² ε²` of the terms' sizes.
+/// A total and the sum of its rounding errors, which are exact in floating point. The error of the result is one
+/// rounding of the exact sum, plus `n² ε²` of the terms' sizes.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Sum {
     total: f64,
@@ -17,7 +17,7 @@ impl Sum {
     }
 
     pub(crate) fn value(self) -> f64 {
-        // An infinite total has lost NaN; the infinity is the answer.
+        // The rounding errors of an infinite total are NaN.
         if self.total.is_finite() { self.total + self.lost } else { self.total }
     }
 }

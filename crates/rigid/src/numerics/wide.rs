@@ -1,6 +1,4 @@
-//! Numbers of twice the precision whose exponent does not end: a [`DoubleDouble`] times a power of two.
-//!
-//! Squares and fourth powers of a tilt of 1e-300 keep their digits.
+//! Double-double numbers with an unbounded exponent, for fourth powers of a tilt of 1e-300.
 
 use super::double_double::DoubleDouble;
 use std::cmp::Ordering;
@@ -21,7 +19,7 @@ pub(crate) fn exp2(n: i64) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
-/// By a power of two, without rounding unless the result is subnormal.
+/// Times a power of two, without rounding unless the result is subnormal.
 fn scaled(x: DoubleDouble, power: f64) -> DoubleDouble {
     DoubleDouble { hi: x.hi * power, lo: x.lo * power }
 }

@@ -1,10 +1,10 @@
-//! Carried: a point of a motion with the state that steps carry.
+//! A point of a motion with the data that steps carry.
 
 use super::center::Center;
 use super::phase::Phase;
 use polhode_ga::Bivector;
 
-/// A point of the motion with the data that steps carry.
+/// A point of a motion with the data that steps carry.
 #[derive(Clone, Copy, Debug)]
 pub struct Carried {
     /// The point.

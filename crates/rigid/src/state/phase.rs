@@ -1,4 +1,4 @@
-//! Gyrostat and Phase: a body in principal axes, and its rotational state.
+//! A body in principal axes, and its rotational state.
 
 use polhode_ga::simd::lanes::{Lanes, One};
 use polhode_ga::{Bivector, Rotor, Vector};
@@ -62,8 +62,7 @@ impl Gyrostat {
         0.5 * (term(0) + term(1) + term(2))
     }
 
-    /// A rate in rad/s below which rounding of the wheel's momentum begins to count in `Ω`, to a part in 1e12; 0 without
-    /// a wheel.
+    /// The rate in rad/s at which rounding of the wheel's momentum is 1e-12 of `Ω`; 0 without a wheel.
     pub(crate) fn least_rate(&self) -> f64 {
         let smallest = self.moments.iter().fold(f64::INFINITY, |m: f64, x| m.min(*x));
         1e-4 * self.wheel.norm() / smallest

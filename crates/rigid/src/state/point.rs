@@ -1,4 +1,4 @@
-//! Point: the arguments of formulas, functions, forces and events.
+//! The arguments of formulas, functions, forces and events.
 
 use super::center::Center;
 use super::phase::{Gyrostat, Phase};

@@ -19,14 +19,14 @@ impl Default for Factor {
     }
 }
 
-/// What is wrong with a product of units.
+/// An error in a product of units.
 pub enum Problem {
     UnknownUnit(String),
     Syntax(String),
 }
 
 impl Factor {
-    /// Reads `kg m^2 / s`: operator and unit by turns, a space standing for the times sign.
+    /// Reads `kg m^2 / s`: units separated by operators or spaces.
     pub fn parse(text: &str) -> Result<Factor, Problem> {
         let mut product = Factor::default();
         let mut rest = text;

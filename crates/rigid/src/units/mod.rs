@@ -1,13 +1,13 @@
 //! Quantities with units: `5 rev/s`, `12 deg`, `7.85 g/cm^3`, `3 kg·m²`.
 //!
-//! A quantity is a number and unit factors, joined by a space, `*`, `·` or `/`; `/` divides by the one
-//! factor after it; a factor may carry a power: `s^-2`, `s**2`, `s²`. The value comes out in SI units.
+//! A quantity is a number and unit factors, joined by a space, `*`, `·` or `/`; `/` divides by the next factor only; a
+//! factor may have a power: `s^-2`, `s**2`, `s²`. Values are in SI units.
 //!
-//! In SI a radian is 1. Here angle is a dimension like length, mass, time and current, because a rate of `5 1/s`
-//! may mean 5 rad/s or 5 turns per second, and is an error.
+//! Angle is a dimension like length, mass, time and current: a rate of `5 1/s`, which may mean 5 rad/s or 5 turns per
+//! second, is an error.
 //!
-//! Powers of ten (prefixes, grams, centimetres) never touch floating point: they move the decimal
-//! exponent of the number's text, so that `7.85 g/cm^3` is exactly the `7850.0` of a source file.
+//! Powers of ten (prefixes, grams, centimetres) change the decimal exponent of the number's text, so that
+//! `7.85 g/cm^3` is exactly `7850.0`.
 
 mod factor;
 mod table;
@@ -42,7 +42,7 @@ pub enum Quantity {
     Force,
     Torque,
     AngularMomentum,
-    /// Of damping: the part that is lost in a second.
+    /// Of damping: the fraction lost per second.
     DecayRate,
     /// Torque per angle.
     TorsionalStiffness,
@@ -93,8 +93,8 @@ impl Quantity {
         Quantity::Pressure,
     ];
 
-    /// Its unit in SI, which a bare number has; an example of a value; its powers of metre,
-    /// kilogram, second, radian and ampere; and its name with the article.
+    /// Its SI unit, an example of a value, its powers of metre, kilogram, second, radian and ampere, and its name with
+    /// the article.
     fn row(self) -> (&'static str, &'static str, [i32; 5], &'static str) {
         match self {
             Quantity::Length => ("m", "5 cm", [1, 0, 0, 0, 0], "a length"),
@@ -130,7 +130,7 @@ impl Quantity {
         }
     }
 
-    /// Its unit in SI, which a bare number has.
+    /// Its SI unit.
     pub fn si_unit(self) -> &'static str {
         self.row().0
     }
@@ -279,7 +279,7 @@ fn split_number(text: &str) -> Option<(Number, &str)> {
     Some((Number { mantissa: format!("{sign}{whole}.{fraction}"), exponent }, rest.trim_start()))
 }
 
-/// `e3`, `E-12` at the beginning of the text; one far beyond any range stays so.
+/// `e3`, `E-12` at the beginning of the text, clamped to ±[`FAR`].
 fn split_exponent(text: &str) -> Option<(i32, &str)> {
     let text = text.strip_prefix(['e', 'E'])?;
     let (sign, text) = match text.strip_prefix(['-', '\u{2212}']) {
@@ -292,7 +292,7 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
     (!digits.is_empty()).then_some((sign * size.min(FAR), rest))
 }
 
-/// An exponent of ten that no number of digits in a file brings back into range.
+/// An exponent of ten that is out of range for any number of digits.
 const FAR: i32 = 1_000_000_000;
 
 fn split_digits(text: &str) -> (&str, &str) {

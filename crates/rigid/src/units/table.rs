@@ -52,7 +52,7 @@ pub struct Unit {
     pub ten: i32,
     pub numerator: f64,
     pub denominator: f64,
-    /// Whether `k`, `m`, … may stand before it.
+    /// Whether it takes prefixes.
     prefixes: bool,
 }
 
@@ -113,7 +113,7 @@ const PREFIXES: [(&str, i32); 10] = [
     ("G", 9),
 ];
 
-/// What people write instead of a unit's symbol.
+/// Words written instead of a unit's symbol.
 const OTHER_NAMES: [(&str, &str); 24] = [
     ("meter", "m"),
     ("metre", "m"),

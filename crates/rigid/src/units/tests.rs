@@ -124,7 +124,7 @@ fn a_wrong_quantity_says_what_was_expected() {
 }
 
 #[test]
-fn an_unknown_unit_is_named_with_what_it_may_stand_for() {
+fn unknown_units_get_a_suggestion() {
     let near = |text| match parse(text, Quantity::Time) {
         Err(UnitError::UnknownUnit { near, .. }) => near,
         other => panic!("{text}: {other:?}"),
@@ -148,7 +148,7 @@ fn an_unknown_unit_is_named_with_what_it_may_stand_for() {
 }
 
 #[test]
-fn a_word_is_a_unit_or_near_one() {
+fn words_have_a_near_unit() {
     let table =
         [("deg", Some("deg")), ("km", Some("km")), ("degrees", Some("deg")), ("1", Some("1")), ("x", None)];
     for (word, unit) in table {
@@ -157,7 +157,7 @@ fn a_word_is_a_unit_or_near_one() {
 }
 
 #[test]
-fn units_that_are_not_written_as_units_are() {
+fn syntax_errors_are_reported() {
     let table = [
         ("3,5 m", "unexpected `,` (a decimal point is written `.`) in `3,5 m`"),
         ("5 m/", "a unit is missing at the end in `5 m/`"),
@@ -274,7 +274,7 @@ fn a_number_directly_before_a_unit_is_a_quantity_within_a_formula() {
 }
 
 #[test]
-fn what_has_two_readings_within_a_formula_is_refused() {
+fn ambiguous_quantities_in_a_formula_are_errors() {
     let table = [
         ("5 m e1", "`m` is a unit and a name here; for the name write `5*m`"),
         ("5 rev*m", "`m` is a unit and a name here; for the name write `(5 rev) m`"),

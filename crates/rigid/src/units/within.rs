@@ -1,8 +1,7 @@
 //! Quantities within a formula: `exp(-45 deg e1∧e2)`, `5 rev/s e1∧e2`.
 //!
-//! There a quantity is a number directly followed by a unit, which may go on as units do: `5 kg m^2/s`. It
-//! ends before the first word that is no unit. The letters of units are also names of vectors and masses, so
-//! where both readings are possible, none is taken.
+//! A quantity in a formula is a number directly followed by units, as in `5 kg m^2/s`, up to the first word that is not
+//! a unit. A word that may be a unit or the name of a variable is an error.
 
 use super::factor::{Factor, Problem, split_power};
 use super::table::{Unit, find_unit};
@@ -13,7 +12,7 @@ use std::ops::Range;
 /// A quantity's place in bytes, and its value in SI units, rad for angles.
 type Found = (Range<usize>, f64);
 
-/// The quantities in a formula whose other names are those that `is_name` knows, from left to right.
+/// The quantities in a formula, from left to right; `is_name` reports the names of variables.
 pub fn quantities(text: &str, is_name: &dyn Fn(&str) -> bool) -> Result<Vec<Found>, Error> {
     let alone = text.trim().trim_start_matches(['-', '\u{2212}']);
     if begins_number(alone) && number_length(alone) == alone.len() {
@@ -55,7 +54,7 @@ fn quantity(
 ) -> Result<Option<Found>, Error> {
     let before = text[..start].trim_end().chars().next_back();
     let first = skip_spaces(text, number_end);
-    // What stands after `^` is a power.
+    // A number after `^` is a power.
     if unit_at(text, first).is_none() || before == Some('^') {
         return Ok(None);
     }
@@ -119,17 +118,17 @@ fn factor(
     Ok((factor, end))
 }
 
-/// Where the next unit would stand after one that has ended, and the sign between them, if there is one.
+/// The place of a next unit, and the operator before it, if any.
 fn following(text: &str, end: usize) -> Option<(usize, Option<char>)> {
     let at = skip_spaces(text, end);
     match text[at..].chars().next()? {
         c @ ('*' | '·' | '⋅' | '/') => Some((skip_spaces(text, at + c.len_utf8()), Some(c))),
-        // Letters that touch, as in `90°e1`, are no further unit.
+        // Adjacent letters, as in `90°e1`, are not another unit.
         _ => (at > end).then_some((at, None)),
     }
 }
 
-/// The unit that stands at a place, and its length, if the word ends with it: `m`, not `m2` or `m(x)`.
+/// The unit at a place, and its length, if the word ends with it: `m`, not `m2` or `m(x)`.
 fn unit_at(text: &str, at: usize) -> Option<(usize, Unit)> {
     let rest = &text[at..];
     let length = match rest.starts_with('°') {
@@ -142,7 +141,7 @@ fn unit_at(text: &str, at: usize) -> Option<(usize, Unit)> {
     find_unit(word).filter(|_| ends).map(|unit| (length, unit))
 }
 
-/// Whether a power stands here and not a wedge: `^2`, `**-1`, `²`.
+/// Whether the text begins with a power, not a wedge: `^2`, `**-1`, `²`.
 fn begins_power(text: &str) -> bool {
     let written = text.strip_prefix("**").or_else(|| text.strip_prefix('^'));
     match written {

@@ -1,7 +1,4 @@
-//! Functions of two rows over many rows: any product, and `R X ~R`.
-//!
-//! Each function says what it does to a row, and the same arithmetic as one loop over the lanes of a block
-//! of rows, which compilers vectorise.
+//! Functions of two rows over many rows: any product, and `R X ~R`, each for single rows and for lanes.
 
 use crate::g3::rotor::Rotor;
 use crate::g3::values::{Vector, geometric};
@@ -47,7 +44,7 @@ fn add<const N: usize, const W: usize>(terms: &[Term], a: &[Lane<W>], b: &[Lane<
     let signs: [f64; N] = std::array::from_fn(|t| f64::from(terms[t].sign));
     let xs: [&Lane<W>; N] = std::array::from_fn(|t| &a[terms[t].a]);
     let ys: [&Lane<W>; N] = std::array::from_fn(|t| &b[terms[t].b]);
-    // A copy, which the compiler knows to be apart from the factors.
+    // A copy that does not alias the factors.
     let mut sums = out.0;
     for l in 0..W {
         for t in 0..N {
@@ -81,8 +78,7 @@ impl<const W: usize> Kernel<W> for Geometric<'_> {
     }
 }
 
-/// `R X ~R` for X that holds some grades: vector and bivector turn as three numbers each, scalar and
-/// trivector stay.
+/// `R X ~R` for X of some grades: vector and bivector turn as three numbers each, scalar and trivector stay.
 pub(crate) struct Turn(pub Grades);
 
 impl Turn {
@@ -134,7 +130,7 @@ impl<const W: usize> Kernel<W> for Turn {
 }
 
 impl Plan {
-    /// Multiplies row by row into `out`. A factor of a single row meets every row of the other.
+    /// Multiplies row by row into `out`; a single row is broadcast.
     ///
     /// # Panics
     /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
@@ -168,8 +164,7 @@ impl Plan {
     }
 }
 
-/// `R X ~R` for rows of rotor components and rows of values that hold `grades`. Scalar and trivector
-/// stay; vector and bivector each turn as three numbers. One row of either meets every row of the other.
+/// `R X ~R` for rows of rotor components and rows of values of these grades; a single row is broadcast.
 ///
 /// # Panics
 /// If there are no grades, or the numbers of rows do not fit together.

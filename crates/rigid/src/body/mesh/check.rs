@@ -1,8 +1,8 @@
 //! Checks that a mesh encloses a volume.
 //!
-//! Its boundary must vanish: along every edge as many triangles run one way as the other. Two triangles
-//! at each edge, in opposite directions, is the usual case; two bodies that touch along an edge have
-//! four. Vertices count as the same where their coordinates are equal, so seams for textures are closed.
+//! Its boundary must vanish: triangles traverse every edge equally often in both directions. Usually two triangles
+//! share an edge; two bodies that touch along an edge have four. Vertices with equal coordinates are the same vertex,
+//! so texture seams are closed.
 
 use super::error::{Edge, MeshProblem};
 use super::integrals::Integrals;
@@ -31,7 +31,7 @@ pub(super) fn numbers(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<(), Mes
     Ok(())
 }
 
-/// The least and the greatest coordinates of the triangles' corners; vertices without one do not count.
+/// The bounding box of the triangles; unused vertices do not count.
 fn bounds(mesh: &TriangleMesh) -> Option<(Vector, Vector)> {
     let mut corners = mesh.faces.iter().flatten().map(|&i| mesh.vertices[i as usize]);
     let first = corners.next()?;
@@ -50,7 +50,7 @@ pub(super) fn middle(mesh: &TriangleMesh) -> Vector {
 pub(super) fn size(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     let (least, greatest) = bounds(mesh).ok_or(MeshProblem::NoTriangles)?;
     let extent = (greatest - least).norm();
-    // A mesh all in one point is degenerate, which says more.
+    // A mesh in a single point passes here and is reported as degenerate.
     if extent == 0.0 || EXTENTS.contains(&extent) { Ok(()) } else { Err(MeshProblem::Extent(extent)) }
 }
 
@@ -66,8 +66,8 @@ pub(super) fn triangles(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     }
 }
 
-/// Whether the corners coincide or lie in a line: each component of the cross product of two edges is a
-/// difference of two products, each of two rounded differences, and rounds to at most 4 half-ulps of them.
+/// Whether the corners coincide or are collinear. Each component of the cross product of two edges is a difference of
+/// two products of rounded differences, off by at most 4 half-ulps of the products.
 fn is_flat([a, b, c]: [Vector; 3]) -> bool {
     let (u, v) = ((b - a).0, (c - a).0);
     (0..3).all(|i| {
@@ -77,8 +77,8 @@ fn is_flat([a, b, c]: [Vector; 3]) -> bool {
     })
 }
 
-/// Checks that no triangle is repeated, with the same corners in the same sense. (The walls of two bodies that touch have the
-/// same corners in opposite senses.)
+/// Checks that no triangle is repeated with the same orientation. (Bodies that touch share triangles of opposite
+/// orientation.)
 pub(super) fn repetitions(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     let mut welder = Welder::default();
     let mut seen = HashMap::with_capacity(mesh.faces.len());
@@ -102,7 +102,7 @@ pub(super) fn repetitions(mesh: &TriangleMesh) -> Result<(), MeshProblem> {
     }
 }
 
-/// A triangle's edge between two welded vertices; sorted, the edges between the same two come together.
+/// A triangle's edge between two welded vertices; sorting groups the edges between the same vertices.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
     low: u32,

@@ -7,9 +7,8 @@
 //! ∫ x = V s/4,     ∫ x xᵀ = V (s sᵀ + a aᵀ + b bᵀ + c cᵀ)/20,
 //! ```
 //!
-//! exact for a polyhedron. All positions are taken relative to a reference point inside, which is exact
-//! to rounding of the *difference*; and `a·(b x c) = a·((b − a) x (c − a))` has edges in the place of
-//! far-away corners. So a mesh far from the origin loses no digits.
+//! exact for a polyhedron. Positions relative to a reference point inside, and edges in
+//! `a·(b x c) = a·((b − a) x (c − a))`, keep all digits of a mesh far from the origin.
 
 use super::TriangleMesh;
 use crate::numerics::sum::{Sum, SymmetricSum};

@@ -1,9 +1,8 @@
 //! Triangle meshes: reading, checks, and mass, centre of mass and inertia.
 //!
-//! The faces go counterclockwise seen from outside. An integral over the body is then a sum over the
-//! tetrahedra that the triangles make with any one point, those facing it from behind counting negative;
-//! cavities, wound the other way, take themselves out. [`TriangleMesh::body`] checks first that
-//! the mesh encloses a volume in this sense, and reports what is wrong and where.
+//! Faces are counterclockwise seen from outside. An integral over the body is a sum over the signed tetrahedra between
+//! the triangles and any one point; cavities, wound the other way, are subtracted. [`TriangleMesh::body`] first checks
+//! that the mesh encloses a volume, and reports what is wrong and where.
 //!
 //! Files: STL, OBJ, PLY ([`MeshFormat`]).
 
@@ -48,9 +47,8 @@ impl MeshFormat {
     }
 }
 
-/// Vertices and the triangles between them, counterclockwise seen from outside. The vertices are finite
-/// and every triangle refers to vertices that exist; [`TriangleMesh::body`] checks that the
-/// surface is closed.
+/// Finite vertices and valid triangles between them, counterclockwise seen from outside; [`TriangleMesh::body`] checks
+/// that the surface is closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleMesh {
     name: String,
@@ -91,9 +89,9 @@ impl TriangleMesh {
         }
     }
 
-    /// The mesh in the bytes of a file; errors call it by `name`.
+    /// The mesh in the bytes of a file; `name` appears in errors.
     pub fn parse(bytes: &[u8], format: MeshFormat, name: &str) -> Result<TriangleMesh, MeshError> {
-        // A UTF-8 byte order mark, which some editors put before a text.
+        // Some editors write a UTF-8 byte order mark.
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let parsed = match format {
             _ if bytes.is_empty() => Err(MeshProblem::Empty),
@@ -135,8 +133,7 @@ impl TriangleMesh {
         self
     }
 
-    /// The enclosed volume, negative where the faces are wound inwards. Meaningful for a
-    /// closed mesh only, which is not checked.
+    /// The enclosed volume, negative if the faces are wound inwards. The mesh must be closed, which is not checked.
     pub fn volume(&self) -> f64 {
         integrals(self, check::middle(self)).volume
     }
@@ -169,7 +166,7 @@ impl TriangleMesh {
     }
 }
 
-/// What a file holds: positions, and triangles between them.
+/// Positions and triangles of a file.
 type Parsed = (Vec<Vector>, Vec<[u32; 3]>);
 
 /// Merges vertices with equal coordinates, which closes seams. `−0 = 0`.
@@ -180,7 +177,7 @@ struct Welder {
 }
 
 impl Welder {
-    /// The number of the vertex here. Of more than u32 can number, the mesh will be refused.
+    /// The number of the vertex at this position; a mesh of more than u32::MAX vertices is rejected later.
     fn number(&mut self, position: Vector) -> u32 {
         let next = u32::try_from(self.vertices.len()).unwrap_or(u32::MAX);
         // Adding 0 turns −0 into 0.

@@ -1,9 +1,8 @@
-//! Wavefront OBJ: a line for each vertex (`v x y z`, perhaps a weight or a colour behind) and each polygon
+//! Wavefront OBJ: a line for each vertex (`v x y z`, optionally a weight or a colour) and each polygon
 //! (`f 1 2 3`, `f 1/1 2/2 3/3`, `f 1//1 …`, `f 1/1/1 …`).
 //!
-//! Vertices are numbered from 1, or from −1 backwards from the last one so far. A line that ends in `\`
-//! goes on in the next; `#` begins a comment. Texture, normals, groups and materials say nothing about
-//! mass and are skipped.
+//! Vertices are numbered from 1, or backwards from −1, the last one so far. A line that ends in `\` continues on the
+//! next; `#` begins a comment. Texture, normals, groups and materials are skipped.
 
 use super::error::{MeshProblem, Place};
 use super::text::{corrupt, finite, lines, number, quoted, words};
@@ -12,7 +11,7 @@ use polhode_ga::Vector;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
     let mut file = File::default();
-    // The words of a line that goes on, and where it began.
+    // The words of a continued line, and the number of its first line.
     let mut begun: Option<(usize, Vec<&[u8]>)> = None;
     for (line, text) in lines(bytes) {
         let text = text.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii_end();
@@ -38,7 +37,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshProblem> {
 struct File {
     vertices: Vec<Vector>,
     faces: Vec<[u32; 3]>,
-    /// The line of each face, for an index that turns out to have no vertex.
+    /// The line of each face, for errors.
     lines: Vec<usize>,
 }
 
@@ -94,7 +93,7 @@ impl File {
         index.ok_or_else(|| no_vertex(vertex, self.vertices.len(), line))
     }
 
-    /// Faces may come before their vertices, so that an index is only known to be too large at the end.
+    /// Checks indices at the end, because faces may come before their vertices.
     fn finish(self) -> Result<Parsed, MeshProblem> {
         for (face, &line) in self.faces.iter().zip(&self.lines) {
             if let Some(&i) = face.iter().find(|&&i| i as usize >= self.vertices.len()) {

@@ -2,9 +2,9 @@
 //!
 //! Binary: an 80-byte header, the number of triangles as a little-endian u32, then 50 bytes for each:
 //! twelve f32 (normal and corners) and a 16-bit attribute. Text: `solid`, then for each triangle
-//! `facet normal … outer loop vertex … vertex … vertex … endloop endfacet`, then `endsolid`. A binary
-//! header may begin with "solid" too; but only binary files contain zero bytes. Normals are not read:
-//! the order of the corners says the same. Corners at equal coordinates become one vertex.
+//! `facet normal … outer loop vertex … vertex … vertex … endloop endfacet`, then `endsolid`. A binary header may also
+//! begin with "solid", but only binary files contain zero bytes. Normals are ignored: they follow from the order of the
+//! corners. Corners with equal coordinates become one vertex.
 
 use super::error::{MeshProblem, Place};
 use super::text::{corrupt, finite, lines, number, quoted, words};
@@ -100,7 +100,7 @@ fn facet(words: &mut Words, index: usize, welder: &mut Welder) -> Result<[u32; 3
     Ok(face)
 }
 
-/// The words of a text, wherever its lines end.
+/// The words of a text, across lines.
 struct Words<'a> {
     lines: Box<dyn Iterator<Item = (usize, &'a [u8])> + 'a>,
     rest: Box<dyn Iterator<Item = &'a [u8]> + 'a>,

@@ -3,7 +3,7 @@
 use super::error::{MeshProblem, Place};
 use polhode_ga::Vector;
 
-/// The lines of a file, numbered from 1, without their ends: LF, CR LF, or CR alone in a file without LF.
+/// The lines of a file, numbered from 1. They end with LF, CR LF, or CR alone in a file without LF.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     (1..).zip(bytes.split(move |&b| b == end).map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
@@ -14,7 +14,7 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// A word as it is quoted in a message, shortened.
+/// A word quoted and shortened for a message.
 pub(super) fn quoted(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(160)]);
     let short: String = text.chars().take(40).collect();
@@ -22,13 +22,13 @@ pub(super) fn quoted(word: &[u8]) -> String {
     format!("'{short}{dots}'")
 }
 
-/// A word read as a number; infinities and NaN are numbers here.
+/// A word read as a number, which may be infinite or NaN.
 pub(super) fn number(word: &[u8], place: Place) -> Result<f64, MeshProblem> {
     let value = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
     value.ok_or_else(|| corrupt(place, format!("{} is not a number", quoted(word))))
 }
 
-/// The position of the file's given vertex, if it is finite.
+/// The position of a vertex, or an error if it is not finite.
 pub(super) fn finite(position: [f64; 3], vertex: usize, place: Place) -> Result<Vector, MeshProblem> {
     let position = Vector(position);
     if position.0.iter().all(|x| x.is_finite()) {
@@ -38,7 +38,7 @@ pub(super) fn finite(position: [f64; 3], vertex: usize, place: Place) -> Result<
     }
 }
 
-/// The error for something that the format does not allow.
+/// The error for a violation of the format.
 pub(super) fn corrupt(place: Place, what: impl Into<String>) -> MeshProblem {
     MeshProblem::Corrupt { place, what: what.into() }
 }

@@ -1,8 +1,7 @@
-//! Derivatives of the flow of the free top, at any time in closed form.
+//! Derivatives of the flow of the free top in closed form.
 //!
-//! Of the rotor only a turn by a small bivector ε of space axes has to be known, `δR = −½ ε R`. The attitude of the
-//! start adds to it unchanged. For the rest, L stays what it was made at the start: from `L = R m`, with
-//! `m = I(Ω_B)`, in the components of axial vectors,
+//! The variation of the rotor is a small bivector ε in space axes, `δR = −½ ε R`. A variation of the start's attitude
+//! adds to ε unchanged. For the others L is constant: from `L = R m`, `m = I(Ω_B)`, in components of axial vectors,
 //!
 //! ```text
 //! ε x L + R δm = R(0) δm(0)   ⇒   ε_⊥ = L x (R(0) δm(0) − R δm)/G².
@@ -15,16 +14,16 @@
 //! G ε_∥ = t δE − ½ Σ δi_k ∫ω_k² dt.
 //! ```
 //!
-//! What is left are δω and the integrals of ω²: [`super::variation`] has them.
+//! [`super::variation`] derives δω and the integrals of ω².
 
 use super::variation::{Form, Variation};
 use super::{FreeMotion, power_of_two};
 use polhode_ga::{Bivector, Rotor};
 use std::array::from_fn;
 
-/// Derivatives of rotor (four components) and angular velocity in the body (three), rows by component. Columns:
-/// a turn ε of the attitude at the start in space axes, `exp(−½ε) R(0)`; the angular velocity at the start in
-/// body axes; the principal moments, about principal axes that stay in the body.
+/// Derivatives of rotor (four components) and body angular velocity (three), rows by component. Columns: a turn ε of the
+/// initial attitude in space axes, `exp(−½ε) R(0)`; the initial angular velocity in body axes; the principal moments,
+/// with the principal axes fixed in the body.
 #[derive(Clone, Copy, Debug, Default)]
 #[allow(missing_docs)]
 pub struct FlowDerivatives {
@@ -38,7 +37,7 @@ pub struct FlowDerivatives {
 }
 
 impl FlowDerivatives {
-    /// Whether all numbers are.
+    /// Whether all derivatives are finite.
     pub fn is_finite(&self) -> bool {
         let rotor = [&self.rotor_by_attitude, &self.rotor_by_omega, &self.rotor_by_moments];
         let omega = [&self.omega_by_omega, &self.omega_by_moments];
@@ -48,19 +47,19 @@ impl FlowDerivatives {
     }
 }
 
-/// A free motion whose derivatives are wanted.
+/// A free motion prepared for derivatives.
 #[derive(Clone, Debug)]
 pub struct Differentiated {
     motion: FreeMotion,
     /// Power of two near the moments.
     size: f64,
-    /// In principal axes, from the attitude 1, with moments and rates near 1.
+    /// The motion in principal axes, from attitude 1, with moments and rates near 1.
     unit: FreeMotion,
     variation: Variation,
 }
 
 impl FreeMotion {
-    /// What the derivatives at all times have in common.
+    /// Prepares derivatives at any time.
     pub fn differentiated(&self) -> Differentiated {
         let size = power_of_two(self.moments);
         let moments = self.moments.map(|i| i / size);
@@ -70,14 +69,13 @@ impl FreeMotion {
 }
 
 impl Differentiated {
-    /// At time `t` in s. Not finite where the motion is unstable and t so late that a change has grown beyond
-    /// floating point.
+    /// At time `t` in s. Not finite if a change of an unstable motion has grown beyond floating point.
     pub fn at(&self, t: f64) -> FlowDerivatives {
         let FreeMotion { frame, scale, .. } = self.motion;
         let (rotor, omega) = self.motion.at(t);
         let (turn, change, rate) = self.in_principal_axes(t * scale);
 
-        // From the unit motion's time and moments to those of this one, and to body axes.
+        // From the unit motion to this one, and to body axes.
         let by_rate = |forms: [Form; 3], factor: f64| {
             let columns: [_; 3] = from_fn(|k| frame.apply_bivector(Bivector(forms.map(|f| f.0[k]))));
             let rows: [[f64; 3]; 3] = from_fn(|i| columns.map(|c| c.0[i] * factor));
@@ -104,7 +102,7 @@ impl Differentiated {
         }
     }
 
-    /// Of the unit motion: the turn ε in the body, δω, and ω'.
+    /// The turn ε in the body, δω and ω' of the unit motion.
     fn in_principal_axes(&self, t: f64) -> ([Form; 3], [Form; 3], [f64; 3]) {
         let (i, start) = (self.unit.moments, self.unit.omega.0);
         let (rotor, varied) = (self.unit.at(t).0, self.variation.at(t));
@@ -116,7 +114,7 @@ impl Differentiated {
         });
         let g2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
         if g2 == 0.0 {
-            // At rest δω makes the turn by itself.
+            // At rest the turn is that by δω.
             return (varied.change.map(|change| change * t), varied.change, rate);
         }
         let made: [Form; 3] = from_fn(|k| Form::rate(k) * i[k] + Form::moment(k) * start[k]);
@@ -138,7 +136,7 @@ impl Differentiated {
 fn body_turn(rotor: Rotor, turn: Bivector) -> [f64; 4] {
     let [s, x, y, z] = rotor.components();
     let [a, b, c] = turn.0;
-    // Of bivectors, BE = −b·e − I(b x e).
+    // BE = −b·e − I(b x e) for bivectors.
     [
         0.5 * (x * a + y * b + z * c),
         -0.5 * (s * a - (y * c - z * b)),
@@ -147,7 +145,7 @@ fn body_turn(rotor: Rotor, turn: Bivector) -> [f64; 4] {
     ]
 }
 
-/// `~R X R` of three forms, a bivector whose components they are.
+/// `~R X R` for a bivector X with these components.
 fn in_body(rotor: Rotor, x: [Form; 3]) -> [Form; 3] {
     let columns: [[f64; 3]; 6] =
         from_fn(|j| rotor.reverse().apply_bivector(Bivector(x.map(|form| form.0[j]))).0);

@@ -1,17 +1,17 @@
 //! Description of a free motion by its invariants.
 //!
-//! **Phase.** In one period T of the angular velocity m comes back once round d, and the body has turned about L.
-//! With the energy `2E = (G² + sP)/c` and ν of [`super`], `ν − 2E/G = −s A/T` with
+//! **Phase.** In one period T of the angular velocity m circles d once, and the body turns about L. With the energy
+//! `2E = (G² + sP)/c` and ν of [`super`], `ν − 2E/G = −s A/T` with
 //!
 //! ```text
 //! A = (TP/cG) (1 − ½ S(k²/n)) = 2π + T (G|b−a| S(n)/2ab − Q/aG),   νT = 2ET/G − s A:
 //! ```
 //!
-//! the angle follows from energy and time, less the solid angle A that L sweeps round the encircled axis in the
-//! body (Montgomery, Am. J. Phys. 59 (1991) 394).
+//! the angle is `2ET/G` less the solid angle A that L sweeps around the encircled axis in the body (Montgomery, Am. J.
+//! Phys. 59 (1991) 394).
 //!
-//! **Wobble.** Between L and that axis is the angle whose tangent is `√(m1² + m2²)/m3`, least where sn = 0,
-//! `aA_a/cA_c`, largest where cn = 0, `bA_b/(cA_c k')`.
+//! **Wobble.** The tangent of the angle between L and that axis is `√(m1² + m2²)/m3`, least where sn = 0, `aA_a/cA_c`,
+//! largest where cn = 0, `bA_b/(cA_c k')`.
 
 use super::FreeMotion;
 use crate::body::inertia::equal;
@@ -23,7 +23,7 @@ use crate::state::phase::Gyrostat;
 use polhode_ga::Bivector;
 use std::f64::consts::PI;
 
-/// Parameter 1 − k²/n above which the other form of A is used; A is nearly 2π there.
+/// Parameter 1 − k²/n above which the other form of A is used; A is then nearly 2π.
 const FAR: f64 = 1e4;
 
 impl FreeMotion {
@@ -109,9 +109,9 @@ impl FreeMotion {
         Some(2.0 * PI * part.value()).filter(|x| x.is_finite())
     }
 
-    /// Period of a small wobble about principal axis c of a body that turns about it: in Euler's equations
-    /// without squares of the other rates both are harmonic, with the square of the rate
-    /// `(c−a)(c−b) ω²/(ab)`. None if that is not positive, or the body turns about another axis.
+    /// Period of a small wobble about principal axis c of a body that turns about it: Euler's equations, linear in the
+    /// other rates, are harmonic with squared rate `(c−a)(c−b) ω²/(ab)`. None if that is not positive, or the body turns
+    /// about another axis.
     fn small_wobble(&self, c: usize) -> Option<f64> {
         let (a, b) = ((c + 1) % 3, (c + 2) % 3);
         let Bivector(w) = self.omega;

@@ -1,7 +1,7 @@
 //! States of a free motion at any time: phases, series and frames.
 //!
-//! A flow has coefficients of one motion, for any times in the lanes, or of `C` motions in lanes, each for
-//! its own lane. The formulas are the same, and every number is that of the motion alone, to the last bit.
+//! A flow holds coefficients of one motion, with times in the lanes, or of `C` motions, one in each lane. Both give the
+//! same bits.
 
 use super::series::{Circular, Hyperbolic, Series, State};
 use crate::numerics::double_double::DoubleDouble;
@@ -19,20 +19,20 @@ pub(super) struct Flow<S, const C: usize = 1> {
     /// νt/2.
     pub precession: Phases<C>,
     pub series: S,
-    /// Rotor components of what turns the quaternion units of (e1, e2, d) into space and into body axes.
+    /// Rotor components that take the quaternion units of (e1, e2, d) to space and body axes.
     pub rotor: [[[f64; C]; 4]; 4],
     /// Components of the angular velocity in body axes for cn, sn and dn.
     pub omega: [[[f64; C]; 3]; 3],
 }
 
-/// In one form or the other.
+/// A flow in either form.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum AnyFlow {
     Circular(Flow<Circular>),
     Hyperbolic(Flow<Hyperbolic>),
 }
 
-/// A [`Phase`] of each motion, number by number: both parts of the rate, both of the start.
+/// The [`Phase`] of each motion by numbers: two of the rate, two of the start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Phases<const C: usize>([[f64; C]; 4]);
 
@@ -51,7 +51,7 @@ impl From<Phase> for Phases<1> {
 }
 
 impl<S: Series<C>, const C: usize> Flow<S, C> {
-    /// No motion in any lane.
+    /// Zero coefficients in all lanes.
     pub fn empty() -> Flow<S, C> {
         let none = [0.0; C];
         let still = Phases([none; 4]);

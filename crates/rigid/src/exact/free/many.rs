@@ -1,9 +1,8 @@
 //! Free motions of many bodies in SIMD lanes.
 //!
-//! One formula serves all bodies of a form, whatever their regime: steady rotation and symmetric tops are
-//! circular, the separatrix and what is near it hyperbolic. So the bodies are held in tiles, and of a tile those
-//! of either form lie together in blocks, one body to a lane. Each number is computed from those of its own lane
-//! alone, so that a state has the same bits as [`FreeMotion::at`], whatever its neighbours are.
+//! One formula serves all bodies of a form in any regime: steady rotation and symmetric tops are circular, motions near
+//! the separatrix hyperbolic. Bodies are stored in tiles, whose bodies of either form are stored in blocks, one body per
+//! lane. A lane depends only on its own numbers, so a state has the same bits as [`FreeMotion::at`].
 
 use super::FreeMotion;
 use super::flow::{AnyFlow, Flow};
@@ -12,21 +11,21 @@ use polhode_ga::rows::curve::{TOGETHER, expect, sample, together};
 use polhode_ga::simd::threads::{Threads, for_each};
 use std::ops::Range;
 
-/// Motions in a tile: enough to fill the blocks of both forms, few enough for their states to stay near.
+/// Motions in a tile: enough to fill the blocks of both forms, few enough for the caches.
 pub const TILE: usize = 1024;
 
-/// From so many times on a motion is faster with the times in the lanes than beside other motions.
+/// Number of times from which lanes of times are faster than lanes of motions.
 const TIMES_IN_LANES: usize = 48;
 
-/// From so many states on a thread more pays.
+/// Number of states from which another thread pays.
 const SHARED: usize = 2048;
 
-/// The times at which many motions are wanted.
+/// The times at which many motions are evaluated.
 #[derive(Clone, Copy, Debug)]
 pub enum Times<'a> {
-    /// All of them for each motion.
+    /// The same times for each motion.
     Common(&'a [f64]),
-    /// So many for each motion in turn; after the last motion the first one follows again.
+    /// This number of times for each motion in turn, repeated after the last motion.
     Own(&'a [f64], usize),
 }
 
@@ -44,7 +43,7 @@ struct Block<S> {
     flows: Flow<S, TOGETHER>,
     /// Their places in the tile, ascending.
     places: [u16; TOGETHER],
-    /// There may be fewer than lanes.
+    /// Number of motions, at most the lanes.
     count: usize,
 }
 
@@ -58,10 +57,10 @@ struct Part<'a> {
 }
 
 impl Tile {
-    /// Of the next motions, at most [`TILE`] of them.
+    /// Takes the next motions, at most [`TILE`].
     ///
     /// # Errors
-    /// The first there is, with its place among them.
+    /// The first error of the iterator, with its index.
     pub fn new<E>(motions: impl Iterator<Item = Result<FreeMotion, E>>) -> Result<Tile, (usize, E)> {
         let mut tile = Tile::default();
         for (place, motion) in motions.take(TILE).enumerate() {
@@ -88,7 +87,7 @@ impl Tile {
     }
 }
 
-/// Fills in what states the part has of all blocks. To have them from memory takes longer than to compute.
+/// Fills in the part's states of all blocks, prefetching the next block, since memory is slower than the computation.
 fn fill<S: Series<TOGETHER>>(blocks: &[Block<S>], part: &mut Part<'_>) {
     for (i, block) in blocks.iter().enumerate() {
         if let Some(next) = blocks.get(i + 1) {
@@ -110,12 +109,11 @@ fn add<S: Series<TOGETHER>>(blocks: &mut Vec<Block<S>>, place: usize, flow: &Flo
     }
 }
 
-/// States `rows` of all those of the motions at the times, motion by motion: rows of four rotor components and
-/// of three components of the angular velocity. The same bits as [`FreeMotion::at`], for any threads.
+/// States `rows` of the motions at the times, motion by motion: rows of four rotor components and of three components of
+/// the angular velocity. The same bits as [`FreeMotion::at`], for any number of threads.
 ///
 /// # Panics
-/// If the numbers of rows are not that of the states, there are no such states, or a tile but the last has fewer
-/// motions than [`TILE`].
+/// If the numbers of rows differ, states do not exist, or a tile other than the last has fewer motions than [`TILE`].
 pub fn at_each(
     threads: Threads,
     tiles: &[Tile],
@@ -170,7 +168,7 @@ impl<S: Series<TOGETHER>> Block<S> {
         &self.places[..self.count]
     }
 
-    /// Fills in what states the part has of these motions.
+    /// Fills in the part's states of these motions.
     fn fill(&self, part: &mut Part<'_>) {
         let (Some(&first), Some(&last)) = (self.places().first(), self.places().last()) else { return };
         let rows = usize::from(first) * part.each..(usize::from(last) + 1) * part.each;
@@ -188,7 +186,7 @@ impl<S: Series<TOGETHER>> Block<S> {
         }
     }
 
-    /// All motions at the kth of their times.
+    /// All motions at their kth time.
     fn at_time(&self, k: usize, part: &mut Part<'_>) {
         let first = part.rows.start;
         let row = |place: &u16| usize::from(*place) * part.each + k;

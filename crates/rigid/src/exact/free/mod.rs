@@ -1,9 +1,9 @@
-//! Torque-free motion in closed form, exact at any time.
+//! Torque-free motion in closed form.
 //!
 //! In principal axes `E = ½ Σ i_k ω_k²` and `G² = Σ i_k² ω_k²` are constant, so the angular velocity
-//! runs along the intersection of two ellipsoids, the polhode. Name `c` the axis it encircles: that of
-//! the largest moment when `G² > 2E i_mid` (short-axis mode), of the smallest otherwise (long-axis
-//! mode); `b` the middle one, `a` the other. The combinations
+//! follows the intersection of two ellipsoids, the polhode. Let `c` be the axis it encircles: that of the largest moment
+//! if `G² > 2E i_mid` (short-axis mode), of the smallest otherwise (long-axis mode); `b` the middle axis, `a` the other.
+//! The combinations
 //!
 //! ```text
 //! P = a(c−a) ω_a² + b(c−b) ω_b² = 2Ec − G²
@@ -12,14 +12,14 @@
 //! λ² = (c−b)Q / (abc),  k² = (b−a)P / ((c−b)Q),  k'² = (c−a)D / ((c−b)Q)
 //! ```
 //!
-//! are formed in double-double precision, so that k' is known at the separatrix too. Then with `u = u0 + λt`
+//! are computed in double-double precision, so that k' is accurate near the separatrix. With `u = u0 + λt`
 //!
 //! ```text
 //! ω = (A_a cn u, τ A_b sn u, σ A_c dn u),   A_a² = P/(a(c−a)),  A_b² = P/(b(c−b)),  A_c² = Q/(c(c−a)),
 //! ```
 //!
-//! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the axes' order (a, b, c). (On the
-//! separatrix cn is positive always; there A_a and τ take the sign of ω_a.)
+//! σ the sign of ω_c, `τ = σ s ε` with `s = sign(c − a)` and ε the parity of the order (a, b, c). (On the separatrix cn
+//! is positive; there A_a and τ take the sign of ω_a.)
 //!
 //! **The rotor.** In the frame of `e1 = e_a`, `d = σ e_c` and `e2 = d x e1`, the momentum is
 //! `m = (a A_a cn, s b A_b sn, c A_c dn)`. Let the rotor `W(t)` carry m to `G d`, which stands for the fixed L:
@@ -32,33 +32,33 @@
 //!
 //! So `|α|² = (G + m3)/2G` is an elliptic function of u with the periods 2K and 4iK', its poles at ±iK' and its
 //! zeros where `dn = −G/cA_c`: at ±i(2K' − η) for `dn iη = G/cA_c`, that is `η = F(φ, k')` with
-//! `tan²φ = a(c−b)/(c(b−a))`; and `|β|²` has its zeros at ±iη. A function is known by these up to a factor:
-//! with the theta functions of nome q², `q = exp(−πK'/K)`, `v = πu/2K` and `y = πη/2K`
+//! `tan²φ = a(c−b)/(c(b−a))`; the zeros of `|β|²` are ±iη. Zeros and poles determine a function up to a factor: with the
+//! theta functions of nome q², `q = exp(−πK'/K)`, `v = πu/2K` and `y = πη/2K`
 //!
 //! ```text
 //! α = C(t) θ4(v − i s y | q²),   β = s C(t) θ1(v − i s y | q²),
 //! ```
 //!
-//! the signs being those of m. `C C*` is 1/θ4(v | q) but for a constant; normalising does the rest. The phase of C
-//! is linear in time, ½νt, since α has no other zeros and poles: ν is the mean rate of precession of a
-//! rotor without the turns of m about d. **The rotor is four theta series, and one uniform turn about L**:
+//! with the signs of m. `C C*` is a constant times 1/θ4(v | q), so normalising suffices. The phase of C is linear in
+//! time, ½νt, since α has no other zeros and poles: ν is the mean rate of precession without the turns of m about d.
+//! **The rotor is four theta series, and one uniform turn about L**:
 //!
 //! ```text
 //! W = exp(½ν t d) (Re θ4 + d Im θ4 + e1 s Re θ1 + e2 s Im θ1)/|…|   in quaternion units.
 //! ```
 //!
-//! Jacobi found this in 1849; what it saves is an integral of the third kind for each state. One is left in ν:
-//! with Euler's `φ' = G(2E − m3²/c)/(G² − m3²)` and the 2π by which m turns about d in each period,
+//! This form (Jacobi 1849) needs an integral of the third kind only in ν: with Euler's
+//! `φ' = G(2E − m3²/c)/(G² − m3²)` and the 2π by which m turns about d in each period,
 //!
 //! ```text
 //! ν = G/c + s (κ Π(n) − π/2) λ/K,   κ = G|c−a|/(acλ),   n = −c(b−a)/(a(c−b)) <= 0
 //!   = G/a − s G|b−a| S(n)/2ab − s π λ/2K   = G/c + s P S(k²/n)/2cG,
 //! ```
 //!
-//! where S is the sum that `Π − K` is proportional to ([`crate::numerics::elliptic`]), and the second form comes of
-//! `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term times κ is π/2. The one with the smaller parameter is taken.
+//! where `Π − K` is proportional to the sum S ([`crate::numerics::elliptic`]), and the second form follows from
+//! `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term times κ is π/2. The form with the smaller parameter is used.
 //!
-//! **Near the separatrix** K grows and q tends to 1. Jacobi's imaginary transformation leads to the nome
+//! **Near the separatrix** K grows and q tends to 1. Jacobi's imaginary transformation gives the nome
 //! `q' = exp(−πK/K')` and, with `x = πu/4K'` and `γ = πη/4K'` for u within a half period,
 //!
 //! ```text
@@ -66,12 +66,11 @@
 //! ```
 //!
 //! circular functions of γ times hyperbolic ones of x; the exponential joins the precession. On the separatrix
-//! itself one term is left, and ν is G/b.
+//! itself one term remains, and ν is G/b.
 //!
-//! **Digits.** v and νt/2 are reduced in double-double precision, so that the error does not grow with time. All
-//! series are factors (sin v, sinh x, …) times sums of terms that fall fast, so that each component of ω keeps its
-//! own digits, as a needle needs; no angle turns fast as the wobble P vanishes, for none is computed. Limits need no
-//! care: equal moments give q = 0, and steady rotation is β = 0.
+//! **Accuracy.** v and νt/2 are reduced in double-double precision, so the error does not grow with time. All series are
+//! factors (sin v, sinh x, …) times rapidly converging sums, so each component of ω is accurate relative to itself. No
+//! limit is special: equal moments give q = 0, steady rotation β = 0.
 //!
 //! Jacobi 1849; Whittaker, *Analytical Dynamics* §69; Celledoni, Fassò, Säfström, Zanna, SIAM J. Sci. Comput.
 //! 30 (2008); DLMF 20.7 (theta functions), 19.7 and 19.8 (integrals).
@@ -102,7 +101,7 @@ use polhode_ga::{Bivector, Rotor};
 use series::{Circular, Hyperbolic, LARGEST_NOME, NEVER, Series};
 use std::f64::consts::PI;
 
-/// Twice the precision knows a phase of this many turns to 1e-14 of a turn.
+/// Number of turns up to which double-double precision gives a phase to 1e-14 turns.
 pub(crate) const MOST_TURNS: f64 = 1e17;
 
 /// A free motion: rotor and angular velocity at any time up to its [`FreeMotion::horizon`].
@@ -113,8 +112,8 @@ pub struct FreeMotion {
     frame: Rotor,
     /// In principal axes at time 0.
     omega: Bivector,
-    /// A power of two near the largest component of omega; the orbit is that of omega/scale in time
-    /// t·scale, with moments near 1, so that no square leaves the range of floating point.
+    /// A power of two near the largest component of omega; the orbit is that of omega/scale in time t·scale, with
+    /// moments near 1, so that squares do not overflow.
     scale: f64,
     /// None for steady rotation.
     orbit: Option<Orbit>,
@@ -147,7 +146,7 @@ impl FreeMotion {
         FreeMotion { moments, frame, omega, scale, orbit, flow }
     }
 
-    /// How far in time, in s, the phase is known: to 1e17 turns.
+    /// How far in time, in s, the phase is accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
         let fastest = match &self.orbit {
             Some(orbit) => orbit.lambda.hi.max(orbit.precession.hi.abs()) * self.scale,
@@ -168,7 +167,7 @@ impl FreeMotion {
     /// The same at many times: rows of four rotor components and of three components of the angular velocity.
     ///
     /// # Panics
-    /// If the numbers of rows are not that of the times.
+    /// If the numbers of rows and times differ.
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
         match &self.flow {
             AnyFlow::Circular(flow) => sample(flow, threads, times, rotors, omegas),
@@ -203,7 +202,7 @@ fn steady(omega: Bivector, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     AnyFlow::Circular(flow.with_frames(rotor, [Rotor::IDENTITY, d, d, d], frame.reverse()))
 }
 
-/// Any other motion.
+/// A motion that is not steady.
 fn tumbling(orbit: &Orbit, scale: f64, rotor: Rotor, frame: Rotor) -> AnyFlow {
     let (whole, rest) = orbit.start;
     // AGM(1, k) = π/2K'.

@@ -25,7 +25,7 @@ pub(super) struct Orbit {
     pub precession: DoubleDouble,
     /// AGM(1, k') = π/2K; None on the separatrix.
     pub mean: Option<DoubleDouble>,
-    /// u at time 0: so many K, and the rest.
+    /// u at time 0: a multiple of K, and the rest.
     pub start: (f64, f64),
     /// Squared sine and cosine of the amplitudes of η and of K' − η.
     amplitudes_of_eta: [[f64; 2]; 2],
@@ -43,8 +43,8 @@ impl Orbit {
     }
 }
 
-/// Moments and invariants in double-double precision, differences and all else positive. A needle's invariants, or those
-/// of a rotation that is all but steady, are beyond the range of floats.
+/// Positive moments and invariants in double-double precision. Those of a needle or a nearly steady rotation are beyond
+/// the range of floats.
 struct Invariants {
     a: Wide,
     b: Wide,
@@ -153,9 +153,9 @@ impl Invariants {
     }
 }
 
-/// D. Where its two terms nearly cancel, without any rounding but the last.
+/// D, rounded once if its two terms nearly cancel.
 fn difference(i: [Wide; 3], w: [Wide; 3], [small, b, large]: [usize; 3]) -> Wide {
-    /// A difference of no more than this times its terms.
+    /// The terms cancel if their difference is at most this times them.
     const CANCELLED: f64 = 1e-2;
     // i_x (i_x − i_b) ω_x²
     let term = |x: usize| i[x] * (i[x] - i[b]) * w[x] * w[x];
@@ -167,7 +167,7 @@ fn difference(i: [Wide; 3], w: [Wide; 3], [small, b, large]: [usize; 3]) -> Wide
     let term = |x: usize| {
         let [(ix, m), (ib, n), (wx, e)] = [i[x], i[b], w[x]].map(Wide::parts);
         let most = m.max(n);
-        // What is shifted so far is below the last digit of a difference that is not 0.
+        // Shifts beyond 1000 bits are below the last digit of a nonzero difference.
         let shifted = |x: f64, n: i64| if most - n > 1000 { 0.0 } else { x * exp2(n - most) };
         let difference = Exact::ZERO.plus(shifted(ix.hi, m)).plus(-shifted(ib.hi, n));
         (difference.times(ix.hi).times(wx.hi).times(wx.hi), most + m + 2 * e)
@@ -177,8 +177,8 @@ fn difference(i: [Wide; 3], w: [Wide; 3], [small, b, large]: [usize; 3]) -> Wide
     Wide::normal(high.add(low.times(exp2(n - m))).value(), m)
 }
 
-/// The u in [−2K, 2K] with given cn u and sn u, up to a factor, as so many K and a rest of at most K/2. On the
-/// separatrix, where `k' = 0`, all is rest.
+/// The u in [−2K, 2K] with given cn u and sn u, up to a factor, as a multiple of K and a rest of at most K/2. On the
+/// separatrix, `k' = 0`, only the rest is nonzero.
 pub(crate) fn argument(cn: Wide, sn: Wide, kc: Wide) -> (f64, f64) {
     let side = |x: Wide| if x.is_negative() { -1.0 } else { 1.0 };
     // Beyond K/2 tan am(u − K) = −cn u / (k' sn u).

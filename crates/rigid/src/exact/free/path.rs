@@ -5,12 +5,12 @@ use crate::error::SimulateError;
 use crate::state::checks::check_horizons;
 use polhode_ga::Bivector;
 
-/// On the separatrix all but sech 20 = 4e-9 of the way from pole to pole lies between u = −20 and 20.
+/// Half the range of u drawn on the separatrix: sech 20 = 4e-9 of the way from pole to pole is missing.
 const NEARLY_ALL: f64 = 20.0;
 
 impl FreeMotion {
-    /// Where in time to begin, and for how long to go, to see all of the polhode: one period; on the separatrix
-    /// the way from one end of the middle axis to the other; no time if the rotation is steady.
+    /// Start and duration in s that cover the polhode: one period; on the separatrix from one end of the middle axis to
+    /// the other; 0 if the rotation is steady.
     fn once_round(&self) -> (f64, f64) {
         let Some(orbit) = &self.orbit else { return (0.0, 0.0) };
         match orbit.mean {
@@ -22,8 +22,8 @@ impl FreeMotion {
         }
     }
 
-    /// So many angular velocities in body axes along the polhode, equally far from each other in time, from the
-    /// start on; the last is the first again, except on the separatrix, where the curve goes from pole to pole.
+    /// `count` angular velocities in body axes along the polhode, at equal time steps from the start; the last equals
+    /// the first, except on the separatrix, where the curve goes from pole to pole.
     pub fn polhode(&self, count: usize) -> Vec<Bivector> {
         let (start, length) = self.once_round();
         let step = length / count.saturating_sub(1).max(1) as f64;
@@ -36,7 +36,7 @@ impl FreeMotion {
         curve
     }
 
-    /// So many angular velocities in space axes, over so many times the time that the polhode takes.
+    /// `count` angular velocities in space axes over `periods` times the duration of the polhode.
     pub fn herpolhode(&self, count: usize, periods: f64) -> Result<Vec<Bivector>, SimulateError> {
         let (start, length) = self.once_round();
         let step = periods * length / count.saturating_sub(1).max(1) as f64;

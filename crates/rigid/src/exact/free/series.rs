@@ -1,25 +1,23 @@
 //! The theta series of a free motion, as polynomials.
 //!
-//! [`super`] says what they are for. Two forms are at hand, in trigonometric functions for a small nome
-//! `q = exp(−πK'/K)`, in hyperbolic ones for a small `q' = exp(−πK/K')`. The border is q = 0.2, where q' is 0.002:
-//! terms of the orders kept fall below 1e-17 there. Coefficients are computed once; a harmonic is a
-//! Chebyshev polynomial in `cos 2v` (or `cosh`) times one of sin v, cos v and sin 2v,
+//! Used by [`super`] in two forms: trigonometric functions for a small nome `q = exp(−πK'/K)`, hyperbolic ones for a
+//! small `q' = exp(−πK/K')`. At the border q = 0.2, q' = 0.002, omitted terms are below 1e-17. A harmonic is a Chebyshev
+//! polynomial in `cos 2v` (or `cosh`) times one of sin v, cos v and sin 2v,
 //!
 //! ```text
 //! cos 2nv = T_n,  sin 2nv = sin 2v U_{n−1},  sin (2n+1)v = sin v W_n,  cos (2n+1)v = cos v V_n,
 //! ```
 //!
-//! all with `p_{n+1} = 2x p_n − p_{n−1}`. So sin v and its like are factors, and nothing is lost where a
-//! function vanishes.
+//! all with `p_{n+1} = 2x p_n − p_{n−1}`. The factors sin v etc. keep the relative accuracy where a function vanishes.
 
-use crate::numerics::lanes::{exp_minus, horner_in_lane, in_lane, sin_cos_turns};
+use crate::numerics::lanes::{exp_minus, half_turns, horner_in_lane, in_lane, sin_cos_turns};
 use std::f64::consts::PI;
 
-/// The nome up to which the trigonometric series serve.
+/// Largest nome of the trigonometric series.
 pub(crate) const LARGEST_NOME: f64 = 0.2;
 
-/// What the series give at `W` times: the rotor `Z` up to its norm, in the frame (e1, e2, d) of quaternion
-/// units; cn, sn and dn up to a common denominator; and by what part of a turn the precession is ahead.
+/// Values of the series at `W` times: the rotor `Z` up to its norm, in the frame (e1, e2, d) of quaternion units; cn, sn
+/// and dn up to a common denominator; and the part of a turn to add to the precession.
 pub(super) struct State<const W: usize> {
     pub z: [[f64; W]; 4],
     pub functions: [[f64; W]; 3],
@@ -32,20 +30,20 @@ pub(super) trait Series<const C: usize>: Copy + Sync {
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
 
-    /// The same of one motion.
+    /// The series of one motion.
     type One: Series<1>;
 
-    /// Without any coefficients.
+    /// Zero coefficients.
     fn empty() -> Self;
 
     /// All coefficients, always in the same order.
     fn coefficients(&self) -> impl Iterator<Item = &[f64; C]>;
 
-    /// All coefficients, to be set.
+    /// All coefficients, mutable.
     fn coefficients_mut(&mut self) -> impl Iterator<Item = &mut [f64; C]>;
 }
 
-/// `Σ h_n p_n(x)` in powers of x; `p_0 = 1`, and `p_{−1}`, in powers of x too, tells which polynomials.
+/// `Σ h_n p_n(x)` in powers of x, with `p_0 = 1` and the given `p_{−1}`.
 pub(crate) fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; N] {
     let (mut previous, mut p, mut sum) = ([0.0; N], [0.0; N], [0.0; N]);
     previous[..2].copy_from_slice(&before);
@@ -60,14 +58,14 @@ pub(crate) fn chebyshev<const N: usize>(h: [f64; N], before: [f64; 2]) -> [f64; 
     sum
 }
 
-/// T_n, U_n, V_n and W_n by the polynomial at −1.
+/// `p_{−1}` of T_n, U_n, V_n and W_n.
 pub(crate) const FIRST: [f64; 2] = [0.0, 1.0];
 const SECOND: [f64; 2] = [0.0, 0.0];
 pub(crate) const THIRD: [f64; 2] = [1.0, 0.0];
 pub(crate) const FOURTH: [f64; 2] = [-1.0, 0.0];
 
 /// −1 for odd n.
-fn sign(n: usize) -> f64 {
+pub(crate) fn sign(n: usize) -> f64 {
     if n % 2 == 1 { -1.0 } else { 1.0 }
 }
 
@@ -111,7 +109,7 @@ impl Circular {
             chebyshev(std::array::from_fn(squares), FIRST),
         ];
         let denominator = chebyshev(std::array::from_fn(|n| sign(n) * squares(n)), FIRST);
-        // Subnormal numbers, slow on many machines, are nothing beside the first coefficients.
+        // Subnormal coefficients are slow on many machines and negligible.
         let normal = |c: f64| [if c.abs() < 1e-100 { 0.0 } else { c }];
         Circular {
             z: z.map(|z| z.map(normal)),
@@ -125,7 +123,7 @@ impl Circular {
         Circular::new(0.0, 0.0, 1.0)
     }
 
-    /// What makes cn 0, sn K and dn 0 equal to 1.
+    /// Factors that make cn 0, sn K and dn 0 equal to 1.
     pub fn normalizers(&self) -> [f64; 3] {
         let ratio = |k: usize, x: f64| {
             horner_in_lane(&self.denominator, 0, x) / horner_in_lane(&self.functions[k], 0, x)
@@ -192,7 +190,7 @@ pub(super) struct Hyperbolic<const C: usize = 1> {
     ahead: [f64; C],
 }
 
-/// u over the turns that are no more than its start, on the separatrix: so much is never reached.
+/// Scale of u in turns on the separatrix: the border is never reached.
 pub(crate) const NEVER: f64 = (1u128 << 70) as f64;
 
 impl Hyperbolic {
@@ -234,7 +232,7 @@ impl Hyperbolic {
         Hyperbolic { ahead: [0.0], ..Hyperbolic::new(NEVER / 8.0, gamma, s) }
     }
 
-    /// cn and dn at x = 0; sn at X, where the sum of what is normalised is `k² sn² + dn² = 1` with dn = k'.
+    /// From cn and dn at x = 0, and sn at X, where `k² sn² + dn² = 1` with dn = k'.
     pub fn normalizers(&self) -> [f64; 3] {
         let denominator = |y: f64| horner_in_lane(&self.denominator, 0, y);
         let function = |k: usize, y: f64| horner_in_lane(&self.functions[k], 0, y);
@@ -250,7 +248,7 @@ impl Hyperbolic {
 impl<const C: usize> Series<C> for Hyperbolic<C> {
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
-        /// `cosh² ` of it is a number still. On a periodic motion 2X is less, by the range of k'.
+        /// Largest argument with a finite `cosh²`; 2X of a periodic motion is less.
         const MOST: f64 = 352.0;
         let (mut ahead, mut odd, mut side) = ([0.0; W], [0.0; W], [0.0; W]);
         // 4|x| and 8(X − |x|), as far as they matter.
@@ -258,13 +256,7 @@ impl<const C: usize> Series<C> for Hyperbolic<C> {
         for l in 0..W {
             // Half periods, f = v/π in [−½, ½] and a rest.
             let turn = turns[l];
-            let whole = if turn > 0.25 {
-                1.0
-            } else if turn < -0.25 {
-                -1.0
-            } else {
-                0.0
-            };
+            let whole = half_turns(turn);
             let f = 2.0 * turn - whole;
             odd[l] = 1.0 - 2.0 * f64::abs(whole);
             side[l] = 1f64.copysign(f);

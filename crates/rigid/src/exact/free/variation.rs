@@ -1,6 +1,4 @@
-//! Derivatives of the angular velocity of a free motion by its start.
-//!
-//! Everything is a linear form in the six numbers (δω, δi), of the start and of the principal moments.
+//! Derivatives of the angular velocity of a free motion: linear forms in (δω, δi) of start and principal moments.
 //!
 //! **Tumbling.** `ω = (A_a cn, τA_b sn, σA_c dn)` depends on u and the parameter `m = k²`. Since
 //! `∂sn/∂m = −½ cn dn S(u)` at fixed u with
@@ -18,10 +16,10 @@
 //! δω_c = δω_c(0) + A_c (δln A_c Δdn − ½ δm Δ(sn²/dn) − m δv(0) Δ(sn cn) − m sn cn w),
 //! ```
 //!
-//! at any time, for S grows by 2S(K) in each half period. No digits are lost as m tends to 0 or 1: near 1, where S is
-//! as large as 1/k'², δm is formed as −δk'². Through 0 and 1 all is analytic, so that equal moments and the
-//! separatrix are no exceptions. Near a sphere the relative changes of A and λ are large, and λt small; there the
-//! changes Δ come of Jacobi's addition theorems with `x = (u + u0)/2` and `y = (u − u0)/2`,
+//! at any time, since S grows by 2S(K) in each half period. Near m = 1, where S is as large as 1/k'², δm is computed as
+//! −δk'². All is analytic at m = 0 and 1, so equal moments and the separatrix are not special. Near a sphere the relative
+//! changes of A and λ are large, and λt small; there the changes Δ follow from Jacobi's addition theorems with
+//! `x = (u + u0)/2` and `y = (u − u0)/2`,
 //!
 //! ```text
 //! Δsn = 2 cn x dn x sn y/N,   Δcn = −2 sn x dn x sn y dn y/N,   Δdn = −2m sn x cn x sn y cn y/N,
@@ -90,7 +88,7 @@ pub(super) struct Varied {
     pub squares: [f64; 3],
 }
 
-/// Of a motion with moments and rates near 1.
+/// The variation of a motion with moments and rates near 1.
 #[derive(Clone, Debug)]
 pub(super) enum Variation {
     Steady(Steady),
@@ -114,15 +112,14 @@ impl Variation {
     }
 }
 
-/// Up to so large a change of u the changes of the functions come of addition theorems, where no denominator is
-/// small.
+/// Largest change of u for the addition theorems, whose denominators are then not small.
 const NEAR: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tumbling {
     orbit: Orbit,
     motion: FreeMotion,
-    /// The same with u = 0 at the start.
+    /// The same motion with u = 0 at the start.
     from_zero: FreeMotion,
     /// u at time 0; K, infinite on the separatrix.
     start: f64,
@@ -140,7 +137,7 @@ pub(super) struct Tumbling {
     shift: Form,
 }
 
-/// cn, sn and dn, and S and ∫sn²; or how they change.
+/// cn, sn and dn, S and ∫sn²; or their changes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Functions {
     cn: f64,
@@ -218,7 +215,7 @@ impl Tumbling {
     /// Of u, where the angular velocity is `omega`.
     fn functions(&self, u: f64, omega: [f64; 3]) -> Functions {
         let [cn, sn, dn] = from_fn(|k| omega[self.orbit.axes[k]] / self.orbit.amplitudes[k]);
-        // So many half periods 2K that cn has its sign; the rest is at most K, or is rounding beyond it.
+        // The number of half periods 2K with the sign of cn; the rest is at most K up to rounding.
         let odd = if cn < 0.0 { 1.0 } else { 0.0 };
         let halves = 2.0 * (0.5 * (u / (2.0 * self.quarter) - odd)).round() + odd;
         let sine = if cn < 0.0 { -sn } else { sn };
@@ -228,7 +225,7 @@ impl Tumbling {
         Functions { cn, sn, dn, s, d }
     }
 
-    /// How the functions change from the start to time t, where they are `now`.
+    /// The changes of the functions from the start to time t, where they are `now`.
     fn changes(&self, t: f64, now: Functions) -> Functions {
         let Functions { cn, sn, dn, s, d } = self.first;
         let y = 0.5 * self.orbit.lambda.hi * t;

@@ -8,10 +8,10 @@ use crate::state::phase::Gyrostat;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// Tilts in rad, and rates relative to their terms, that differ by at most this are equal: the start is rounded.
+/// Tolerance of equal tilts in rad, and of rates relative to their terms: rounding of the start.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A top is nearly upright up to this relative loss of height of its centre of mass: at tilts up to 11.5 degrees.
+/// A top is nearly upright up to this relative loss of height of its centre of mass, a tilt of 11.5 degrees.
 const NEARLY: f64 = 0.02;
 
 /// How a heavy top moves.
@@ -148,7 +148,7 @@ impl LagrangeTop {
         let (delta, sigma, spin) = (orbit.delta, orbit.sigma, start.spin);
         let [(tilt_max, lower, _), (tilt_min, upper, term)] = [0, 1].map(|k| {
             let (below, above) = (orbit.below[k], orbit.above[k]);
-            // b − ℓu at the bounds, and the size of its terms; through a pole the precession has the sign of ±ℓ.
+            // b − ℓu at the bounds, and the size of its terms; at a pole the precession has the sign of ±ℓ.
             let (numerator, term) = match () {
                 () if below.is_zero() => (spin, spin),
                 () if above.is_zero() => (-spin, spin),

@@ -11,10 +11,10 @@ pub(super) struct Flow<S> {
     pub scale: f64,
     /// v.
     pub orbit: Phase,
-    /// Those of α, β and the rate across the axis.
+    /// Phases of α, β and the rate across the axis.
     pub phases: [Phase; 3],
     pub series: S,
-    /// By which the three are multiplied, complex numbers.
+    /// Complex factors of the three.
     pub factors: [[f64; 2]; 3],
     /// Rotor components for the real and imaginary parts of α and of β.
     pub rotor: [[f64; 4]; 4],

@@ -1,9 +1,9 @@
-//! Lagrange's heavy top, exact at any time: two equal moments, the centre of mass on the axis of symmetry.
+//! Lagrange's heavy top in closed form: two equal moments, the centre of mass on the axis of symmetry.
 //!
 //! With a moment i1 across the axis, i3 about it, and `V = c u`, `u = cos θ` the axis' (that is γ3), `c >= 0`, the
-//! momenta L3 about the axis and Lz about the vertical are constant. A rotation about the axis of symmetry, uniform in
-//! time with `ω3 − L3/i1`, makes the top one with all moments i1. With `ℓ = L3/i1`, `b = Lz/i1`, `ĉ = c/i1`,
-//! `w = ω1 + iω2` and `g = γ1 + iγ2` that one moves by
+//! momenta L3 about the axis and Lz about the vertical are constant. A uniform rotation about the axis of symmetry with
+//! the rate `ω3 − L3/i1` reduces the top to one with all moments i1, which obeys, with `ℓ = L3/i1`, `b = Lz/i1`,
+//! `ĉ = c/i1`, `w = ω1 + iω2` and `g = γ1 + iγ2`,
 //!
 //! ```text
 //! w' = −iĉ g,   g' = −iℓ g + iu w,   w g* = (b − ℓu) + i u',   |w|² = 2ĉ(e − u),   |g|² = 1 − u²,
@@ -20,20 +20,20 @@
 //! (arg α)' = ½ (b + ℓ)/(1 + u),   (arg β)' = ½ (b − ℓ)/(1 − u),   (arg w)' = −½ℓ − ½ (b − ℓe)/(e − u)
 //! ```
 //!
-//! have as residue ±½ there: **each of α, β, w is one theta function over another, times an exponential that is
-//! linear in time**. With the nome `q = exp(−πK'/K)`, `v = πu/2K`, `y = πη/2K` and s the sign of `b − ℓp`
+//! have the residue ±½ there: **each of α, β, w is a ratio of theta functions times an exponential of time**. With the
+//! nome `q = exp(−πK'/K)`, `v = πu/2K`, `y = πη/2K` and s the sign of `b − ℓp`
 //!
 //! ```text
 //! α = A e^{iμt} θ1(v − i s y)/θ4(v),   β = B e^{iμt} θ2(v − i s y)/θ4(v),   w = C e^{iμt} θ2(v + i s y)/θ4(v),
 //! ```
 //!
-//! y and μ for each its own: `sc²(η, k') = (1 + r1)/(r2 − r1)` for α, `dn²(η, k') = (r2 − r1)/(p − r1)` for the others.
-//! The sizes of A, B, C follow from |α|, |β|, |w| at the bounds; the phases from the start, of which two suffice:
-//! where `u = r1` is `w ∥ g`, hence `C = −i s_α sign(b − ℓr1) A* B` there.
+//! with own y and μ: `sc²(η, k') = (1 + r1)/(r2 − r1)` for α, `dn²(η, k') = (r2 − r1)/(p − r1)` for the others.
+//! The sizes of A, B, C follow from |α|, |β|, |w| at the bounds. Two of the phases follow from the start, the third from
+//! `w ∥ g` where `u = r1`: `C = −i s_α sign(b − ℓr1) A* B` there.
 //!
-//! **The rates** are the means of the phases' rates less the turns of the theta function, `s πλ/2K`. With S
-//! the sum that `Π(n) − K` is proportional to ([`crate::numerics::elliptic`]) and `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term
-//! is just those turns,
+//! **The rates** are the mean rates of the phases less the turns of the theta function, `s πλ/2K`. With S, to which
+//! `Π(n) − K` is proportional ([`crate::numerics::elliptic`]), and `Π(n) + Π(k²/n) = K + ½π √(…)`, whose last term is
+//! those turns,
 //!
 //! ```text
 //! μ(α) = (b + ℓ) S(n) / 4(1 + r3),                         1 − n = (1 + r3)/(r3 − r1),
@@ -42,7 +42,7 @@
 //! μ(β) = μ(1),   μ(w) = −½ℓ − μ(e).
 //! ```
 //!
-//! **Near the separatrix**, where the top takes long to leave the vertical, Jacobi's imaginary transformation leads to
+//! **Near the separatrix**, where the top leaves the vertical slowly, Jacobi's imaginary transformation gives
 //! `q' = exp(−πK/K')` and, with `X = πu/2K'` and `γ = πη/2K'` for u within a half period,
 //!
 //! ```text
@@ -51,10 +51,10 @@
 //!
 //! On the separatrix itself `α ~ sinh(X − isγ)/cosh X`, and β and w are proportional to 1/cosh X.
 //!
-//! **Digits.** The start is taken to twice the precision. Roots come in pairs on either side of a known number,
-//! r1 and r2 of u(0), r2 and r3 of 1: the product of the two distances and their difference are known, so that the sum
-//! cancels nothing (`orbit`). So k', r2 − r1 and the distances of all roots from ±1 keep their digits. All
-//! phases are reduced in double-double precision: the error does not grow with time.
+//! **Accuracy.** The start is converted to double-double precision. A pair of roots lies on either side of a known
+//! number, r1 and r2 of u(0), r2 and r3 of 1: the distances follow from their product and difference without
+//! cancellation (`orbit`), so k', r2 − r1 and the distances of all roots from ±1 are accurate. All phases are reduced in
+//! double-double precision: the error does not grow with time.
 //!
 //! Klein & Sommerfeld, *Theorie des Kreisels* (1897–1910), ch. VI; Whittaker, *Analytical Dynamics* §72.
 
@@ -92,7 +92,7 @@ pub struct LagrangeTop {
     form: Form,
 }
 
-/// Tilts and rates below this have no digits in the series.
+/// The series cannot represent tilts and rates below this.
 const LEAST: f64 = 1e-303;
 
 #[derive(Clone, Copy, Debug)]
@@ -130,10 +130,9 @@ impl LagrangeTop {
         }
     }
 
-    /// Whether the solution has the start. Of the rate the part across the axis is compared with its own largest size,
-    /// however small that is beside the spin.
+    /// Whether the solution reproduces the start. The rate across the axis is compared with its own largest size.
     fn starts_at(&self, rotor: Rotor, omega: Bivector, orbit: &Orbit) -> bool {
-        /// A start's roundings add up to less.
+        /// The roundings of a start add up to less.
         const MOST: f64 = 1e-12;
         let (found, rate) = self.at(0.0);
         let turned = (0..4).all(|k| (found.components()[k] - rotor.components()[k]).abs() <= MOST);
@@ -153,7 +152,7 @@ impl LagrangeTop {
             let (rotor, omega) = self.at(part * quarter);
             let [x, y, _] = self.axes.frame.reverse().apply_bivector(omega).0.map(|x| Wide::from(x / scale));
             let [a, b, c, d] = (rotor * self.axes.frame).components().map(Wide::from);
-            // u against that of the start, from the pole that is nearer.
+            // u relative to that of the start, from the nearer pole.
             let two = Wide::from(2.0);
             let rise =
                 if below < Wide::ONE { below - (b * b + c * c) * two } else { (a * a + d * d) * two - above };
@@ -164,14 +163,14 @@ impl LagrangeTop {
         })
     }
 
-    /// About by what angle in rad the motion of the body at time `t` differs from this one, which takes two moments as
-    /// equal and c as lying along the axis where rounding alone denies it.
+    /// Estimated angle in rad at time `t` between the body's motion and this one, which neglects rounding differences
+    /// between two moments and between the directions of c and the axis.
     pub fn neglected(&self, t: f64) -> f64 {
         let Start { gravity, spin, below, scale, .. } = self.start;
         if self.axes.apart == 0.0 {
             return 0.0;
         }
-        // Beside the upright a change grows as the tilt does, until the top has fallen.
+        // Near the upright a change grows like the tilt, until the top has fallen.
         let (growth, most) = match &self.form {
             Form::Circular(orbit, _) | Form::Hyperbolic(orbit, _) => {
                 (orbit.lambda.hi, 1.0 / orbit.kc.value())
@@ -186,7 +185,7 @@ impl LagrangeTop {
         2.0 * self.axes.apart * turned * (growth * turned).exp().min(most)
     }
 
-    /// How far in time, in s, the phases are known: to 1e17 turns.
+    /// How far in time, in s, the phases are accurate: 1e17 turns.
     pub fn horizon(&self) -> f64 {
         let fastest = |orbit: &Orbit, phases: &[Phase; 3]| {
             let rates = phases.iter().map(|phase| phase.rate.hi.abs());
@@ -212,7 +211,7 @@ impl LagrangeTop {
     /// The same at many times: rows of four rotor components and of three components of the angular velocity.
     ///
     /// # Panics
-    /// If the numbers of rows are not that of the times.
+    /// If the numbers of rows and times differ.
     pub fn at_many(&self, threads: Threads, times: &[f64], rotors: &mut [f64], omegas: &mut [f64]) {
         match &self.form {
             Form::Steady(motion) => motion.at_many(threads, times, rotors, omegas),
@@ -221,7 +220,7 @@ impl LagrangeTop {
         }
     }
 
-    /// Of the top, in its own axes, at the start.
+    /// The angular momentum at the start, in the top's axes.
     fn momentum(&self) -> Bivector {
         let [x, y] = self.start.w.map(|w| w.value() * self.start.scale);
         Gyrostat::rigid([self.axes.i1, self.axes.i1, self.axes.i3]).momentum(Bivector([
@@ -232,7 +231,7 @@ impl LagrangeTop {
     }
 }
 
-/// In the series that fall fast.
+/// The form with the rapidly converging series.
 fn form(axes: &Axes, start: &Start, orbit: Orbit) -> Form {
     let (whole, rest) = orbit.start;
     // AGM(1, k) = π/2K'.
@@ -288,8 +287,8 @@ fn flow<S: Series>(axes: &Axes, start: &Start, orbit: &Orbit, phase: Phase, seri
     flow
 }
 
-/// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that
-/// are the larger parts of their sizes at the start.
+/// The constants A, B and C: their sizes from the bounds, their phases from the two of α, β and w that are relatively
+/// largest at the start.
 fn factors<S: Series>(start: &Start, orbit: &Orbit, flow: &Flow<S>) -> [[f64; 2]; 3] {
     let at = |turns: f64, k: usize| {
         let state = flow.series.state::<1, false>(&[turns], &[0.0]);
@@ -305,7 +304,7 @@ fn factors<S: Series>(start: &Start, orbit: &Orbit, flow: &Flow<S>) -> [[f64; 2]
     });
     let part = |k: usize| state[k][0].hypot(state[k][1]) / orbit.sizes[k];
     let smallest = (0..3).min_by(|&j, &k| part(j).total_cmp(&part(k))).unwrap_or(2);
-    // C = −iκ A* B where v = 0, with the phases of then.
+    // C = −iκ A* B at v = 0.
     let conjugate = |[x, y]: [f64; 2]| [x, -y];
     let relation = times([0.0, -orbit.kappa], turn_since_bound(orbit));
     match smallest {
@@ -319,7 +318,7 @@ fn factors<S: Series>(start: &Start, orbit: &Orbit, flow: &Flow<S>) -> [[f64; 2]
     })
 }
 
-/// By what `μ_β − μ_α − μ_w`, an odd number of turns of the theta functions in each period, has turned since v = 0.
+/// The phase by `μ_β − μ_α − μ_w` since v = 0: an odd number of turns of the theta functions in each period.
 fn turn_since_bound(orbit: &Orbit) -> [f64; 2] {
     let Some(mean) = orbit.mean else { return [1.0, 0.0] };
     let [alpha, beta, across] = orbit.rates;

@@ -1,7 +1,7 @@
 //! Orbit of a heavy top: roots, periods, rates and phases.
 //!
-//! Beside the vertical the roots differ from ±1, and from each other, by squares of the tilt: [`Wide`] numbers hold
-//! them, and no distance is formed as a difference of larger ones.
+//! Near the vertical the roots differ from ±1, and from each other, by squares of the tilt. They are [`Wide`] numbers,
+//! and no distance is a difference of larger ones.
 
 use super::series::Zero;
 use super::start::{Start, square, times_conjugate};
@@ -19,7 +19,7 @@ pub(super) struct Orbit {
     pub kc: Wide,
     /// AGM(1, k') = π/2K; None on the separatrix.
     pub mean: Option<DoubleDouble>,
-    /// u at time 0: so many K, and the rest.
+    /// u at time 0: a multiple of K, and the rest.
     pub start: (f64, f64),
     /// μ_α, μ_β and μ_w in rad per time.
     pub rates: [DoubleDouble; 3],
@@ -46,9 +46,9 @@ fn factors(product: Wide, difference: Wide) -> [Wide; 2] {
     if difference.is_negative() { [large, small] } else { [small, large] }
 }
 
-/// The largest root of a cubic with real roots, the others not below 0 or none that is positive, from a start above
-/// it, by Newton's steps; `f` is the value and its two derivatives. As long as all three have the sign of the leading
-/// coefficient there is no root above (Budan), however small it is.
+/// The largest root of a cubic with real roots by Newton's method from a start above it; the other roots are all >= 0 or
+/// all <= 0. `f` gives the value and two derivatives: while all three have the sign of the leading coefficient, there is
+/// no root above (Budan).
 fn root_below(start: Wide, leading: f64, f: impl Fn(Wide) -> [Wide; 3]) -> Wide {
     const STRIDE: f64 = 1.0 / (1u64 << 32) as f64;
     let mut x = start;
@@ -73,7 +73,7 @@ fn root_below(start: Wide, leading: f64, f: impl Fn(Wide) -> [Wide; 3]) -> Wide 
 /// Distances of a point p between r2 and r3 from the roots, up to a factor.
 struct Point {
     to: [Wide; 3],
-    /// `(p − r2)/(p − r1)` and `(r2 − r1)/(p − r1)`, which the factor may not have left.
+    /// `(p − r2)/(p − r1)` and `(r2 − r1)/(p − r1)`, without the factor, which may vanish.
     ratio: Wide,
     rest: Wide,
     /// `N(p) = b − ℓp`, times the same factor.
@@ -262,7 +262,7 @@ impl Modulus {
         [eta, [self.gaps[1] / z3, gravity * z1 / z3]].map(|pair| pair.map(Wide::value))
     }
 
-    /// The same for p between r2 and r3; any for a point at both.
+    /// The same for p between r2 and r3; arbitrary if r2 = r3.
     fn amplitudes_above(&self, p: &Point) -> [[f64; 2]; 2] {
         let [_, to2, to3] = p.to;
         let [_, whole, long] = self.gaps;

@@ -1,14 +1,14 @@
 //! The theta series of a heavy top, as polynomials.
 //!
-//! [`super`] says what they are for: θ1 for α, θ2 for β and for the rate across the axis, over θ4. As for a free
-//! motion ([`crate::exact::free::series`]) there is one form in trigonometric functions for a small nome
-//! `q = exp(−πK'/K)`, up to 0.2, and one in hyperbolic functions for a small `q' = exp(−πK/K')`, then below 0.0022.
+//! θ1 for α, θ2 for β and for the rate across the axis, over θ4 (see [`super`]). As for a free motion
+//! ([`crate::exact::free::series`]) trigonometric functions serve up to a nome `q = exp(−πK'/K)` of 0.2, hyperbolic ones
+//! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
-use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev};
-use crate::numerics::lanes::{exp_minus, horner, sin_cos_turns};
+use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, sign};
+use crate::numerics::lanes::{exp_minus, half_turns, horner, sin_cos_turns};
 use std::f64::consts::PI;
 
-/// Where the three functions have their zeros, each at `v = i s y` or `π/2 + i s y`.
+/// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Zero {
     /// s.
@@ -18,8 +18,8 @@ pub(super) struct Zero {
     pub rest: f64,
 }
 
-/// What the series give at `W` times: real and imaginary parts of the three functions, their denominator, and by
-/// what part of a turn each phase is ahead.
+/// Values of the series at `W` times: real and imaginary parts of the three functions, their denominator, and the part
+/// of a turn to add to each phase.
 pub(super) struct State<const W: usize> {
     pub z: [[[f64; W]; 2]; 3],
     pub denominator: [f64; W],
@@ -30,11 +30,6 @@ pub(super) struct State<const W: usize> {
 pub(super) trait Series: Copy + Sync {
     /// From `v/2π = u/4K`, reduced to [−½, ½], and its rounding error.
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W>;
-}
-
-/// −1 for odd n.
-fn sign(n: usize) -> f64 {
-    if n % 2 == 1 { -1.0 } else { 1.0 }
 }
 
 /// Series in the nome q: `θ1(v − i s y) = sin v (…) − i s cos v (…)`, `θ2 = cos v (…) + i s sin v (…)`, the brackets
@@ -70,7 +65,7 @@ impl Circular {
             [chebyshev::<5>(sums, THIRD), chebyshev::<5>(differences, FOURTH)]
         };
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * q.powi((n * n) as i32) };
-        // Subnormal numbers, slow on many machines, are nothing beside the first coefficients.
+        // Subnormal coefficients are slow on many machines and negligible.
         let normal = |c: f64| if c.abs() < 1e-200 { 0.0 } else { c };
         let both = |c: [[f64; 5]; 2]| c.map(|c| c.map(normal));
         Circular {
@@ -179,20 +174,14 @@ impl Hyperbolic {
 impl Series for Hyperbolic {
     #[inline(always)]
     fn state<const W: usize, const FMA: bool>(&self, turns: &[f64; W], rest: &[f64; W]) -> State<W> {
-        /// `e^{−X}` is a number still.
+        /// Largest X whose `e^{−X}` is a normal number.
         const MOST: f64 = 700.0;
         let (mut z, mut denominator, mut ahead) = ([[[0.0; W]; 2]; 3], [0.0; W], [[0.0; W]; 3]);
         let tail = [-(self.nome * self.nome) * (1.0 + self.nome * self.nome), self.nome.powi(6)];
         for l in 0..W {
             // Half periods, v/π in [−½, ½] and a rest.
             let turn = turns[l];
-            let whole = if turn > 0.25 {
-                1.0
-            } else if turn < -0.25 {
-                -1.0
-            } else {
-                0.0
-            };
+            let whole = half_turns(turn);
             let part = 2.0 * turn - whole;
             let odd = 1.0 - 2.0 * f64::abs(whole);
             let side = 1f64.copysign(part);

@@ -1,7 +1,6 @@
 //! Start of a heavy top: its axes, and its state in double-double precision.
 
-use crate::body::inertia::Inertia;
-use crate::body::inertia::{apart, equal};
+use crate::body::inertia::{Inertia, apart, equal};
 use crate::error::SimulateError;
 use crate::exact::free::power_of_two;
 use crate::numerics::quaternion::{product, quaternion, turned_back};
@@ -9,11 +8,10 @@ use crate::numerics::wide::Wide;
 use crate::state::checks::check_moments;
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// How far `c` may point beside the symmetry axis, relative to its size, and be on it: the rounding of axes
-/// found from a matrix.
+/// Largest part of `c` across the symmetry axis that counts as rounding, relative to its size.
 const ASIDE: f64 = 64.0 * f64::EPSILON;
 
-/// Torques below this, relative to what the largest rate takes, do nothing.
+/// Torques below this, relative to the scale of the rates, are zero.
 const NONE: f64 = 1e-250;
 
 /// A complex number of twice the precision.
@@ -37,7 +35,7 @@ pub(super) struct Axes {
     pub i3: f64,
     /// |c|, in N m.
     pub c: f64,
-    /// By what part of them the two moments differ, and c points beside the axis.
+    /// Relative difference of the two moments, plus the relative part of c across the axis.
     pub apart: f64,
 }
 
@@ -77,8 +75,8 @@ fn aside(along: Vector, axis: usize) -> f64 {
     along.0[(axis + 1) % 3].hypot(along.0[(axis + 2) % 3])
 }
 
-/// The rotor that carries e3 to the axis, or to its opposite: a cyclic exchange of axes, and a half turn about e1
-/// before it. Its components are exact.
+/// The rotor that carries e3 to the axis or its opposite: a cyclic permutation of axes after an optional half turn about
+/// e1. Its components are exact.
 fn axis_to(axis: usize, opposite: bool) -> Rotor {
     let cyclic = match axis {
         0 => [0.5, -0.5, -0.5, -0.5],
@@ -98,7 +96,7 @@ pub(super) struct Start {
     pub gravity: Wide,
     /// ℓ = L3/i1.
     pub spin: Wide,
-    /// What the rate about the axis exceeds ℓ by.
+    /// The rate about the axis less ℓ.
     pub excess: Wide,
     /// The rate about the axis, in rad/s.
     pub omega3: f64,
@@ -126,7 +124,7 @@ impl Start {
             return Err(SimulateError::BadValue { what, value: fastest });
         }
         let scale = power_of_two([fastest, 0.0, 0.0]);
-        let frame = quaternion::<Wide>(axes.frame);
+        let frame = quaternion(axes.frame);
         let [s, x, y, z] = product(quaternion(rotor), frame);
         let norm = s * s + x * x + y * y + z * z;
         let (alpha, beta) = ([s, z], [y, -x]);
@@ -136,7 +134,7 @@ impl Start {
         let spin = w3 * axes.i3.into() / axes.i1.into();
         let square_rate = Wide::from(2.0) * axes.c.into() / axes.i1.into();
         let gravity = square_rate / scale.into() / scale.into();
-        // So small a torque does not act up to any horizon.
+        // A torque this small has no effect up to any horizon.
         let gravity = if gravity.value() < NONE { Wide::ZERO } else { gravity };
         Ok(Start {
             scale,
@@ -153,7 +151,7 @@ impl Start {
         })
     }
 
-    /// Whether no torque acts and the axis of rotation is that of the top, always.
+    /// Whether the top turns steadily about its axis without a torque.
     pub fn is_steady(&self) -> bool {
         let zero = |z: Complex| z[0].is_zero() && z[1].is_zero();
         zero(self.w) && (zero(self.g) || self.gravity.is_zero())

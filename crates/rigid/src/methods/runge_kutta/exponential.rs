@@ -4,8 +4,8 @@ use polhode_ga::simd::lanes::Lanes;
 
 /// `exp(−½σ)` and `c(θ)` for `θ² = square`, to a few roundings up to the longest turn.
 ///
-/// With `x = ½θ` and `z = x²` two series have all that is needed, `s = sin x/x` and `p = (s − cos x)/z`:
-/// `cos x = s − z p` and `c = (1 − x cot x)/4z = p/4s`. Nothing cancels in `c`. Terms left out are below 1e-19.
+/// With `x = ½θ` and `z = x²` two series suffice, `s = sin x/x` and `p = (s − cos x)/z`: `cos x = s − z p` and, without
+/// cancellation, `c = (1 − x cot x)/4z = p/4s`. Omitted terms are below 1e-19.
 #[inline(always)]
 pub(super) fn exponential<const W: usize, const F: bool>(
     turn: &[Lanes<W, F>; 3],
@@ -19,10 +19,10 @@ pub(super) fn exponential<const W: usize, const F: bool>(
     (rotor, Lanes::all(0.25) * rest / sinc)
 }
 
-/// Of `sin x/x` by powers of x²: `(−1)ⁿ/(2n+1)!`.
+/// Coefficients of `sin x/x` in powers of x²: `(−1)ⁿ/(2n+1)!`.
 const SINC: [f64; 12] = coefficients(false);
 
-/// Of `(sin x/x − cos x)/x²`: `(−1)ⁿ (2n+2)/(2n+3)!`.
+/// Coefficients of `(sin x/x − cos x)/x²`: `(−1)ⁿ (2n+2)/(2n+3)!`.
 const REST: [f64; 12] = coefficients(true);
 
 const fn coefficients(rest: bool) -> [f64; 12] {
@@ -37,7 +37,7 @@ const fn coefficients(rest: bool) -> [f64; 12] {
     all
 }
 
-/// A polynomial in z; adjacent terms are added first, so that many multiplications run at once.
+/// A polynomial in z; adding adjacent terms first allows parallel multiplications.
 #[inline(always)]
 fn series<const W: usize, const F: bool>(c: &[f64; 12], z: Lanes<W, F>) -> Lanes<W, F> {
     let z2 = z * z;
@@ -61,7 +61,7 @@ mod tests {
     use polhode_ga::simd::lanes::One;
 
     #[test]
-    fn exponentials_are_those_of_the_library() {
+    fn exponential_matches_the_standard_library() {
         for i in 0..=3000 {
             let angle = f64::from(i) * 0.001;
             let turn = [0.6 * angle, 0.0, -0.8 * angle];
@@ -72,7 +72,7 @@ mod tests {
             for (found, part) in planes.into_iter().zip([-0.6, 0.0, 0.8]) {
                 assert!((found - part * half.sin()).abs() <= 4.0 * f64::EPSILON, "{angle}");
             }
-            // The plain form loses what is 1/θ² of it.
+            // The plain form loses a factor of 1/θ² in accuracy.
             let plain = (1.0 - half * (half.cos() / half.sin())) / (angle * angle);
             if angle > 0.1 {
                 let rounding = 4.0 * f64::EPSILON * (1.0 + 1.0 / (angle * angle));

@@ -10,13 +10,11 @@
 //! ```
 //!
 //! σ and the angular momentum L *in space* live in vector spaces, where any Runge–Kutta method has its full order
-//! (Munthe-Kaas 1999). Whatever the step, |R| = 1, a steady rotation is exact, and what is linear in L is conserved as
-//! by the law: L itself without a torque, L about e3 under gravity. A fast top spins in R but its Ω_S and L change
-//! slowly, which lets the steps be long.
+//! (Munthe-Kaas 1999). For any step |R| = 1, a steady rotation is exact, and linear invariants of L are conserved: L
+//! itself without a torque, L about e3 under gravity. Ω_S and L of a fast top change slowly, which allows long steps.
 //!
-//! The centre of mass is stepped along where forces move it: `x' = v`, `v' = F/m`.
-//!
-//! Bodies are stepped side by side in lanes, each by its own step; a single body is lanes of one.
+//! Where forces act, the centre of mass is stepped too: `x' = v`, `v' = F/m`. Bodies are stepped in lanes, each by its
+//! own step; a single body is one lane.
 
 mod exponential;
 mod points;
@@ -34,15 +32,15 @@ pub(crate) use points::Points;
 use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
 pub use tableau::{DOP853, Tableau};
 
-/// Beyond this angle in rad of one step the exponential's differential comes near its pole at 2π.
+/// Largest angle of one step in rad; the exponential's differential has a pole at 2π.
 const LARGEST_TURN: f64 = 3.0;
 
-/// σ and the change of L, of six numbers; of twelve with those of place and velocity.
+/// σ and the change of L, six numbers; twelve with the changes of position and velocity.
 type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 
 /// One step of lengths `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
-/// angular velocity relative to `fastest` (rad/s), whichever is larger; with N = 12 also the velocity relative to the
-/// velocity, and the place relative to the distance or the way of the step. NaN where the step is too long to tell.
+/// angular velocity relative to `fastest` (rad/s), whichever is larger; with N = 12 also the relative errors of velocity
+/// and position. NaN if the step is too long for an estimate.
 #[inline(always)]
 pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
     tableau: &Tableau,
@@ -69,7 +67,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     let change = combined(tableau.weights, &slopes, h);
     let mut to = moved(from, &change, h);
     for k in 0..3 {
-        // Kahan's sum (1965): a steady torque would be rounded alike in every step.
+        // Kahan's sum (1965), since a steady torque would be rounded alike in every step.
         let kick = change[3 + k] + from.lost[k];
         to.momentum[k] = from.momentum[k] + kick;
         to.lost[k] = kick - (to.momentum[k] - from.momentum[k]);
@@ -82,7 +80,7 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     let back = matrix(&from.rotor);
     let fifth = size(bodies, from, &back, &combined(tableau.fifth, &slopes, h), h, fastest);
     let third = size(bodies, from, &back, &combined(tableau.third, &slopes, h), h, fastest);
-    // As Hairer's code weighs the two: of order 8 where both are small.
+    // Weighted as in Hairer's code: of order 8 where both are small.
     let square = fifth * fifth;
     let weighed = (third * third).times_plus(Lanes::all(0.01), square).sqrt();
     let mut error = square / weighed;
@@ -142,15 +140,15 @@ fn slope<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
         slope[3..6].copy_from_slice(&mapped(&axes, &torque));
     }
     if N == 12 {
-        // The place beside that of the uniform motion from the start of the step.
+        // The position relative to uniform motion from the start of the step.
         slope[6..9].copy_from_slice(&part(change, 9));
         slope[9..12].copy_from_slice(&forcing.acceleration(&place, &at.center));
     }
     slope
 }
 
-/// How large a change is: in attitude, in angular velocity relative to `fastest`, in velocity relative to the velocity,
-/// in place relative to the distance or the way of the step.
+/// The size of a change: of attitude, of angular velocity relative to `fastest`, of velocity relative to the speed, of
+/// position relative to the distance or the path of the step.
 #[inline(always)]
 fn size<const N: usize, const W: usize, const F: bool>(
     bodies: &Bodies<W, F>,
@@ -177,7 +175,7 @@ fn size<const N: usize, const W: usize, const F: bool>(
     larger(rotation, larger(place, velocity))
 }
 
-/// `part/whole`, 0 where there is no whole.
+/// `part/whole`, 0 where `whole` is 0.
 #[inline(always)]
 fn relative<const W: usize, const F: bool>(part: Lanes<W, F>, whole: Lanes<W, F>) -> Lanes<W, F> {
     let mut ratio = part / whole;
@@ -187,18 +185,18 @@ fn relative<const W: usize, const F: bool>(part: Lanes<W, F>, whole: Lanes<W, F>
     ratio
 }
 
-/// The larger of two; NaN where one is.
+/// The larger of two; NaN if either is NaN.
 #[inline(always)]
 fn larger<const W: usize, const F: bool>(a: Lanes<W, F>, b: Lanes<W, F>) -> Lanes<W, F> {
     let mut larger = b;
     for l in 0..W {
-        // A NaN of b is not less; one of a is no number.
+        // Comparisons with NaN are false.
         larger.0[l] = if a.0[l] <= b.0[l] || b.0[l].is_nan() { b.0[l] } else { a.0[l] };
     }
     larger
 }
 
-/// Three of the numbers.
+/// Three components from an index on.
 #[inline(always)]
 fn part<const N: usize, const W: usize, const F: bool>(
     change: &Change<N, W, F>,
@@ -253,7 +251,7 @@ fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
     dot(a, a).sqrt()
 }
 
-/// A body, what turns it, and how it is stepped alone.
+/// A single body and its laws, stepped by a Runge–Kutta method.
 #[derive(Clone, Debug)]
 pub struct RungeKutta {
     body: Gyrostat,
@@ -281,7 +279,7 @@ impl RungeKutta {
     }
 
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
-    /// angular velocity relative to `fastest` (rad/s), whichever is larger; NaN where the step is too long to tell.
+    /// angular velocity relative to `fastest` (rad/s), whichever is larger; NaN if the step is too long.
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
         let fastest = Lanes([fastest.max(self.body.least_rate())]);
         let mut at = Points::NONE;

@@ -7,23 +7,23 @@ use crate::state::phase::Phase;
 use polhode_ga::simd::lanes::{Lanes, dot, mapped_back, matrix};
 use polhode_ga::{Bivector, Rotor, Vector};
 
-/// Where bodies are, side by side.
+/// States of bodies in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<const W: usize, const F: bool> {
     /// From principal axes to space.
     pub rotor: [Lanes<W, F>; 4],
     /// L in space, kg m²/s.
     pub momentum: [Lanes<W, F>; 3],
-    /// Place and velocity of the centre of mass: m and m/s.
+    /// Position and velocity of the centre of mass: m and m/s.
     pub center: [Lanes<W, F>; 6],
-    /// What rounding has left out of L.
+    /// Accumulated rounding of L.
     pub lost: [Lanes<W, F>; 3],
     /// In s.
     pub time: Lanes<W, F>,
 }
 
 impl<const W: usize, const F: bool> Points<W, F> {
-    /// Nowhere yet.
+    /// All zero.
     pub const NONE: Self = Points {
         rotor: [Lanes::ZERO; 4],
         momentum: [Lanes::ZERO; 3],
@@ -76,7 +76,7 @@ impl<const W: usize, const F: bool> Points<W, F> {
         sum == 0.0
     }
 
-    /// Takes over the points of other bodies where the mask says so.
+    /// Replaces the points selected by the mask with those of `other`.
     #[inline(always)]
     pub fn take(&mut self, mask: &[bool; W], other: &Self) {
         for k in 0..4 {

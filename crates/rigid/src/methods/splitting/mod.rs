@@ -7,25 +7,23 @@
 //! |m|²/(2 i_p)  +  ½ κ_a m_a²  +  ½ κ_b m_b²,     κ_k = 1/i_k − 1/i_p.
 //! ```
 //!
-//! Each part alone is solved exactly by turns. The first commutes with everything and turns the body
-//! about the fixed L: `R ← R exp(−½ h m/i_p)`, m unchanged. The others turn about a body axis by the
-//! angle `α = κ_k m_k h`: `R ← R q`, `m ← ~q m q`, `q = exp(−½ α I e_k)`. Turns keep |m|, |R| and
-//! `R m ~R` whatever the step. With the middle axis left out, the product `κ_a κ_b` that rules the error
-//! is smallest; it vanishes for a symmetric top, which is then solved exactly.
+//! Rotations solve each part exactly. The first commutes with the others and turns the body about the fixed L:
+//! `R ← R exp(−½ h m/i_p)`, m unchanged. The others turn about a body axis by the angle `α = κ_k m_k h`: `R ← R q`,
+//! `m ← ~q m q`, `q = exp(−½ α I e_k)`. They conserve |m|, |R| and `R m ~R` for any step. The choice of p minimises the
+//! product `κ_a κ_b` in the error, which vanishes for a symmetric top.
 //!
 //! A torque kicks the momentum at fixed attitude: `m ← m + h N`; with damping, `m' = N − g m` solved
 //! exactly. The symmetric product kick–a–b–a–kick is of order 2, and symmetric compositions
 //! `S(γ_1 h) … S(γ_s h)` of it reach orders 4, 6 and 8.
 //!
-//! A wheel with the relative momentum `h` ([`Gyrostat`]) adds `−h·I⁻¹m` to the energy: a turn about the fixed body axis of
-//! `I⁻¹h`, put in the middle.
+//! A wheel with the relative momentum `h` ([`Gyrostat`]) adds `−h·I⁻¹m` to the energy: a turn about the fixed body axis
+//! of `I⁻¹h`, put in the middle.
 //!
-//! Runge–Kutta–Nyström splittings ([`Nystrom`]) need the free motion whole between kicks: one turn for a symmetric
-//! body, the exact solution of [`FreeMotion`] for any other.
+//! Runge–Kutta–Nyström splittings ([`Nystrom`]) need the exact free motion between kicks: one turn for a symmetric body,
+//! [`FreeMotion`] for any other.
 //!
-//! Without a torque L is constant in space. Rounding would make `R m ~R` drift, so after each
-//! step |m| is scaled back and R is turned by the tiny angle that carries `R m ~R` to L. The direction
-//! of m is left alone: on an unstable axis a component that is zero stays zero.
+//! Without a torque L is constant in space. Against rounding each step rescales |m| and turns R so that `R m ~R` is L.
+//! The direction of m is unchanged, so a zero component on an unstable axis stays zero.
 
 mod sequences;
 pub(crate) mod turns;
@@ -41,7 +39,7 @@ use polhode_ga::{Bivector, Rotor};
 pub use sequences::{COMPOSITIONS, Composition, Nystrom, RKN6};
 use turns::{Spin, Turns};
 
-/// How kicks and free motion follow each other.
+/// The sequence of kicks and free motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sequence {
     /// Second-order steps, composed.
@@ -60,13 +58,13 @@ impl Sequence {
     }
 }
 
-/// A body in its principal axes, with what turns it and how it is stepped.
+/// A body in its principal axes and its torques, stepped by a splitting.
 #[derive(Clone, Debug)]
 pub struct Splitting {
     body: Gyrostat,
     torques: Vec<Torque>,
     stages: (Vec<(f64, f64)>, f64),
-    /// Whether drifts are the exact free motion, which is more than some turns.
+    /// Whether drifts are the exact free motion instead of a few turns.
     exact_drift: bool,
     turns: Turns<1, false>,
 }
@@ -87,7 +85,7 @@ impl Splitting {
         self.carry(state, &mut Bivector::default(), h)
     }
 
-    /// The same step, with what rounding has left out of the sum of kicks.
+    /// The same step with the accumulated rounding of the kicks.
     pub(crate) fn carry(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
         let mut acting = BodyForcing::new(&self.body, &self.torques, None);
         let mut spin = Spin {
@@ -116,7 +114,7 @@ impl Splitting {
         Ok(())
     }
 
-    /// Turns in a step; an exact free motion rounds like some dozens of them.
+    /// Turns in a step; an exact free motion rounds like 60 of them.
     pub fn turns_per_step(&self) -> f64 {
         let stages = self.stages.0.len() as f64;
         if self.exact_drift { 60.0 * stages } else { 3.0 * stages }

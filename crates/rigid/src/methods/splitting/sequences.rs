@@ -7,7 +7,7 @@ pub struct Composition {
     pub name: &'static str,
     /// Its order of convergence.
     pub order: i32,
-    /// γ_1 … up to the middle one; the rest mirrors them.
+    /// γ_1 … up to the middle one; the others mirror them.
     half: &'static [f64],
 }
 
@@ -98,7 +98,7 @@ impl Composition {
         self.half.iter().chain(mirrored).copied()
     }
 
-    /// As kicks and drifts in turn, and the last kick: two half kicks that meet are one.
+    /// Kicks and drifts in turn, with adjacent half kicks merged, and the last kick.
     pub fn kicks_and_drifts(&self) -> (Vec<(f64, f64)>, f64) {
         let mut half = 0.0;
         let stage = |gamma: f64| (std::mem::replace(&mut half, 0.5 * gamma) + 0.5 * gamma, gamma);
@@ -108,7 +108,7 @@ impl Composition {
 }
 
 impl Nystrom {
-    /// b_1, a_1, b_2, a_2 … a_s; one more kick by b_1 follows. What is missing from 1 is in the middle.
+    /// b_1, a_1, b_2, a_2 … a_s, followed by a kick by b_1. The middle coefficients complete the sums to 1.
     pub fn stages(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let n = self.kicks.len();
         let (kick, drift) =

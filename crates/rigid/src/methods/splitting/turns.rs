@@ -11,8 +11,8 @@ use polhode_ga::simd::lanes::{Lanes, composed, cross, dot, mapped, mapped_back, 
 pub(crate) struct Spin<const W: usize, const F: bool> {
     pub rotor: [Lanes<W, F>; 4],
     pub momentum: [Lanes<W, F>; 3],
-    /// What rounding left out of the sum of kicks: added to the next one (Kahan 1965). Without it a steady torque would
-    /// be rounded alike in every step, and the error would grow as their number and not as its root.
+    /// Accumulated rounding of the kicks, added to the next one (Kahan 1965). Otherwise a steady torque would be rounded
+    /// alike in every step, and the error would grow as the number of steps instead of its root.
     pub lost: [Lanes<W, F>; 3],
 }
 
@@ -37,13 +37,13 @@ impl Kind {
         let mut order = [0, 1, 2];
         order.sort_by(|&x, &y| body.moments[x].total_cmp(&body.moments[y]));
         let [a, p, b] = order;
-        // Of a symmetric body one turn is none: that of the second axis.
+        // A symmetric body does not turn about the second axis.
         let [a, b] = if kappa(body, a, p) == 0.0 { [b, a] } else { [a, b] };
         let wheel = body.wheel.0 != [0.0; 3];
         Kind { axes: [a, b, p], symmetric: kappa(body, b, p) == 0.0, wheel }
     }
 
-    /// The turns but that about L, and for which part of a step.
+    /// The turns other than that about L, each with its part of a step.
     fn order(self) -> &'static [(Turn, f64)] {
         use Turn::{About, AboutWheel};
         match (self.wheel, self.symmetric) {
@@ -55,7 +55,7 @@ impl Kind {
         }
     }
 
-    /// Whether one turn about an axis is all.
+    /// Whether one turn about an axis suffices.
     pub fn is_symmetric(self) -> bool {
         self.symmetric && !self.wheel
     }
@@ -67,7 +67,7 @@ fn kappa(body: &Gyrostat, k: usize, p: usize) -> f64 {
     (i[p] - i[k]) / (i[p] * i[k])
 }
 
-/// Bodies of one kind, and how their kicks and turns follow each other.
+/// Kicks and turns of bodies of one kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Turns<const W: usize, const F: bool> {
     kind: Kind,
@@ -80,11 +80,11 @@ pub(crate) struct Turns<const W: usize, const F: bool> {
     wheel: [Lanes<W, F>; 3],
     damping: Lanes<W, F>,
     damped: bool,
-    /// Where it is constant.
+    /// L, if it is constant.
     fixed: Option<Fixed<W, F>>,
 }
 
-/// L in space with its square and one over that, 0 where it has none.
+/// L in space with its square and the inverse of that, 0 for L = 0.
 #[derive(Clone, Copy, Debug)]
 struct Fixed<const W: usize, const F: bool> {
     momentum: [Lanes<W, F>; 3],
@@ -93,7 +93,7 @@ struct Fixed<const W: usize, const F: bool> {
 }
 
 impl<const W: usize, const F: bool> Turns<W, F> {
-    /// Of bodies of one kind, with the g of their dampings, and with L in space where it is constant: for all or none.
+    /// From bodies of one kind, their damping g, and L in space if constant, which it is for all or none.
     pub fn new(bodies: [(Gyrostat, f64, Option<[f64; 3]>); W]) -> Turns<W, F> {
         let kind = Kind::of(&bodies[0].0);
         let [a, b, p] = kind.axes;
@@ -147,7 +147,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         time: f64,
         h: f64,
     ) {
-        // A turn about a constant L is the same whenever it is made.
+        // A turn about a constant L commutes with the rest of the step.
         if self.fixed.is_some() {
             self.about_momentum(spin, h);
         }
@@ -168,27 +168,27 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         self.finish(spin);
     }
 
-    /// Takes the rounding of a step out of |R|, and of |m| and the direction of `R m ~R` where L is constant, to first
-    /// order. The direction of m is left alone: on an unstable axis a component that is zero stays zero.
+    /// Removes the rounding of a step from |R|, and if L is constant from |m| and the direction of `R m ~R`, to first
+    /// order. The direction of m is unchanged, so a zero component on an unstable axis stays zero.
     #[inline(always)]
     pub fn finish(&self, spin: &mut Spin<W, F>) {
         renormalize(&mut spin.rotor);
         let Some(fixed) = &self.fixed else { return };
         let m = &mut spin.momentum;
-        // Added, not multiplied by 1 + x, which would round shrinking and growing differently.
+        // Adding rounds shrinking and growing alike; multiplying by 1 + x would not.
         let half = Lanes::all(0.5) * fixed.inverse;
         let missing = (fixed.square - dot(m, m)) * half;
         for k in 0..3 {
             m[k] = m[k].times_plus(missing, m[k]);
         }
         let drifted = mapped(&matrix(&spin.rotor), m);
-        // exp(−½ a∧b/|a||b|) turns the axial vector a into b; of so small a turn the first term is the whole.
+        // exp(−½ a∧b/|a||b|) turns the axial vector a into b; the first term suffices for so small a turn.
         let [x, y, z] = cross(&fixed.momentum, &drifted);
         let turn = [Lanes::all(1.0), x * half, y * half, z * half];
         spin.rotor = composed(&turn, &spin.rotor);
     }
 
-    /// `m' = N − g (m − h)` for a time t, `m − h` being what the body carries: `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
+    /// Solves `m' = N − g (m − h)` for a time t: `m − h` becomes `(m − h) e^(−gt) + N (1 − e^(−gt))/g`.
     #[inline(always)]
     pub fn kick<E: Forcing<W, F>>(&self, forcing: &mut E, spin: &mut Spin<W, F>, time: f64, h: f64) {
         let m = &mut spin.momentum;
@@ -203,7 +203,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
             let lost;
             (lost, impulse) = decayed(&self.damping, h);
             for k in 0..3 {
-                // What is lost is added, not m multiplied by e^(−gt), whose rounding is the same at every step.
+                // Multiplying m by e^(−gt) would round alike at every step.
                 m[k] = (m[k] - wheel[k]).times_plus(lost, m[k]);
             }
         }
@@ -215,7 +215,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         }
     }
 
-    /// The turn of all bodies about their L. It commutes with the other turns: before them m is the one that they turn.
+    /// The turn of all bodies about their L, which commutes with the other turns.
     #[inline(always)]
     pub fn about_momentum(&self, spin: &mut Spin<W, F>, h: f64) {
         let m = &spin.momentum;
@@ -226,7 +226,7 @@ impl<const W: usize, const F: bool> Turns<W, F> {
         spin.rotor = composed(&spin.rotor, &turn);
     }
 
-    /// The other turns. In a loop, so that the code of a turn stands once.
+    /// The other turns, in a loop so that their code is inlined once.
     #[inline(always)]
     pub fn about_axes(&self, spin: &mut Spin<W, F>, h: f64) {
         for &(which, part) in self.kind.order() {
@@ -274,8 +274,8 @@ fn turn_about<const K: usize, const I: usize, const J: usize, const W: usize, co
     spin.rotor[K + 1] = r[0].times_from(sin, r[K + 1] * cos);
     spin.rotor[I + 1] = r[J + 1].times_plus(sin, r[I + 1] * cos);
     spin.rotor[J + 1] = r[I + 1].times_from(sin, r[J + 1] * cos);
-    // ~q m q turns the other two components by −2 half; the one about k is exact. The turn is added to m: rounded
-    // cosines and sines would stretch it by the same at every step of a steady motion.
+    // ~q m q turns the other two components by −2 half. Adding the change avoids the constant stretch of rounded cosines
+    // and sines in every step of a steady motion.
     let two = sin + sin;
     let (versine, sine) = (two * sin, two * cos);
     let (x, y) = (spin.momentum[I], spin.momentum[J]);
@@ -283,7 +283,7 @@ fn turn_about<const K: usize, const I: usize, const J: usize, const W: usize, co
     spin.momentum[J] = y - versine.times_plus(y, sine * x);
 }
 
-/// `e^(−gh) − 1`, and what a torque gives in that time: `(1 − e^(−gh))/g`.
+/// `e^(−gh) − 1`, and the impulse per torque, `(1 − e^(−gh))/g`.
 #[inline(always)]
 fn decayed<const W: usize, const F: bool>(damping: &Lanes<W, F>, h: f64) -> (Lanes<W, F>, Lanes<W, F>) {
     let (mut lost, mut impulse) = (Lanes::ZERO, Lanes::all(h));

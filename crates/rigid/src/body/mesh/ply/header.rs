@@ -79,7 +79,7 @@ pub(super) enum Encoding {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// How long it is.
+    /// Its length.
     pub(super) lines: usize,
     pub(super) bytes: usize,
 }
@@ -157,18 +157,18 @@ fn property_of(words: &[&[u8]], place: Place) -> Result<Property, MeshProblem> {
     }
 }
 
-/// Where the coordinates are among a vertex's properties.
+/// The column of a coordinate among a vertex's properties.
 pub(super) fn coordinate(element: &Element, name: &[u8]) -> Option<usize> {
     element.properties.iter().position(|p| p.name == name && p.count.is_none())
 }
 
-/// Where the list of corners is among a face's properties.
+/// The column of the list of corners among a face's properties.
 pub(super) fn corners(element: &Element) -> Option<usize> {
     let wanted = |p: &Property| matches!(p.name.as_slice(), b"vertex_indices" | b"vertex_index");
     element.properties.iter().position(|p| wanted(p) && p.count.is_some())
 }
 
-/// The vertices have coordinates, the faces corners.
+/// Checks that vertices have coordinates, and faces corners.
 fn check_columns(elements: &[Element], place: Place) -> Result<(), MeshProblem> {
     for element in elements {
         match element.name.as_slice() {

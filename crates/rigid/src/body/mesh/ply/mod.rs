@@ -1,8 +1,7 @@
-//! PLY: a header that declares elements and their properties, then the rows of each element, as lines of
-//! text or in binary of either byte order.
+//! PLY: a header that declares elements and properties, then the rows of each element, as text or in binary.
 //!
-//! Wanted are the properties `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or
-//! `vertex_index`) of the element `face`; all else is stepped over by its declared type.
+//! Reads the properties `x`, `y`, `z` of the element `vertex` and the list `vertex_indices` (or `vertex_index`) of the
+//! element `face`, and skips the others.
 
 mod header;
 mod rows;
@@ -42,7 +41,7 @@ fn polygon(corners: &[f64], vertices: u64, place: Place) -> Result<Vec<u32>, Mes
         return Err(corrupt(place, format!("a face needs at least 3 corners, got {}", corners.len())));
     }
     let index = |&x: &f64| {
-        // The cast saturates; what it changes is no index.
+        // The cast saturates; an index must survive it unchanged.
         let i = x as u32;
         let exists = f64::from(i) == x && u64::from(i) < vertices;
         exists.then_some(i).ok_or_else(|| {

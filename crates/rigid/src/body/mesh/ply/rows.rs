@@ -25,11 +25,11 @@ impl Row {
     }
 }
 
-/// What follows the header, read from front to back.
+/// The data after the header, read in order.
 pub(super) enum Rows<'a> {
-    /// Every line that is not blank is a row.
+    /// Each line that is not blank is a row.
     Text { lines: Box<dyn Iterator<Item = (usize, &'a [u8])> + 'a>, line: usize },
-    /// Rows without anything between them.
+    /// Rows without separators.
     Binary { bytes: &'a [u8], at: usize, big_endian: bool },
 }
 
@@ -55,7 +55,7 @@ impl<'a> Rows<'a> {
         mut take: impl FnMut(&Row, Place) -> Result<(), MeshProblem>,
     ) -> Result<(), MeshProblem> {
         if element.properties.is_empty() {
-            // Its rows have nothing in them, however many are declared.
+            // Its rows are empty, however many are declared.
             return Ok(());
         }
         let mut row = Row::default();
@@ -72,7 +72,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Reads one row and says where it is.
+    /// Reads one row and returns its place.
     fn row(
         &mut self,
         properties: &[Property],
@@ -123,7 +123,7 @@ fn text_row(text: &[u8], place: Place, properties: &[Property], row: &mut Row) -
     }
 }
 
-/// None where the data end.
+/// None if the data end.
 fn binary_row(
     data: &mut Binary,
     place: Place,
@@ -131,25 +131,21 @@ fn binary_row(
     row: &mut Row,
 ) -> Result<Option<()>, MeshProblem> {
     for property in properties {
-        let length = match property.count {
-            Some(kind) => match data.number(kind) {
-                Some(count) => length(count, place)?,
-                None => return Ok(None),
-            },
+        let length = match property.count.map(|kind| data.number(kind)) {
+            Some(Some(count)) => length(count, place)?,
+            Some(None) => return Ok(None),
             None => 1,
         };
         for _ in 0..length {
-            match data.number(property.value) {
-                Some(x) => row.numbers.push(x),
-                None => return Ok(None),
-            }
+            let Some(x) = data.number(property.value) else { return Ok(None) };
+            row.numbers.push(x);
         }
         row.ends.push(row.numbers.len());
     }
     Ok(Some(()))
 }
 
-/// A list's length; every item takes some of the file, which bounds the reading.
+/// A list's length; the file's size bounds the reading.
 fn length(count: f64, place: Place) -> Result<u32, MeshProblem> {
     let length = count as u32;
     if f64::from(length) == count {

@@ -90,6 +90,13 @@ def test_rust_files_form_no_circle(crate):
     assert circles(graph) == []
 
 
+def test_the_binding_imports_no_python_module():
+    """Python registers the objects that the binding needs; the binding imports NumPy only."""
+    sources = [path.read_text() for path in (ROOT / "crates/py/src").rglob("*.rs")]
+    imported = {name for text in sources for name in re.findall(r"\bimport\([^)]*?\"([\w.]+)\"", text)}
+    assert imported == {"numpy"}
+
+
 def test_viewer_files_and_folders_form_no_circle():
     graph = imports(ROOT / "viewer/src")
     assert circles(graph) == []

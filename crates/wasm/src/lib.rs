@@ -1,7 +1,7 @@
 //! The core in the browser: the same motion and the same algebra as in Python, behind plain exports.
 //!
 //! [`opened`] runs a scene, [`about`] describes its motion, [`opened::crowd`] runs an ensemble for display, [`recorded`]
-//! holds a motion that was computed elsewhere, [`merged`] replaces tables of a scene, and [`formulas`] evaluates lines.
+//! holds a motion that was computed elsewhere, `merged` replaces tables of a scene, and [`formulas`] evaluates lines.
 //! `viewer/src/core/wasm.ts` calls the exports.
 
 pub mod about;

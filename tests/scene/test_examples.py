@@ -108,7 +108,7 @@ def test_feynmans_plate_wobbles_twice_per_turn():
     # i3/i1 over the cosine of the angle from the axis to L, tan = 0.01 i1/i3.
     assert motion["wobbles_per_turn"] == pytest.approx(2 * np.hypot(1, 0.005), rel=1e-12)
     assert motion["wobbles_per_turn"] == pytest.approx(2.000025, abs=1e-9)
-    assert "2.000025 for each turn" in polhode("run", EXAMPLES / "feynman-plate.toml").stdout
+    assert "2.000025 per turn" in polhode("run", EXAMPLES / "feynman-plate.toml").stdout
 
 
 def test_the_earth_has_eulers_period():

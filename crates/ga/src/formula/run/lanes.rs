@@ -82,7 +82,7 @@ impl<const W: usize> Kernel<W> for Scaled {
     }
 }
 
-/// The root of the sum of the squares, of which the sum alone is kept to see where it is no good.
+/// The root of the sum of squares; the sum is kept to find rows where it overflows or underflows.
 struct Norm;
 
 impl<const W: usize> Kernel<W> for Norm {

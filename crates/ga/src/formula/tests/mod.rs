@@ -1,4 +1,4 @@
-//! How texts are read, what types they have, and what is said of those that are none.
+//! Tests of parsing, types and errors of formulas.
 
 use super::*;
 

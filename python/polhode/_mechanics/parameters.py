@@ -12,7 +12,7 @@ from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_bivectors, as_vectors
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._support.arrays import Array, Shape, as_floats, frozen
+from polhode._support.arrays import Array, Shape, as_floats, first_index, frozen
 
 
 class Batch:
@@ -109,7 +109,7 @@ def check_finite(components: Array, what: str) -> None:
     """Raise a ValueError with the first row, and its index, that is not finite."""
     wrong = ~np.isfinite(components)
     if wrong.any():
-        index = _first(wrong)[:-1]
+        index = first_index(wrong)[:-1]
         row = components[index].tolist()
         value = row[0] if len(row) == 1 else row
         raise ValueError(f"{place(index)}{what} is {value}; it must be finite")
@@ -118,10 +118,6 @@ def check_finite(components: Array, what: str) -> None:
 def place(index: tuple[int, ...]) -> str:
     """Return ``at index (2,): ``, or nothing for a single value."""
     return f"at index {index}: " if index else ""
-
-
-def _first(where: Any) -> tuple[int, ...]:
-    return tuple(int(i) for i in np.argwhere(where)[0])
 
 
 def together(arguments: tuple[Any, ...], names: str) -> tuple[Any, ...]:

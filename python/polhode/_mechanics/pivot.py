@@ -9,7 +9,7 @@ import numpy as np
 from polhode import _native
 from polhode._mechanics.bodies import Body, Inertia, mapped_objects
 from polhode._mechanics.parameters import Batch, common, place
-from polhode._support.arrays import Array
+from polhode._support.arrays import Array, first_index
 
 Laws = tuple[_native.Law, ...]
 
@@ -87,7 +87,7 @@ def _check_body(bodies: Any, law: _native.Law) -> None:
     common({"the body": bodies.shape, "gravity": rows.shape[:-1]}, "body and torque")
     other = ((own != rows) & ~np.isnan(own)).any(axis=-1)
     if other.any():
-        index = tuple(int(i) for i in np.argwhere(other)[0])
+        index = first_index(other)
         (m, *x), (n, *y) = (np.broadcast_to(a, (*other.shape, 4))[index].tolist() for a in (rows, own))
         raise ValueError(
             f"{place(index)}gravity was made for a body of {m} kg with the centre of mass at {x} m, this "

@@ -1,5 +1,6 @@
 """Figures of every kind: their curves read back from matplotlib, their files, and errors."""
 
+import functools
 import io
 import pickle
 import sys
@@ -57,9 +58,9 @@ def painted(monkeypatch):
     return studios.paint(monkeypatch)
 
 
-@pytest.fixture(scope="module")
-def motions():
-    return {name: ph.Scene.read(EXAMPLES / f"{name}.toml").run() for name in FITTING}
+@functools.cache
+def motion_of(name):
+    return ph.Scene.read(EXAMPLES / f"{name}.toml").run()
 
 
 def drawn(figure):
@@ -77,14 +78,19 @@ def of_colour(axes, colour):
 # --- all kinds
 
 
-@pytest.mark.parametrize("name", FITTING)
-def test_kinds_that_fit_are_drawn_and_others_are_refused(name, motions):
+USUAL = ("t-handle", "kovalevskaya", "dual-spin")  # free, a top, and a wheel
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in USUAL else pytest.mark.slow) for name in FITTING]
+)
+def test_kinds_that_fit_are_drawn_and_others_are_refused(name):
     for kind in KINDS:
         if kind in FITTING[name]:
-            drawn(motions[name].plot(kind))
+            drawn(motion_of(name).plot(kind))
         else:
             with pytest.raises(ValueError, match=f"kind '{kind}' is for"):
-                motions[name].plot(kind)
+                motion_of(name).plot(kind)
 
 
 def texts_of(figure):
@@ -101,9 +107,9 @@ def texts_of(figure):
 
 
 @pytest.mark.parametrize("name", ["t-handle", "symmetric-top", "nutating-top", "kovalevskaya", "dual-spin"])
-def test_no_two_texts_overlap(name, motions):
+def test_no_two_texts_overlap(name):
     for kind in sorted(FITTING[name]):
-        figure = motions[name].plot(kind)
+        figure = motion_of(name).plot(kind)
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()
@@ -316,8 +322,8 @@ def test_the_tops_portrait_is_its_curve_of_energy():
     np.testing.assert_allclose(bounds, np.degrees([about["tilt_min"], about["tilt_max"]]))
 
 
-def test_the_portrait_of_a_satellite_has_its_amplitude(motions):
-    axes = motions["gravity-gradient"].plot("phase").axes[0]
+def test_the_portrait_of_a_satellite_has_its_amplitude():
+    axes = motion_of("gravity-gradient").plot("phase").axes[0]
     (curve, *_) = of_colour(axes, TRACE)
     assert np.abs(curve[:, 0]).max() == pytest.approx(20, abs=0.01)
     assert curve[0, 0] == pytest.approx(20)
@@ -370,8 +376,8 @@ def test_a_wheels_family_has_equal_energies():
 # --- drift
 
 
-def test_drifts_are_the_data(motions):
-    motion = motions["nutating-top"]
+def test_drifts_are_the_data():
+    motion = motion_of("nutating-top")
     sizes, *panels, rotor = motion.plot("drift").axes
     assert [text.get_text().split(" / ")[0] for text in sizes.get_legend().get_texts()] == ["energy", "|L|"]
     for axes, (name, values) in zip(panels, motion.drifts().items(), strict=True):

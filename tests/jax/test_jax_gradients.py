@@ -54,9 +54,8 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize(
-    ("make", "method"), [pytest.param(attitude, "strang", marks=pytest.mark.slow), (rate, "rk4")]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("make", "method"), [(attitude, "strang"), (rate, "rk4")])
 def test_derivatives_are_slopes(make, method):
     def motion(x):
         return seven(make(x[10:]), method, x[:3], x[3:7], x[7:10])

@@ -77,6 +77,7 @@ def test_the_commands_of_the_viewer_are_commands():
         assert callable(options.command)
 
 
+@pytest.mark.slow
 def test_the_page_of_figures_runs(tmp_path):
     pytest.importorskip("matplotlib")
     studios.require_browser()

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from polhode._algebra.linear_map import LinearMap as LinearMap
     from polhode._algebra.serialize import from_dict as from_dict
     from polhode._algebra.serialize import to_dict as to_dict
+    from polhode._algebra.transform import RigidTransform as RigidTransform
     from polhode._formula.agreement import Agreement as Agreement
     from polhode._formula.errors import FormulaError as FormulaError
     from polhode._formula.formula import Formula as Formula
@@ -68,10 +69,10 @@ if TYPE_CHECKING:
 __all__ = [
     "Agreement", "Algebra", "Body", "Certificate", "Crossings", "DampedTop", "Failure", "FlowDerivatives",
     "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop", "LarmorSphere", "LinearMap",
-    "Moments", "Multivector", "Rotor", "RotorSpline", "Scene", "SceneError", "State", "SymmetricTop",
-    "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross", "describe_free", "e1", "e2",
-    "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli", "mean",
-    "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split", "stack", "to_dict",
+    "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError", "State",
+    "SymmetricTop", "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross", "describe_free",
+    "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli",
+    "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split", "stack", "to_dict",
     "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
@@ -83,6 +84,7 @@ _LATER = {
         "_algebra.interpolation": "RotorSpline mean slerp",
         "_algebra.linear_map": "LinearMap",
         "_algebra.serialize": "from_dict to_dict",
+        "_algebra.transform": "RigidTransform",
         "_formula.agreement": "Agreement",
         "_formula.errors": "FormulaError",
         "_formula.formula": "Formula evaluate formula",

@@ -17,6 +17,8 @@ from polhode._support.arrays import Array, Shape, as_floats, frozen
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from polhode._algebra.transform import RigidTransform
+
 _ORIGIN = vector([0.0, 0.0, 0.0])
 
 
@@ -97,6 +99,13 @@ class State:
     def omega_space(self) -> Multivector:
         """Angular velocity in space axes, a bivector in rad/s."""
         return self.rotor(self.omega_body)
+
+    @property
+    def transform(self) -> RigidTransform:
+        """The displacement ``y = R x ~R + x0`` from body axes to space, with x0 the position (eq. 4.1)."""
+        from polhode._algebra.transform import RigidTransform
+
+        return RigidTransform(self.rotor, self.position)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, State):

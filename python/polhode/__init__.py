@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from polhode._mechanics.simulate import simulate_blocks as simulate_blocks
     from polhode._mechanics.state import State as State
     from polhode._mechanics.statistics import Moments as Moments
+    from polhode._mechanics.stepper import Stepper as Stepper
     from polhode._mechanics.trajectory import Trajectory as Trajectory
     from polhode._scene.scene import Scene as Scene
     from polhode._viewer.notebook import view as view
@@ -70,10 +71,10 @@ __all__ = [
     "Agreement", "Algebra", "Body", "Certificate", "Crossings", "DampedTop", "Failure", "FlowDerivatives",
     "Formula", "FormulaError", "FreeMotion", "I", "Inertia", "LagrangeTop", "LarmorSphere", "LinearMap",
     "Moments", "Multivector", "RigidTransform", "Rotor", "RotorSpline", "Scene", "SceneError", "State",
-    "SymmetricTop", "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross", "describe_free",
-    "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict", "from_pauli",
-    "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split", "stack", "to_dict",
-    "to_pauli", "torque", "trivector", "vector", "view",
+    "Stepper", "SymmetricTop", "Trajectory", "algebra", "axial", "bivector", "concatenate", "cross",
+    "describe_free", "e1", "e2", "e3", "evaluate", "event", "force", "formula", "from_axial", "from_dict",
+    "from_pauli", "mean", "multivector", "scalar", "simulate", "simulate_blocks", "slerp", "split",
+    "stack", "to_dict", "to_pauli", "torque", "trivector", "vector", "view",
 ]
 # fmt: on
 
@@ -93,6 +94,7 @@ _LATER = {
         "_mechanics.result": "Certificate Crossings Failure",
         "_mechanics.state": "State",
         "_mechanics.statistics": "Moments",
+        "_mechanics.stepper": "Stepper",
         "_outputs": "DampedTop FreeMotion LagrangeTop LarmorSphere Scene SymmetricTop Trajectory"
         " simulate simulate_blocks view",
     }.items()

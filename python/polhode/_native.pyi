@@ -8,7 +8,7 @@ from typing_extensions import disjoint_base
 from polhode._algebra.algebra import Algebra as WholeAlgebra
 from polhode._algebra.multivector import Multivector as Whole
 from polhode._algebra.rotor import Rotor as WholeRotor
-from polhode._support.arrays import Array
+from polhode._support.arrays import Array, Shape
 
 __all__ = [
     "EQUATION_AS_VALUE",
@@ -35,6 +35,7 @@ __all__ = [
     "Rotor",
     "Scene",
     "SceneError",
+    "Stepper",
     "__version__",
     "agreement_tolerance",
     "buffer",
@@ -358,6 +359,31 @@ class Force(LawValue):
 @final
 class Event(LawValue):
     def __new__(cls, name: str, *arguments: Any) -> Event: ...
+
+@final
+class Stepper:
+    def __new__(
+        cls,
+        shape: Shape,
+        inertias: tuple[list[Inertia], Shape],
+        begins: Array,
+        rotors: Array,
+        omegas: Array,
+        laws: list[Law],
+        centers: Array,
+        masses: Array,
+        forces: list[Force],
+        method: str,
+        longest: float,
+    ) -> Self: ...
+    def reset(self, begins: Array, rotors: Array, omegas: Array, centers: Array) -> None: ...
+    def step(self, dt: float, torques: Array, in_space: bool) -> None: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def moves(self) -> bool: ...
+    def spins(self) -> tuple[Array, Array]: ...
+    def centers(self) -> tuple[Array, Array]: ...
 
 @final
 class Motion:

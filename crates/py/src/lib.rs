@@ -37,6 +37,8 @@ mod _native {
     use crate::mechanics::motion::symmetric_top;
     #[pymodule_export]
     use crate::mechanics::simulation::{Motion, methods, simulate};
+    #[pymodule_export]
+    use crate::mechanics::stepper::Stepper;
 
     #[pymodule_export]
     use crate::mechanics::closed_forms::{DampedTop, LagrangeTop, LarmorSphere};

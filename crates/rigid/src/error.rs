@@ -41,6 +41,8 @@ pub enum SimulateError {
     Torque { time: f64, message: String },
     /// A component became NaN or infinite.
     Diverged { time: f64 },
+    /// A step of the method turns a body too far.
+    StepTurnsTooFar { step: f64, turn: f64 },
     /// The caller stopped the run.
     Interrupted,
 }
@@ -140,6 +142,10 @@ impl fmt::Display for SimulateError {
             SimulateError::Diverged { time } => {
                 write!(f, "the motion became NaN or infinite at t = {time} s; use a shorter step")
             }
+            SimulateError::StepTurnsTooFar { step, turn } => write!(
+                f,
+                "the body turns by {turn:.2} rad in a step of {step} s; at most 1 rad is accurate: use a shorter dt, or step="
+            ),
             SimulateError::Unfit { method, reason } => write!(f, "{method} {reason}"),
             SimulateError::StepTooSmall { time, step } => write!(
                 f,

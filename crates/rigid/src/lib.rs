@@ -25,6 +25,7 @@ mod random;
 pub mod run;
 pub mod scene;
 pub mod state;
+pub mod stepper;
 pub mod units;
 
 pub use body::Body;

@@ -90,6 +90,17 @@ class State:
         )
         return self
 
+    @classmethod
+    def _of(
+        cls, rotor: Rotor, omega_body: Multivector, position: Multivector, velocity: Multivector, time: float
+    ) -> State:
+        """Return a state without checking the values."""
+        self = object.__new__(cls)
+        self.__dict__.update(
+            rotor=rotor, omega_body=omega_body, position=position, velocity=velocity, time=time
+        )
+        return self
+
     @property
     def shape(self) -> Shape:
         """Shape of the batch; ``()`` for one state."""

@@ -53,28 +53,40 @@ pub(crate) fn simulate_many<'py>(
     if shape.contains(&0) || times.len() == 0 {
         return Err(bad("no bodies or no times to simulate"));
     }
-    let callbacks: Vec<Py<LawValue>> = laws
-        .iter()
-        .map(|law| law.as_super().clone().unbind())
-        .chain(forces.iter().map(|force| force.as_super().clone().unbind()))
-        .collect();
-    let (inertias, own_shape) = inertias;
-    let inertias = inertias.iter().map(|inertia| inertia.0).collect();
-    let each_law = |law: &Bound<'py, Law>| {
-        let Law { torques, shape: own } = law.get();
-        ensemble::Rows::new(spread(torques.clone(), own, &shape))
-    };
-    let ensemble = Ensemble {
-        inertias: ensemble::Rows::new(spread(inertias, &own_shape, &shape)),
-        starts: starts(&shape, &begins, &rotors, &omegas, &centers)?,
-        laws: laws.iter().map(each_law).collect(),
-        masses: ensemble::Rows::new(spread(numbers(&masses)?.to_vec(), masses.shape(), &shape)),
-        forces: forces.iter().map(|force| force.get().force.clone()).collect(),
-    };
+    let callbacks = callbacks(&laws, &forces);
+    let ensemble = ensemble_of(&shape, inertias, &[begins, rotors, omegas, centers, masses], &laws, &forces)?;
     let (max_step, max_steps, breaks) = limits;
     let events = Vec::new();
     let options = Options { method, step, rtol, exact, max_step, max_steps, breaks, events };
     run_many(py, &ensemble, &shape, numbers(&times)?, &options, threads, &callbacks, progress)
+}
+
+/// The laws and forces, which store the exceptions of their functions.
+pub(crate) fn callbacks(laws: &[Bound<'_, Law>], forces: &[Bound<'_, Force>]) -> Vec<Py<LawValue>> {
+    let laws = laws.iter().map(|law| law.as_super().clone().unbind());
+    laws.chain(forces.iter().map(|force| force.as_super().clone().unbind())).collect()
+}
+
+/// The bodies of a batch shape; `numbers` are start times, rotors, angular velocities, places with velocities, and masses.
+pub(crate) fn ensemble_of(
+    shape: &[usize],
+    (inertias, own_shape): (Vec<PyRef<'_, Inertia>>, Vec<usize>),
+    [begins, rotors, omegas, centers, masses]: &[Rows<'_>; 5],
+    laws: &[Bound<'_, Law>],
+    forces: &[Bound<'_, Force>],
+) -> PyResult<Ensemble> {
+    let inertias = inertias.iter().map(|inertia| inertia.0).collect();
+    let each_law = |law: &Bound<'_, Law>| {
+        let Law { torques, shape: own } = law.get();
+        ensemble::Rows::new(spread(torques.clone(), own, shape))
+    };
+    Ok(Ensemble {
+        inertias: ensemble::Rows::new(spread(inertias, &own_shape, shape)),
+        starts: starts(shape, begins, rotors, omegas, centers)?,
+        laws: laws.iter().map(each_law).collect(),
+        masses: ensemble::Rows::new(spread(numbers(masses)?.to_vec(), masses.shape(), shape)),
+        forces: forces.iter().map(|force| force.get().force.clone()).collect(),
+    })
 }
 
 /// Runs the bodies of a batch shape.
@@ -119,7 +131,7 @@ pub(crate) fn run_many<'py>(
 }
 
 /// The starts of the bodies.
-fn starts(
+pub(crate) fn starts(
     shape: &[usize],
     begins: &Rows<'_>,
     rotors: &Rows<'_>,

@@ -86,7 +86,7 @@ impl<'t, const W: usize, const F: bool> LaneForcing<'t, W, F> {
 }
 
 /// The laws of bodies in lanes, in principal axes.
-pub(super) struct Laws<'t, const W: usize, const F: bool> {
+pub(crate) struct Laws<'t, const W: usize, const F: bool> {
     gyrostats: [Gyrostat; W],
     moments: Three<W, F>,
     wheel: Three<W, F>,
@@ -328,6 +328,11 @@ impl<'t, const W: usize, const F: bool> Laws<'t, W, F> {
             }
         }
         Laws { gyrostats, moments, wheel, laws }
+    }
+
+    /// Whether there is no law.
+    pub fn is_empty(&self) -> bool {
+        self.laws.is_empty()
     }
 }
 

@@ -10,7 +10,7 @@ mod advance;
 mod body_run;
 mod exact;
 mod fixed;
-mod laws;
+pub(crate) mod laws;
 mod member;
 mod output;
 mod scheduler;

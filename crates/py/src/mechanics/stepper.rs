@@ -1,0 +1,118 @@
+//! Bodies stepped by a caller, who holds a torque over each step.
+
+use super::bodies::Inertia;
+use super::ensemble::{callbacks, ensemble_of, starts};
+use super::forces_and_events::Force;
+use super::law_value::{LawValue, failed, interrupted};
+use super::simulation::method_of;
+use super::torque::Law;
+use crate::support::arrays::{Array, Rows, bad, numbers, place};
+use crate::support::pool;
+use numpy::PyArrayMethods;
+use polhode_rigid::SimulateError;
+use polhode_rigid::laws::torque::Axes;
+use polhode_rigid::stepper::{self, Failed, Held};
+use pyo3::prelude::*;
+
+/// Bodies of a batch shape with their states at a common time.
+#[pyclass(module = "polhode._native")]
+pub(crate) struct Stepper {
+    stepper: stepper::Stepper,
+    shape: Vec<usize>,
+    callbacks: Vec<Py<LawValue>>,
+}
+
+#[pymethods]
+impl Stepper {
+    /// Bodies of a batch shape, which is not empty; arguments as of `simulate_many`. Steps are at most `longest` seconds.
+    #[new]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        shape: Vec<usize>,
+        inertias: (Vec<PyRef<'_, Inertia>>, Vec<usize>),
+        begins: Rows<'_>,
+        rotors: Rows<'_>,
+        omegas: Rows<'_>,
+        laws: Vec<Bound<'_, Law>>,
+        centers: Rows<'_>,
+        masses: Rows<'_>,
+        forces: Vec<Bound<'_, Force>>,
+        method: &str,
+        longest: f64,
+    ) -> PyResult<Stepper> {
+        let (Some(method), _) = method_of(method)? else {
+            return Err(bad(format!("a stepper needs a stepping method, got {method}")));
+        };
+        let ensemble = ensemble_of(&shape, inertias, &[begins, rotors, omegas, centers, masses], &laws, &forces)?;
+        let callbacks = callbacks(&laws, &forces);
+        let stepper = stepper::Stepper::new(&ensemble, method, longest)
+            .map_err(|(body, error)| bad(format!("{}{error}", place(body, &shape))))?;
+        Ok(Stepper { stepper, shape, callbacks })
+    }
+
+    /// Sets the states, rows of the batch shape.
+    fn reset(&mut self, begins: Rows<'_>, rotors: Rows<'_>, omegas: Rows<'_>, centers: Rows<'_>) -> PyResult<()> {
+        self.stepper.reset(&starts(&self.shape, &begins, &rotors, &omegas, &centers)?);
+        Ok(())
+    }
+
+    /// A step of length `dt`, with the torques (n, 3) of one body or of each; no rows for none.
+    fn step(&mut self, py: Python<'_>, dt: f64, torques: Rows<'_>, in_space: bool) -> PyResult<()> {
+        let torques = numbers(&torques)?.as_chunks().0;
+        let held = Held { torques, axes: if in_space { Axes::Space } else { Axes::Body } };
+        let stepper = &mut self.stepper;
+        let done = if self.callbacks.is_empty() && stepper.count() < LARGE {
+            stepper.step(dt, held)
+        } else {
+            py.detach(|| stepper.step(dt, held))
+        };
+        let bound = || self.callbacks.iter().map(|one| one.bind(py));
+        done.map_err(|(body, error): Failed| match error {
+            SimulateError::Torque { .. } => failed(bound(), format!("{}{error}", place(body, &self.shape))),
+            _ => bad(format!("{}{error}", place(body, &self.shape))),
+        })?;
+        if self.callbacks.is_empty() { Ok(()) } else { interrupted(bound()) }
+    }
+
+    #[getter]
+    fn time(&self) -> f64 {
+        self.stepper.time()
+    }
+
+    /// Whether the centres of mass move.
+    #[getter]
+    fn moves(&self) -> bool {
+        self.stepper.moves()
+    }
+
+    /// Rotors (…, 4) and angular velocities (…, 3) now.
+    fn spins<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
+        let (rotors, omegas) = (self.rows(py, 4)?, self.rows(py, 3)?);
+        let (mut r, mut w) = (rotors.readwrite(), omegas.readwrite());
+        self.stepper.write(r.as_slice_mut()?.as_chunks_mut().0, w.as_slice_mut()?.as_chunks_mut().0);
+        drop((r, w));
+        Ok((rotors, omegas))
+    }
+
+    /// Positions and velocities (…, 3) of the centres of mass now.
+    fn centers<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
+        let (positions, velocities) = (self.rows(py, 3)?, self.rows(py, 3)?);
+        let (mut x, mut v) = (positions.readwrite(), velocities.readwrite());
+        let rows = x.as_slice_mut()?.as_chunks_mut().0.iter_mut().zip(v.as_slice_mut()?.as_chunks_mut().0);
+        for (center, (x, v)) in self.stepper.centers().zip(rows) {
+            (*x, *v) = (center.position.0, center.velocity.0);
+        }
+        drop((x, v));
+        Ok((positions, velocities))
+    }
+}
+
+impl Stepper {
+    fn rows<'py>(&self, py: Python<'py>, size: usize) -> PyResult<Array<'py>> {
+        let shape: Vec<usize> = self.shape.iter().copied().chain([size]).collect();
+        pool::array(py, &shape)
+    }
+}
+
+/// Number of bodies from which other Python threads may run during a step.
+const LARGE: usize = 256;

@@ -1,0 +1,64 @@
+//! A body stepped by itself, by any method.
+
+use super::{Member, Steps};
+use crate::error::SimulateError;
+use crate::laws::torque::Torque;
+use crate::methods::Method;
+use crate::run::engine::Engine;
+use crate::run::sweep::is_finite;
+use crate::state::carried::Carried;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
+use polhode_ga::{Bivector, Rotor};
+
+/// Its state.
+#[derive(Clone, Debug)]
+pub(super) struct Alone {
+    at: Carried,
+}
+
+impl Alone {
+    pub fn new(_: &Member) -> Alone {
+        let start = Phase { rotor: Rotor::IDENTITY, momentum: Bivector::default(), time: 0.0 };
+        Alone { at: Carried::new(start, Center::default()) }
+    }
+
+    pub fn reset(&mut self, phase: Phase, center: Center) {
+        self.at = Carried::new(phase, center);
+    }
+
+    pub fn center(&self) -> Center {
+        self.at.center
+    }
+
+    /// Rotor and angular velocity in principal axes.
+    pub fn spin(&self, body: &Gyrostat) -> (Rotor, Bivector) {
+        (self.at.phase.rotor, body.omega(self.at.phase.momentum))
+    }
+
+    /// The state after equal steps under a held torque.
+    pub fn stepped(
+        &self,
+        method: Method,
+        member: &Member,
+        held: Option<Torque>,
+        steps: &Steps,
+    ) -> Result<Alone, SimulateError> {
+        let mut torques = member.torques.clone();
+        torques.extend(held);
+        let translation = member.translation.clone();
+        let engine = Engine::new(method, member.gyrostat, &torques, translation, &self.at.phase)?;
+        let mut at = self.at;
+        for k in 0..steps.count {
+            let (from, h) = steps.nth(k);
+            at.phase.time = from;
+            let (next, error) = engine.step(&at, h, 0.0)?;
+            if error.is_nan() || !is_finite(&next) {
+                return Err(SimulateError::Diverged { time: from + h });
+            }
+            at = next;
+        }
+        at.phase.time = steps.from + steps.dt;
+        Ok(Alone { at })
+    }
+}

@@ -1,0 +1,274 @@
+//! Bodies stepped by a caller, who holds a torque over each step: loops of control and of learning.
+//!
+//! A step of length Δt consists of equal steps of one method, no longer than a given bound. Many bodies are stepped by
+//! the classical method in SIMD lanes, others one by one; no body depends on the others.
+
+mod alone;
+mod lanes;
+
+use crate::ensemble::{Ensemble, Start};
+use crate::error::SimulateError;
+use crate::laws::force::{Force, Translation};
+use crate::laws::torque::{Axes, Torque, wheel};
+use crate::methods::Method;
+use crate::run::check_body;
+use crate::run::engine::Engine;
+use crate::state::center::Center;
+use crate::state::phase::{Gyrostat, Phase};
+use alone::Alone;
+use lanes::Groups;
+use polhode_ga::{Bivector, Rotor, Vector};
+
+/// The largest turn in a step of the method, in rad. Beyond it no method has its order.
+const LARGEST_TURN: f64 = 1.0;
+
+/// Torques held over a step, in N m: none, one for all bodies, or one for each.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<'a> {
+    /// Components of the axial vectors.
+    pub torques: &'a [[f64; 3]],
+    /// Their axes.
+    pub axes: Axes,
+}
+
+impl Held<'_> {
+    fn of(&self, body: usize) -> Bivector {
+        match self.torques {
+            [] => Bivector::default(),
+            [one] => Bivector(*one),
+            each => Bivector(each[body]),
+        }
+    }
+}
+
+/// A body in principal axes, with its torques.
+#[derive(Clone, Debug)]
+struct Member {
+    /// From principal axes to those of the body.
+    frame: Rotor,
+    gyrostat: Gyrostat,
+    torques: Vec<Torque>,
+    center: Center,
+    /// Of constant forces.
+    acceleration: Vector,
+    /// Of forces that change.
+    translation: Option<Translation>,
+}
+
+#[derive(Debug)]
+enum Bodies {
+    Alone(Vec<Alone>),
+    Lanes(Box<dyn Groups>),
+}
+
+/// Bodies with their states at a common time.
+#[derive(Debug)]
+pub struct Stepper {
+    members: Vec<Member>,
+    bodies: Bodies,
+    method: Method,
+    longest: f64,
+    time: f64,
+}
+
+/// A body, by its number, and its error.
+pub type Failed = (usize, SimulateError);
+
+impl Stepper {
+    /// Bodies that start at the time of the first. Steps of the method are at most `longest` seconds long.
+    pub fn new(ensemble: &Ensemble, method: Method, longest: f64) -> Result<Stepper, Failed> {
+        let count = ensemble.starts.len();
+        let members: Vec<Member> = (0..count)
+            .map(|body| Member::new(ensemble, body).map_err(|error| (body, error)))
+            .collect::<Result<_, _>>()?;
+        for (body, (member, start)) in members.iter().zip(&ensemble.starts).enumerate() {
+            let begin = member.phase(start);
+            check_body(&member.gyrostat, start.omega, &member.torques).map_err(|error| (body, error))?;
+            Engine::new(method, member.gyrostat, &member.torques, member.translation.clone(), &begin)
+                .map_err(|error| (body, error))?;
+        }
+        let moved = members.iter().any(|member| member.translation.is_some());
+        let in_lanes = count > 1 && method == Method::Classical && !moved;
+        let bodies = if in_lanes {
+            Bodies::Lanes(lanes::groups(&members))
+        } else {
+            Bodies::Alone(members.iter().map(Alone::new).collect())
+        };
+        let mut stepper = Stepper { members, bodies, method, longest, time: 0.0 };
+        stepper.reset(&ensemble.starts);
+        Ok(stepper)
+    }
+
+    /// Sets the states of all bodies.
+    pub fn reset(&mut self, starts: &[Start]) {
+        self.time = starts.first().map_or(0.0, |start| start.time);
+        for (body, (member, start)) in self.members.iter_mut().zip(starts).enumerate() {
+            member.center = start.center;
+            match &mut self.bodies {
+                Bodies::Alone(bodies) => bodies[body].reset(member.phase(start), start.center),
+                Bodies::Lanes(groups) => groups.reset(body, &member.phase(start)),
+            }
+        }
+    }
+
+    /// The number of bodies.
+    pub fn count(&self) -> usize {
+        self.members.len()
+    }
+
+    /// The time in s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Whether the centres of mass move.
+    pub fn moves(&self) -> bool {
+        let zero = Vector::default();
+        self.members
+            .iter()
+            .any(|m| m.translation.is_some() || m.acceleration != zero || m.center.velocity != zero)
+    }
+
+    /// One step of length `dt` in s, which may be negative. On an error no state has changed.
+    pub fn step(&mut self, dt: f64, held: Held<'_>) -> Result<(), Failed> {
+        let count = (dt.abs() / self.longest).ceil().max(1.0) as u64;
+        let h = dt / count as f64;
+        self.check_turns(h)?;
+        let steps = Steps { from: self.time, dt, count };
+        match &mut self.bodies {
+            Bodies::Alone(bodies) => {
+                let mut after = Vec::with_capacity(bodies.len());
+                for (number, (body, member)) in bodies.iter().zip(&self.members).enumerate() {
+                    let torque = member.held(held, number);
+                    let next = body.stepped(self.method, member, torque, &steps);
+                    after.push(next.map_err(|error| (number, error))?);
+                }
+                *bodies = after;
+            }
+            Bodies::Lanes(groups) => groups.step(&self.members, held, &steps),
+        }
+        for (number, member) in self.members.iter_mut().enumerate() {
+            member.center = match (&self.bodies, &member.translation) {
+                (Bodies::Alone(bodies), Some(_)) => bodies[number].center(),
+                _ => member.fallen(dt),
+            };
+        }
+        self.time += dt;
+        Ok(())
+    }
+
+    /// Writes rotors (body axes to space) and angular velocities in body axes.
+    pub fn write(&self, rotors: &mut [[f64; 4]], omegas: &mut [[f64; 3]]) {
+        for (number, member) in self.members.iter().enumerate() {
+            let (rotor, omega) = match &self.bodies {
+                Bodies::Alone(bodies) => bodies[number].spin(&member.gyrostat),
+                Bodies::Lanes(groups) => groups.spin(number),
+            };
+            let own = member.frame == Rotor::IDENTITY;
+            rotors[number] = if own { rotor } else { rotor * member.frame.reverse() }.components();
+            omegas[number] = if own { omega } else { member.frame.apply_bivector(omega) }.0;
+        }
+    }
+
+    /// The centres of mass.
+    pub fn centers(&self) -> impl ExactSizeIterator<Item = Center> + '_ {
+        self.members.iter().map(|member| member.center)
+    }
+
+    /// A step of the method that turns a body too far is an error.
+    fn check_turns(&self, h: f64) -> Result<(), Failed> {
+        let fastest = LARGEST_TURN / h.abs();
+        let too_fast = match &self.bodies {
+            Bodies::Alone(bodies) => bodies
+                .iter()
+                .zip(&self.members)
+                .map(|(body, member)| body.spin(&member.gyrostat).1.norm())
+                .enumerate()
+                .find(|(_, rate)| *rate > fastest),
+            Bodies::Lanes(groups) => groups.faster_than(fastest),
+        };
+        match too_fast {
+            Some((body, rate)) => {
+                Err((body, SimulateError::StepTurnsTooFar { step: h, turn: rate * h.abs() }))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Equal steps from a time on.
+#[derive(Clone, Copy, Debug)]
+struct Steps {
+    from: f64,
+    dt: f64,
+    count: u64,
+}
+
+impl Steps {
+    /// Begin and length of each; the lengths are differences of rounded times, so that they add up.
+    #[inline(always)]
+    fn nth(&self, k: u64) -> (f64, f64) {
+        let time = |k: u64| {
+            if k == self.count {
+                self.from + self.dt
+            } else {
+                self.from + self.dt * (k as f64 / self.count as f64)
+            }
+        };
+        (time(k), time(k + 1) - time(k))
+    }
+}
+
+impl Member {
+    fn new(ensemble: &Ensemble, body: usize) -> Result<Member, SimulateError> {
+        let inertia = ensemble.inertias.of(body);
+        let frame = inertia.principal_frame();
+        let torques: Vec<Torque> =
+            ensemble.laws.iter().map(|law| law.of(body).clone().in_axes(frame)).collect();
+        let mass = *ensemble.masses.of(body);
+        let steady = ensemble.forces.iter().try_fold(Vector::default(), |sum, force| match force {
+            Force::Constant(f) => Some(sum + *f),
+            _ => None,
+        });
+        let changing = || Translation {
+            mass,
+            forces: ensemble.forces.iter().map(|force| force.clone().in_axes(frame)).collect(),
+        };
+        let acceleration = match steady {
+            Some(sum) if !ensemble.forces.is_empty() => sum / mass,
+            _ => Vector::default(),
+        };
+        Ok(Member {
+            frame,
+            gyrostat: Gyrostat { moments: inertia.principal_moments(), wheel: wheel(&torques) },
+            torques,
+            center: Center::default(),
+            acceleration,
+            translation: steady.is_none().then(changing),
+        })
+    }
+
+    /// A start in principal axes.
+    fn phase(&self, start: &Start) -> Phase {
+        let omega = self.frame.reverse().apply_bivector(start.omega);
+        Phase { rotor: start.rotor * self.frame, momentum: self.gyrostat.momentum(omega), time: start.time }
+    }
+
+    /// The held torque of a body, in principal axes or in space.
+    fn held(&self, held: Held<'_>, body: usize) -> Option<Torque> {
+        let torque = held.of(body);
+        (torque != Bivector::default()).then(|| match held.axes {
+            Axes::Body => Torque::ConstantBody(self.frame.reverse().apply_bivector(torque)),
+            Axes::Space => Torque::ConstantSpace(torque),
+        })
+    }
+
+    /// The centre of mass after a time under constant forces.
+    fn fallen(&self, dt: f64) -> Center {
+        let Center { position, velocity } = self.center;
+        Center {
+            position: position + (velocity + self.acceleration * (0.5 * dt)) * dt,
+            velocity: velocity + self.acceleration * dt,
+        }
+    }
+}

@@ -3,10 +3,10 @@
 use crate::g3::rotor::Rotor;
 use crate::g3::values::{Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Term};
+pub use crate::simd::Element;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::{beyond_caches, sweep};
 use crate::simd::{ByRow, Kernel, LANES, Lane, Path};
-pub use crate::simd::{Element, multiply_adds};
 
 impl ByRow for Plan {
     fn row(&self, a: &[f64], b: &[f64], out: &mut [f64]) {

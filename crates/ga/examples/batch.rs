@@ -47,7 +47,7 @@ fn product<T: Element>(what: &str, rows: usize, ga: Grades, gb: Grades, rows_b: 
     let (a, b) = (numbers::<T>(rows * na), numbers::<T>(rows_b * nb));
     let mut out = numbers::<T>(rows * nout);
     line::<T>(what, rows, na + if rows_b == 1 { 0 } else { nb }, nout, || {
-        plan.run_threads(threads, &a, &b, &mut out);
+        plan.run(threads, &a, &b, &mut out);
     });
 }
 
@@ -55,7 +55,9 @@ fn product<T: Element>(what: &str, rows: usize, ga: Grades, gb: Grades, rows_b: 
 fn turning<T: Element>(what: &str, rows: usize, rotors: usize) {
     let (r, v) = (numbers::<T>(4 * rotors), numbers::<T>(3 * rows));
     let mut out = numbers::<T>(3 * rows);
-    line::<T>(what, rows, 3 + if rotors == 1 { 0 } else { 4 }, 3, || turn(&r, &v, VECTOR, &mut out));
+    line::<T>(what, rows, 3 + if rotors == 1 { 0 } else { 4 }, 3, || {
+        turn(Threads::ONE, &r, &v, VECTOR, &mut out)
+    });
 }
 
 /// `N` independent chains of products and sums in registers.
@@ -93,7 +95,7 @@ fn full(rows: usize, peak: f64, p: usize, q: usize, r: usize) {
     let plan = Plan::new(&algebra, Product::Geometric, all, all);
     let count = rows * plan.sizes.0;
     let (a, b, mut out) = (numbers::<f64>(count), numbers::<f64>(count), numbers::<f64>(count));
-    let ours = best(rows, || plan.run(&a, &b, &mut out));
+    let ours = best(rows, || plan.run(Threads::ONE, &a, &b, &mut out));
     let share = 100.0 * plan.terms.len() as f64 / ours / peak;
     println!("{:<34}{ours:>8.2} ns{share:>20.0} % of the peak", format!("full * full, Cl({p},{q},{r})"));
 }

@@ -190,6 +190,7 @@ pub(crate) fn size(grades: Grades) -> usize {
 mod tests {
     use super::*;
     use crate::rows::product::turn;
+    use crate::simd::threads::Threads;
     use crate::table::G3;
 
     fn numbers(seed: usize, count: usize) -> Vec<f64> {
@@ -205,14 +206,14 @@ mod tests {
             for product in Product::ALL {
                 let plan = Plan::g3(product, ga, gb);
                 let mut expected = vec![0.0; plan.sizes.2];
-                plan.run(&a, &b, &mut expected);
+                plan.run(Threads::ONE, &a, &b, &mut expected);
                 let got = left.product(product, &right);
                 assert_eq!(got.components(), expected, "{product:?} {ga:?} {gb:?}");
                 assert_eq!(got.grades(), plan.grades);
             }
             let rotor = Rotor::from_components([0.3, -0.2, 0.9, 0.4]).unwrap();
             let mut expected = vec![0.0; b.len()];
-            turn(&rotor.components(), &b, gb, &mut expected);
+            turn(Threads::ONE, &rotor.components(), &b, gb, &mut expected);
             assert_eq!(right.turned(rotor).components(), expected);
         }
     }

@@ -10,6 +10,7 @@
 //! (A [`crate::Rotor`] has its own module.) The products written out here are equal to the table's.
 
 use crate::product::{Grades, Plan, Product};
+use crate::simd::threads::Threads;
 use crate::table::G3;
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -215,7 +216,7 @@ impl Multivector {
     pub fn product(self, product: Product, other: Multivector) -> Multivector {
         let plan = Plan::g3(product, Grades::ALL, Grades::ALL);
         let mut out = vec![0.0; plan.sizes.2];
-        plan.run(&self.0, &other.0, &mut out);
+        plan.run(Threads::ONE, &self.0, &other.0, &mut out);
         let mut result = Multivector::default();
         for (&k, x) in plan.grades.indices(&G3).iter().zip(out) {
             result.0[k] = x;

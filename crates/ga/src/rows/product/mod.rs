@@ -130,19 +130,12 @@ impl<const W: usize> Kernel<W> for Turn {
 }
 
 impl Plan {
-    /// Multiplies row by row into `out`; a single row is broadcast.
+    /// Multiplies row by row into `out`, by several threads where there are enough rows for it to pay; a single row is
+    /// broadcast.
     ///
     /// # Panics
     /// If a slice is not a whole number of rows, or the numbers of rows do not fit together.
-    pub fn run<T: Element>(&self, a: &[T], b: &[T], out: &mut [T]) {
-        self.run_threads(Threads::ONE, a, b, out);
-    }
-
-    /// [`Plan::run`] by several threads, where there are enough rows for it to pay.
-    ///
-    /// # Panics
-    /// As [`Plan::run`].
-    pub fn run_threads<T: Element>(&self, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
+    pub fn run<T: Element>(&self, threads: Threads, a: &[T], b: &[T], out: &mut [T]) {
         self.run_on(Path::best(), threads, a, b, out);
     }
 
@@ -164,19 +157,12 @@ impl Plan {
     }
 }
 
-/// `R X ~R` for rows of rotor components and rows of values of these grades; a single row is broadcast.
+/// `R X ~R` for rows of rotor components and rows of values of these grades, by several threads where there are enough
+/// rows for it to pay; a single row is broadcast.
 ///
 /// # Panics
 /// If there are no grades, or the numbers of rows do not fit together.
-pub fn turn<T: Element>(rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
-    turn_threads(Threads::ONE, rotors, values, grades, out);
-}
-
-/// [`turn`] by several threads, where there are enough rows for it to pay.
-///
-/// # Panics
-/// As [`turn`].
-pub fn turn_threads<T: Element>(threads: Threads, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
+pub fn turn<T: Element>(threads: Threads, rotors: &[T], values: &[T], grades: Grades, out: &mut [T]) {
     turn_on(Path::best(), threads, rotors, values, grades, out);
 }
 

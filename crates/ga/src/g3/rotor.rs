@@ -102,13 +102,9 @@ impl Rotor {
             return Err(MathError::NotFinite);
         }
         let column = |j: usize| Vector([m[0][j], m[1][j], m[2][j]]);
-        let mut deviation: f64 = 0.0;
-        for i in 0..3 {
-            for j in 0..3 {
-                let target = if i == j { 1.0 } else { 0.0 };
-                deviation = deviation.max((column(i).dot(column(j)) - target).abs());
-            }
-        }
+        let deviation_at = |(i, j)| (column(i).dot(column(j)) - f64::from(i == j)).abs();
+        let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+        let deviation = pairs.map(deviation_at).fold(0.0, f64::max);
         if deviation > MATRIX_TOLERANCE {
             return Err(MathError::NotOrthogonal { deviation });
         }

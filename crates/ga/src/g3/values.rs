@@ -45,6 +45,9 @@ macro_rules! operator {
 }
 pub(super) use operator;
 
+/// The grade of each component of a multivector.
+pub(crate) const GRADE: [usize; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
+
 /// Componentwise sum, difference, negative, and product with a number.
 macro_rules! linear_space {
     ($type:ident) => {
@@ -225,7 +228,6 @@ impl Multivector {
     }
 
     fn signed(self, factor: impl Fn(usize) -> f64) -> Multivector {
-        const GRADE: [usize; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
         // A dropped part is 0 even if it is NaN.
         let part = |i: usize| match factor(GRADE[i]) {
             0.0 => 0.0,

@@ -100,6 +100,23 @@ pub(crate) trait Kernel<const W: usize = LANES>: Sync {
     }
 }
 
+/// Applies a function of rows of constant lengths to each row of lanes.
+#[inline(always)]
+pub(crate) fn by_lanes<const A: usize, const B: usize, const OUT: usize, const W: usize>(
+    a: &[Lane<W>],
+    b: &[Lane<W>],
+    out: &mut [Lane<W>],
+    function: impl Fn([f64; A], [f64; B]) -> [f64; OUT],
+) {
+    let (a, b, out) = (&a[..A], &b[..B], &mut out[..OUT]);
+    for l in 0..W {
+        let value = function(std::array::from_fn(|k| a[k].0[l]), std::array::from_fn(|k| b[k].0[l]));
+        for k in 0..OUT {
+            out[k].0[l] = value[k];
+        }
+    }
+}
+
 /// A block of rows as work.
 struct Block<'a, K, const W: usize> {
     kernel: &'a K,

@@ -102,20 +102,8 @@ pub fn together<const A: usize, const B: usize>(
     first: &mut [[f64; A]; TOGETHER],
     second: &mut [[f64; B]; TOGETHER],
 ) {
-    side_by_side(Path::best(), curves, arguments, first, second);
-}
-
-fn side_by_side<const A: usize, const B: usize>(
-    path: Path,
-    curves: &impl Curve<A, B>,
-    arguments: &[f64; TOGETHER],
-    first: &mut [[f64; A]; TOGETHER],
-    second: &mut [[f64; B]; TOGETHER],
-) {
-    let mut out = [Lane::filled(0.0); MOST];
-    path.run(OnLanes::<_, A, B, _> { curve: curves, arguments: &Lane(*arguments), out: &mut out });
-    path.scatter(&out[..A], first.as_flattened_mut());
-    path.scatter(&out[A..A + B], second.as_flattened_mut());
+    let (first, second) = (first.as_flattened_mut(), second.as_flattened_mut());
+    blocks::<TOGETHER, A, B>(Path::best(), curves, arguments, first, second);
 }
 
 /// The values of a curve for a lane of arguments.
@@ -187,7 +175,8 @@ mod tests {
         let arguments = factors.map(|x| 0.1 * x);
         for path in Path::available() {
             let (mut a, mut b) = ([[0.5]; TOGETHER], [[0.5; 2]; TOGETHER]);
-            side_by_side(path, &Multiples(factors), &arguments, &mut a, &mut b);
+            let (first, second) = (a.as_flattened_mut(), b.as_flattened_mut());
+            blocks::<TOGETHER, 1, 2>(path, &Multiples(factors), &arguments, first, second);
             for l in 0..TOGETHER {
                 assert_eq!((a[l], b[l]), value(&Multiples([factors[l]]), arguments[l]), "{path:?}");
             }

@@ -1,11 +1,8 @@
 //! A single value of G3 with grades known at run time, as in dynamic languages.
 
 use crate::g3::rotor::Rotor;
-use crate::g3::values::{Vector, geometric};
+use crate::g3::values::{GRADE, Vector, geometric};
 use crate::product::{Engine, Grades, Plan, Product};
-
-/// Where each grade of G3 begins among the eight components, and where the last one ends.
-const STARTS: [usize; 5] = [0, 1, 4, 7, 8];
 
 /// The components of the grades present, in basis order; zeros follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,13 +65,7 @@ impl Graded {
     /// The eight components, zeros for the grades it does not hold.
     pub fn full(&self) -> [f64; 8] {
         let mut full = [0.0; 8];
-        let mut next = 0;
-        for k in (0..4).filter(|&k| self.grades.contains(k)) {
-            for slot in &mut full[STARTS[k]..STARTS[k + 1]] {
-                *slot = self.components[next];
-                next += 1;
-            }
-        }
+        places(self.grades).zip(self.components).for_each(|(place, x)| full[place] = x);
         full
     }
 
@@ -85,13 +76,7 @@ impl Graded {
         }
         let full = self.full();
         let mut part = Graded { components: [0.0; 8], grades };
-        let mut next = 0;
-        for k in (0..4).filter(|&k| grades.contains(k)) {
-            for x in &full[STARTS[k]..STARTS[k + 1]] {
-                part.components[next] = *x;
-                next += 1;
-            }
-        }
+        part.components.iter_mut().zip(places(grades)).for_each(|(slot, place)| *slot = full[place]);
         part
     }
 
@@ -180,6 +165,11 @@ impl Graded {
     }
 }
 
+/// The places of the components of some grades among all eight.
+fn places(grades: Grades) -> impl Iterator<Item = usize> {
+    (0..8).filter(move |&i| grades.contains(GRADE[i]))
+}
+
 /// The number of components of some grades.
 pub(crate) fn size(grades: Grades) -> usize {
     const SIZES: [u8; 16] = [0, 1, 3, 4, 3, 4, 6, 7, 1, 2, 4, 5, 4, 5, 7, 8];
@@ -190,6 +180,7 @@ pub(crate) fn size(grades: Grades) -> usize {
 mod tests {
     use super::*;
     use crate::rows::product::turn;
+    use crate::simd::threads::Threads;
     use crate::table::G3;
 
     fn numbers(seed: usize, count: usize) -> Vec<f64> {
@@ -205,14 +196,14 @@ mod tests {
             for product in Product::ALL {
                 let plan = Plan::g3(product, ga, gb);
                 let mut expected = vec![0.0; plan.sizes.2];
-                plan.run(&a, &b, &mut expected);
+                plan.run(Threads::ONE, &a, &b, &mut expected);
                 let got = left.product(product, &right);
                 assert_eq!(got.components(), expected, "{product:?} {ga:?} {gb:?}");
                 assert_eq!(got.grades(), plan.grades);
             }
             let rotor = Rotor::from_components([0.3, -0.2, 0.9, 0.4]).unwrap();
             let mut expected = vec![0.0; b.len()];
-            turn(&rotor.components(), &b, gb, &mut expected);
+            turn(Threads::ONE, &rotor.components(), &b, gb, &mut expected);
             assert_eq!(right.turned(rotor).components(), expected);
         }
     }

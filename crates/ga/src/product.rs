@@ -7,56 +7,56 @@ use crate::rows::tiles::Tiles;
 use crate::table::{Algebra, G3};
 use std::sync::OnceLock;
 
-/// The products of the handout, and the contractions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Product {
-    /// The geometric product `AB`: every grade.
-    Geometric,
-    /// `A∧B`: grade r + s.
-    Wedge,
-    /// `A·B`: grade abs(r − s).
-    Dot,
-    /// `A×B = ½(AB − BA)`: the pairs of blades that anticommute.
-    Commutator,
-    /// Left contraction `A⌋B`: grade s − r.
-    LeftContraction,
-    /// Right contraction `A⌊B`: grade r − s.
-    RightContraction,
-    /// `⟨AB⟩`: grade 0.
-    Scalar,
+/// An enum whose variants have names.
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident: $count:literal { $($(#[$about:meta])* $variant:ident $name:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $type {
+            $($(#[$about])* $variant,)*
+        }
+
+        impl $type {
+            /// Every one, in the order of the enum.
+            pub const ALL: [$type; $count] = [$($type::$variant),*];
+
+            /// The one of this name.
+            pub fn from_name(name: &str) -> Option<$type> {
+                $type::ALL.into_iter().find(|one| one.name() == name)
+            }
+
+            /// Its name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $($type::$variant => $name,)*
+                }
+            }
+        }
+    };
+}
+pub(crate) use named;
+
+named! {
+    /// The products of the handout, and the contractions.
+    Product: 7 {
+        /// The geometric product `AB`: every grade.
+        Geometric "geometric",
+        /// `A∧B`: grade r + s.
+        Wedge "wedge",
+        /// `A·B`: grade abs(r − s).
+        Dot "dot",
+        /// `A×B = ½(AB − BA)`: the pairs of blades that anticommute.
+        Commutator "commutator",
+        /// Left contraction `A⌋B`: grade s − r.
+        LeftContraction "left_contraction",
+        /// Right contraction `A⌊B`: grade r − s.
+        RightContraction "right_contraction",
+        /// `⟨AB⟩`: grade 0.
+        Scalar "scalar",
+    }
 }
 
 impl Product {
-    /// Every product, in the order of the enum.
-    pub const ALL: [Product; 7] = [
-        Product::Geometric,
-        Product::Wedge,
-        Product::Dot,
-        Product::Commutator,
-        Product::LeftContraction,
-        Product::RightContraction,
-        Product::Scalar,
-    ];
-
-    /// The product of this name: `geometric`, `wedge`, `dot`, `commutator`, `left_contraction`,
-    /// `right_contraction`, `scalar`.
-    pub fn from_name(name: &str) -> Option<Product> {
-        Product::ALL.into_iter().find(|p| p.name() == name)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Product::Geometric => "geometric",
-            Product::Wedge => "wedge",
-            Product::Dot => "dot",
-            Product::Commutator => "commutator",
-            Product::LeftContraction => "left_contraction",
-            Product::RightContraction => "right_contraction",
-            Product::Scalar => "scalar",
-        }
-    }
-
     /// Whether the grade-k product of blades of grades r and s is kept.
     fn keeps(self, r: usize, s: usize, k: usize, anticommute: bool) -> bool {
         match self {

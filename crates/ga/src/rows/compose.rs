@@ -3,32 +3,29 @@
 use crate::g3::rotor::Rotor;
 use crate::simd::threads::Threads;
 use crate::simd::traverse::sweep;
-use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path};
+use crate::simd::{ByRow, Element, Kernel, LANES, Lane, Path, by_lanes};
+use std::array::from_fn;
 
 /// `S R` for rows of rotor components, as [`Rotor::compose`].
 pub(crate) struct Compose;
+
+#[inline(always)]
+fn product(s: [f64; 4], r: [f64; 4]) -> [f64; 4] {
+    Rotor::from_unit_components(s).compose(Rotor::from_unit_components(r)).components()
+}
 
 impl ByRow for Compose {
     const FAST_ROWS: bool = true;
 
     fn row(&self, s: &[f64], r: &[f64], out: &mut [f64]) {
-        let rotor = |c: &[f64]| Rotor::from_unit_components(std::array::from_fn(|k| c[k]));
-        out.copy_from_slice(&rotor(s).compose(rotor(r)).components());
+        out.copy_from_slice(&product(from_fn(|k| s[k]), from_fn(|k| r[k])));
     }
 }
 
 impl<const W: usize> Kernel<W> for Compose {
     #[inline(always)]
     fn block(&self, s: &[Lane<W>], r: &[Lane<W>], out: &mut [Lane<W>]) {
-        let (s, r, out) = (&s[..4], &r[..4], &mut out[..4]);
-        for l in 0..W {
-            let rotor =
-                |lanes: &[Lane<W>]| Rotor::from_unit_components(std::array::from_fn(|k| lanes[k].0[l]));
-            let product = rotor(s).compose(rotor(r)).components();
-            for k in 0..4 {
-                out[k].0[l] = product[k];
-            }
-        }
+        by_lanes(s, r, out, product);
     }
 }
 

@@ -3,9 +3,10 @@
 //! A [`Curve`] is branch-free arithmetic over `W` arguments, compiled for the widest instructions of the machine. Its
 //! values have the same bits on every machine and path, for any number of arguments and threads.
 
+use crate::simd::lanes::Work;
 use crate::simd::map::{BUILT_WITH_FMA, alone};
 use crate::simd::threads::{Threads, for_each};
-use crate::simd::{Kernel, LANES, Lane, Path};
+use crate::simd::{LANES, Lane, Path};
 
 /// A function of one number with rows of `A` and of `B` numbers for values, at most [`MOST`] together.
 pub trait Curve<const A: usize, const B: usize>: Sync {
@@ -75,11 +76,11 @@ fn blocks<const W: usize, const A: usize, const B: usize>(
     first: &mut [f64],
     second: &mut [f64],
 ) {
-    let (mut input, mut out) = ([Lane::<W>::filled(0.0)], [Lane::<W>::filled(0.0); MOST]);
+    let (mut input, mut out) = (Lane::<W>::filled(0.0), [Lane::filled(0.0); MOST]);
     let blocks = arguments.chunks(W).zip(first.chunks_mut(W * A)).zip(second.chunks_mut(W * B));
     for ((arguments, a), b) in blocks {
-        input[0].0[..arguments.len()].copy_from_slice(arguments);
-        path.apply(&OnLanes::<_, A, B>(curve), &input, &[], &mut out);
+        input.0[..arguments.len()].copy_from_slice(arguments);
+        path.run(OnLanes::<_, A, B, W> { curve, arguments: &input, out: &mut out });
         path.scatter(&out[..A], a);
         path.scatter(&out[A..A + B], b);
     }
@@ -101,54 +102,33 @@ pub fn together<const A: usize, const B: usize>(
     first: &mut [[f64; A]; TOGETHER],
     second: &mut [[f64; B]; TOGETHER],
 ) {
-    side_by_side(Path::best(), curves, arguments, first, second);
+    let (first, second) = (first.as_flattened_mut(), second.as_flattened_mut());
+    blocks::<TOGETHER, A, B>(Path::best(), curves, arguments, first, second);
 }
 
-fn side_by_side<const A: usize, const B: usize>(
-    path: Path,
-    curves: &impl Curve<A, B>,
-    arguments: &[f64; TOGETHER],
-    first: &mut [[f64; A]; TOGETHER],
-    second: &mut [[f64; B]; TOGETHER],
-) {
-    let mut out = [Lane::<TOGETHER>::filled(0.0); MOST];
-    path.apply(&OnLanes::<_, A, B>(curves), &[Lane(*arguments)], &[], &mut out);
-    path.scatter(&out[..A], first.as_flattened_mut());
-    path.scatter(&out[A..A + B], second.as_flattened_mut());
+/// The values of a curve for a lane of arguments.
+struct OnLanes<'a, C, const A: usize, const B: usize, const W: usize> {
+    curve: &'a C,
+    arguments: &'a Lane<W>,
+    out: &'a mut [Lane<W>; MOST],
 }
 
-struct OnLanes<'a, C, const A: usize, const B: usize>(&'a C);
+impl<C: Curve<A, B>, const A: usize, const B: usize, const W: usize> Work for OnLanes<'_, C, A, B, W> {
+    type Output = ();
 
-impl<C: Curve<A, B>, const A: usize, const B: usize> OnLanes<'_, C, A, B> {
-    /// `N` at a time, so that intermediate results stay in registers.
+    /// [`TOGETHER`] at a time, so that intermediate results stay in registers.
     #[inline(always)]
-    fn lanes<const FMA: bool, const N: usize, const W: usize>(
-        &self,
-        arguments: &Lane<W>,
-        out: &mut [Lane<W>],
-    ) {
-        let (first, second) = out[..A + B].split_at_mut(A);
-        for (i, arguments) in arguments.0.as_chunks::<N>().0.iter().enumerate() {
-            let (a, b) = self.0.values::<N, FMA>(arguments);
+    fn run<const FMA: bool>(self) {
+        let (first, second) = self.out[..A + B].split_at_mut(A);
+        for (i, arguments) in self.arguments.0.as_chunks::<TOGETHER>().0.iter().enumerate() {
+            let (a, b) = self.curve.values::<TOGETHER, FMA>(arguments);
             for k in 0..A {
-                first[k].0.as_chunks_mut::<N>().0[i] = a[k];
+                first[k].0.as_chunks_mut::<TOGETHER>().0[i] = a[k];
             }
             for k in 0..B {
-                second[k].0.as_chunks_mut::<N>().0[i] = b[k];
+                second[k].0.as_chunks_mut::<TOGETHER>().0[i] = b[k];
             }
         }
-    }
-}
-
-impl<C: Curve<A, B>, const A: usize, const B: usize, const W: usize> Kernel<W> for OnLanes<'_, C, A, B> {
-    #[inline(always)]
-    fn block(&self, arguments: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
-        self.lanes::<BUILT_WITH_FMA, TOGETHER, W>(&arguments[0], out);
-    }
-
-    #[inline(always)]
-    fn fused_block(&self, arguments: &[Lane<W>], _: &[Lane<W>], out: &mut [Lane<W>]) {
-        self.lanes::<true, TOGETHER, W>(&arguments[0], out);
     }
 }
 
@@ -195,7 +175,8 @@ mod tests {
         let arguments = factors.map(|x| 0.1 * x);
         for path in Path::available() {
             let (mut a, mut b) = ([[0.5]; TOGETHER], [[0.5; 2]; TOGETHER]);
-            side_by_side(path, &Multiples(factors), &arguments, &mut a, &mut b);
+            let (first, second) = (a.as_flattened_mut(), b.as_flattened_mut());
+            blocks::<TOGETHER, 1, 2>(path, &Multiples(factors), &arguments, first, second);
             for l in 0..TOGETHER {
                 assert_eq!((a[l], b[l]), value(&Multiples([factors[l]]), arguments[l]), "{path:?}");
             }

@@ -38,68 +38,42 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
     pub fn all(x: f64) -> Self {
         Lanes([x; W])
     }
+}
 
+/// Functions of a lane, for each of them.
+macro_rules! lane_functions {
+    ($($(#[$doc:meta])* $name:ident($x:ident $(, $other:ident)*) $value:expr;)*) => {
+        impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> { $(
+            $(#[$doc])*
+            #[inline(always)]
+            pub fn $name(self $(, $other: Self)*) -> Self {
+                let mut result = self;
+                for l in 0..W {
+                    let ($x, $($other),*) = (self.0[l], $($other.0[l]),*);
+                    result.0[l] = $value;
+                }
+                result
+            }
+        )* }
+    };
+}
+
+lane_functions! {
     /// `self · b + c`.
-    #[inline(always)]
-    pub fn times_plus(self, b: Self, c: Self) -> Self {
-        let mut result = c;
-        for l in 0..W {
-            result.0[l] = if FUSED { self.0[l].mul_add(b.0[l], c.0[l]) } else { self.0[l] * b.0[l] + c.0[l] };
-        }
-        result
-    }
-
+    times_plus(x, b, c) if FUSED { x.mul_add(b, c) } else { x * b + c };
     /// `c − self · b`.
-    #[inline(always)]
-    pub fn times_from(self, b: Self, c: Self) -> Self {
-        let mut result = c;
-        for l in 0..W {
-            result.0[l] =
-                if FUSED { (-self.0[l]).mul_add(b.0[l], c.0[l]) } else { c.0[l] - self.0[l] * b.0[l] };
-        }
-        result
-    }
-
+    times_from(x, b, c) if FUSED { (-x).mul_add(b, c) } else { c - x * b };
     /// Square roots.
-    #[inline(always)]
-    pub fn sqrt(self) -> Self {
-        let mut result = self;
-        for x in &mut result.0 {
-            *x = x.sqrt();
-        }
-        result
-    }
-
+    sqrt(x) x.sqrt();
     /// Magnitudes.
-    #[inline(always)]
-    pub fn abs(self) -> Self {
-        let mut result = self;
-        for x in &mut result.0 {
-            *x = x.abs();
-        }
-        result
-    }
-
+    abs(x) x.abs();
     /// The angle in [0, π/2] whose tangent is `self/|s|`, for `self >= 0` and not both 0, to a few relative roundings.
-    #[inline(always)]
-    pub fn angle(self, s: Self) -> Self {
-        let mut result = self;
-        for l in 0..W {
-            result.0[l] = double::angle(self.0[l], s.0[l]);
-        }
-        result
-    }
-
+    angle(x, s) double::angle(x, s);
     /// The larger of two; a NaN of `self` is lost.
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        let mut result = other;
-        for l in 0..W {
-            result.0[l] = if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] };
-        }
-        result
-    }
+    max(x, other) if x > other { x } else { other };
+}
 
+impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
     /// `self` where the mask says so, else `other`.
     #[inline(always)]
     pub fn or(self, mask: &[bool; W], other: Self) -> Self {

@@ -331,5 +331,5 @@ fn grades(py: Python<'_>, grades: Grades) -> PyResult<Bound<'_, PyTuple>> {
 /// The algebra, for formulas.
 fn space(algebra: &Py<Algebra>) -> Space<'_> {
     let algebra = algebra.get();
-    if algebra.is_g3() { Space::g3() } else { Space::new(&algebra.table, algebra.calculus()) }
+    if algebra.is_g3() { Space::g3() } else { Space::new(&algebra.table, algebra.calculus(false)) }
 }

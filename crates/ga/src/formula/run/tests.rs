@@ -302,14 +302,14 @@ fn steps_equal_calls_by_hand() {
     rotor_functions::log(Threads::ONE, r, &mut expected).unwrap();
     assert_same(&run(Op::Function(Function::Log, 0), Type::of(Grades::BIVECTOR)), &expected, "log");
     let mut expected = vec![0.0; 6 * rows];
-    product::turn(r, x, some, &mut expected);
+    product::turn(Threads::ONE, r, x, some, &mut expected);
     assert_same(&run(Op::Turn(0, 2), Type::of(some)), &expected, "turn");
     let turned = by_value(some, x, &|i, x| x.turned(unit(i)));
     assert_same(&expected, &turned, "turned");
     for product in Product::ALL {
         let plan = Plan::g3(product, some, VECTOR);
         let mut expected = vec![0.0; plan.sizes.2 * rows];
-        plan.run(x, v, &mut expected);
+        plan.run(Threads::ONE, x, v, &mut expected);
         assert_same(&run(Op::Product(product, 2, 4), Type::of(plan.grades)), &expected, "product");
         let vector = |i: usize| Graded::new(&v[3 * i..3 * i + 3], VECTOR).unwrap();
         let part = by_value(some, x, &|i, x| x.product(product, &vector(i)).with_grades(Grades(0b0101)));
@@ -381,8 +381,8 @@ fn large_and_narrow_rows_are_the_same() {
     let rows = crate::simd::traverse::STREAMED / 8 / 13 + 37;
     let [r, v] = kinds.map(|kind| random.rows(kind, rows));
     let (mut turned, mut planes) = (vec![0.0; 3 * rows], vec![0.0; 3 * rows]);
-    product::turn(&r, &v, VECTOR, &mut turned);
-    Plan::g3(Product::Wedge, VECTOR, VECTOR).run(&v, &turned, &mut planes);
+    product::turn(Threads::ONE, &r, &v, VECTOR, &mut turned);
+    Plan::g3(Product::Wedge, VECTOR, VECTOR).run(Threads::ONE, &v, &turned, &mut planes);
     for path in Path::available() {
         for threads in [1, 3] {
             let (mut a, mut b) = (vec![0.5; 3 * rows], vec![0.5; 3 * rows]);

@@ -6,6 +6,7 @@
 pub(crate) mod glyphs;
 pub(crate) mod latex;
 
+use super::syntax::letters::raised;
 use super::syntax::number::{FRACTIONS, Number};
 use super::syntax::tree::is_numeric;
 use super::syntax::tree::{Kind, Named, Node, Tight, Tree};
@@ -242,7 +243,7 @@ impl Printer {
             self.out.push('^');
             self.out.push_str(&n.to_string());
         } else {
-            self.out.extend(n.to_string().chars().map(superscript));
+            self.out.extend(n.to_string().chars().filter_map(raised));
         }
     }
 
@@ -269,11 +270,6 @@ fn grades_of(grades: Grades) -> String {
         [only] => format!("_{only}"),
         _ => format!("_{{{}}}", list.join(",")),
     }
-}
-
-fn superscript(c: char) -> char {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize])
 }
 
 /// Whether it would be an exponent after `^`: a number, or `(2)'`.

@@ -1,7 +1,8 @@
 //! One line of a session: whether it assigns, what is parsed, and where its errors are.
 
 use super::source::{Source, Units, number};
-use crate::formula::{Error, Span, canonical, heading};
+use crate::formula::compile::define::named;
+use crate::formula::{Error, Span, canonical};
 use std::ops::Range;
 
 /// The name under which `_`, the last value, is parsed.
@@ -140,19 +141,9 @@ impl Head {
         !self.parameters.is_empty()
     }
 
-    /// `a` or `V(x)`; none for anything else.
+    /// `a` or `V(x)`; none for anything else. A parameter that occurs twice is an error of the definition.
     fn new(text: &str, place: Range<usize>) -> Option<Head> {
-        let (name, parameters) = match heading(text) {
-            Ok(head) => head,
-            Err(_) => {
-                // A parameter that occurs twice is an error of the definition.
-                let call = text.strip_suffix(')').and_then(|head| head.split_once('('));
-                let call = call.and_then(|(name, list)| {
-                    Some((canonical(name)?, list.split(',').map(canonical).collect::<Option<_>>()?))
-                });
-                call.or_else(|| Some((canonical(text)?, Vec::new())))?
-            }
-        };
+        let (name, parameters) = named(text).or_else(|| Some((canonical(text)?, Vec::new())))?;
         Some(Head { text: text.to_owned(), name, parameters, place })
     }
 }

@@ -6,7 +6,7 @@ pub(crate) mod derivative;
 pub(crate) mod program;
 pub(crate) mod rules;
 
-use super::syntax::indices::{count_indices, indexed, permutation};
+use super::syntax::indices::{indexed, indices_in, permutation};
 use super::syntax::names::{Definition, Meaning, Names, Type};
 use super::syntax::number::Number;
 use super::syntax::tree::{Kind, Named, Node, Span, Tight, Tree};
@@ -412,12 +412,13 @@ impl Compiler<'_> {
     fn free_indices(&self, tree: &Tree) -> Result<Vec<char>, Error> {
         let mut free = Vec::new();
         if self.names.is_open() {
-            return Ok(Vec::new());
+            return Ok(free);
         }
-        for side in &tree.sides {
-            count_indices(side, self.names, &mut free);
+        for (index, _) in tree.sides.iter().flat_map(|side| indices_in(side, self.names)) {
+            if !free.contains(&index) {
+                free.push(index);
+            }
         }
-        let free: Vec<char> = free.into_iter().map(|(index, _)| index).collect();
         let whole = tree.sides[0].span;
         match free[..] {
             [] => Ok(free),

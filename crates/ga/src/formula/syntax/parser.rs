@@ -7,8 +7,8 @@ use super::indices::sum_repeated;
 use super::names::Names;
 use super::number::FRACTIONS;
 use super::number::Number;
-use super::reading::{Item, Read, read};
-use super::token::{Sign, tokens};
+use super::reading::read;
+use super::token::{Item, Token, tokens};
 use super::tree::{Kind, Node, Span, Tight, Tree, is_numeric};
 use crate::formula::{Error, MAX_DEPTH, Space};
 
@@ -25,9 +25,9 @@ pub fn parse(text: &str, space: Space, names: &Names) -> Result<Tree, Error> {
         return Err(Error::new(Span::default(), "the formula is empty"));
     }
     let mut parser = Parser { text, space, names, items, at: 0, depth: 0 };
-    let mut sides = vec![parser.sum()?.node];
-    while parser.eat(&Sign::Equals) {
-        sides.push(parser.sum()?.node);
+    let mut sides = vec![parser.sum()?];
+    while parser.eat(&Item::Equals) {
+        sides.push(parser.sum()?);
     }
     match parser.peek() {
         None => Ok(Tree { sides: sum_repeated(sides, names)? }),
@@ -35,19 +35,13 @@ pub fn parse(text: &str, space: Space, names: &Names) -> Result<Tree, Error> {
     }
 }
 
-/// A node and its height.
-pub(crate) struct Built {
-    pub node: Node,
-    pub height: usize,
-}
-
-pub(crate) type Parsed = Result<Built, Error>;
+pub(crate) type Parsed = Result<Node, Error>;
 
 pub(crate) struct Parser<'a> {
     pub text: &'a str,
     pub space: Space<'a>,
     pub names: &'a Names,
-    pub items: Vec<Read>,
+    pub items: Vec<Token>,
     pub at: usize,
     pub depth: usize,
 }
@@ -56,19 +50,19 @@ impl Parser<'_> {
     // --- the items
 
     pub fn peek(&self) -> Option<&Item> {
-        self.items.get(self.at).map(|read| &read.item)
+        self.ahead(0).map(|token| &token.item)
     }
 
-    pub fn ahead(&self, count: usize) -> Option<&Read> {
+    pub fn ahead(&self, count: usize) -> Option<&Token> {
         self.items.get(self.at + count)
     }
 
-    pub fn is(&self, sign: &Sign) -> bool {
-        matches!(self.peek(), Some(Item::Sign(found)) if found == sign)
+    pub fn is(&self, item: &Item) -> bool {
+        self.peek() == Some(item)
     }
 
-    pub fn eat(&mut self, sign: &Sign) -> bool {
-        let found = self.is(sign);
+    pub fn eat(&mut self, item: &Item) -> bool {
+        let found = self.is(item);
         self.at += usize::from(found);
         found
     }
@@ -97,74 +91,80 @@ impl Parser<'_> {
         };
         let text = self.slice(read.span);
         let message = match &read.item {
-            Item::Sign(Sign::Close(_) | Sign::CloseAngle) if self.depth == 0 => {
+            Item::Close(_) | Item::CloseAngle if self.depth == 0 => {
                 format!("`{text}` closes no bracket")
             }
-            Item::Sign(Sign::Tight(Tight::Dot)) if text == "|" => {
+            Item::Tight(Tight::Dot) if text == "|" => {
                 "`|` is a dot product, `a|b`, and needs its left factor; a magnitude is `norm(a)`".to_owned()
             }
-            Item::Sign(Sign::Comma) => "commas are allowed only between arguments of a function".to_owned(),
-            Item::Sign(Sign::Underscore) => "a subscript must directly follow a letter or `⟨…⟩`".to_owned(),
+            Item::Comma => "commas are allowed only between arguments of a function".to_owned(),
+            Item::Underscore => "a subscript must directly follow a letter or `⟨…⟩`".to_owned(),
             Item::Subscript(_) => "a subscript must directly follow a letter or `⟩`".to_owned(),
-            Item::Sign(Sign::Prime) => "a prime must directly follow a letter or a bracket".to_owned(),
+            Item::Prime => "a prime must directly follow a letter or a bracket".to_owned(),
             Item::Superscript(_) => "a power must follow its base; powers of powers need brackets".to_owned(),
             _ => format!("expected a name, a number or an opening bracket, got `{text}`"),
         };
         Error::new(read.span, message)
     }
 
-    pub fn build(&self, kind: Kind, span: Span, height: usize) -> Parsed {
-        if height >= MAX_HEIGHT {
+    pub fn build(&self, kind: Kind, span: Span) -> Parsed {
+        let node = Node::new(kind, span);
+        if node.height() > MAX_HEIGHT { Err(too_deep(span)) } else { Ok(node) }
+    }
+
+    /// Parses an inner part, one level deeper.
+    pub fn nested<T>(
+        &mut self,
+        span: Span,
+        part: impl FnOnce(&mut Self) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
             return Err(too_deep(span));
         }
-        Ok(Built { node: Node::new(kind, span), height: height + 1 })
+        let part = part(self)?;
+        self.depth -= 1;
+        Ok(part)
     }
 
     // --- the grammar, loosest first
 
     pub fn sum(&mut self) -> Parsed {
         let start = self.span();
-        let mut minus = self.eat(&Sign::Minus);
+        let mut minus = self.eat(&Item::Minus);
         if !minus {
-            self.eat(&Sign::Plus);
+            self.eat(&Item::Plus);
         }
-        let mut terms = Vec::new();
-        let mut height = 0;
+        let first = self.product()?;
+        if !minus && !matches!(self.peek(), Some(Item::Plus | Item::Minus)) {
+            return Ok(first);
+        }
+        let mut terms = vec![(minus, first)];
         loop {
-            let term = self.product()?;
-            height = height.max(term.height);
-            terms.push((minus, term));
-            minus = self.is(&Sign::Minus);
-            if !minus && !self.is(&Sign::Plus) {
-                break;
+            minus = self.eat(&Item::Minus);
+            if !minus && !self.eat(&Item::Plus) {
+                return self.build(Kind::Sum(terms), self.since(start));
             }
-            self.at += 1;
+            terms.push((minus, self.product()?));
         }
-        if let [(false, _)] = terms[..] {
-            return terms.pop().map(|(_, term)| term).ok_or_else(|| self.unexpected());
-        }
-        let terms = terms.into_iter().map(|(minus, term)| (minus, term.node)).collect();
-        self.build(Kind::Sum(terms), self.since(start), height)
     }
 
     pub fn product(&mut self) -> Parsed {
         let start = self.span();
         let mut factors = vec![self.tight()?];
         loop {
-            if self.eat(&Sign::Star) {
+            if self.eat(&Item::Star) {
                 factors.push(self.tight()?);
-            } else if self.eat(&Sign::Slash) {
+            } else if self.eat(&Item::Slash) {
                 let divisor_start = self.span();
                 let divisor = self.prefix()?;
                 self.check_divisor(start, divisor_start)?;
                 let numerator = self.joined(factors, start)?;
-                let span = self.since(start);
-                let height = numerator.height.max(divisor.height);
-                let kind = match written_fraction(&numerator.node, &divisor.node) {
+                let kind = match written_fraction(&numerator, &divisor) {
                     Some(fraction) => Kind::Number(fraction),
-                    None => Kind::Quotient(Box::new((numerator.node, divisor.node))),
+                    None => Kind::Quotient(Box::new((numerator, divisor))),
                 };
-                factors = vec![self.build(kind, span, height)?];
+                factors = vec![self.build(kind, self.since(start))?];
             } else if self.begins_operand() {
                 self.check_juxtaposition(&factors)?;
                 factors.push(self.tight()?);
@@ -174,15 +174,11 @@ impl Parser<'_> {
         }
     }
 
-    fn joined(&self, mut factors: Vec<Built>, start: Span) -> Parsed {
-        if factors.len() == 1
-            && let Some(factor) = factors.pop()
-        {
-            return Ok(factor);
+    fn joined(&self, factors: Vec<Node>, start: Span) -> Parsed {
+        match <[Node; 1]>::try_from(factors) {
+            Ok([factor]) => Ok(factor),
+            Err(factors) => self.build(Kind::Product(factors), self.since(start)),
         }
-        let height = factors.iter().map(|factor| factor.height).max().unwrap_or(0);
-        let factors: Vec<Node> = factors.into_iter().map(|factor| factor.node).collect();
-        self.build(Kind::Product(factors), self.since(start), height)
     }
 
     /// `x/2a` may mean `(x/2) a` or `x/(2a)`, and only a space decides; so may `1/2·x`.
@@ -208,7 +204,7 @@ impl Parser<'_> {
     }
 
     /// Fails for adjacent operands that are probably not meant as a product.
-    fn check_juxtaposition(&self, factors: &[Built]) -> Result<(), Error> {
+    fn check_juxtaposition(&self, factors: &[Node]) -> Result<(), Error> {
         let (Some(last), Some(next)) = (factors.last(), self.ahead(0)) else { return Ok(()) };
         let before = &self.items[self.at - 1];
         match (&before.item, &next.item) {
@@ -219,15 +215,11 @@ impl Parser<'_> {
                 );
                 Err(Error::new(before.span.to(next.span), message))
             }
-            (Item::Sign(Sign::Close(_) | Sign::CloseAngle), Item::Number(_)) if !next.space => {
-                Err(Error::new(
-                    next.span,
-                    "a number right after a bracket; write a power as `(…)^2`, or the factor before the bracket",
-                ))
-            }
-            (Item::Name(name), Item::Sign(Sign::Open('(')))
-                if !next.space && last.node.kind == Kind::Name(name.clone()) =>
-            {
+            (Item::Close(_) | Item::CloseAngle, Item::Number(_)) if !next.space => Err(Error::new(
+                next.span,
+                "a number right after a bracket; write a power as `(…)^2`, or the factor before the bracket",
+            )),
+            (Item::Name(name), Item::Open('(')) if !next.space && last.kind == Kind::Name(name.clone()) => {
                 self.check_application(name)
             }
             _ => Ok(()),
@@ -238,7 +230,7 @@ impl Parser<'_> {
     fn check_application(&self, name: &str) -> Result<(), Error> {
         let (argument, close) = (self.ahead(1), self.ahead(2));
         let alone = argument.is_some_and(|a| matches!(a.item, Item::Name(_) | Item::Number(_)))
-            && close.is_some_and(|c| c.item == Item::Sign(Sign::Close('(')));
+            && close.is_some_and(|c| c.item == Item::Close('('));
         if self.names.is_open() || !alone {
             return Ok(());
         }
@@ -254,17 +246,16 @@ impl Parser<'_> {
     }
 
     pub fn begins_operand(&self) -> bool {
-        match self.peek() {
-            Some(Item::Sign(sign)) => matches!(sign, Sign::Open(_) | Sign::OpenAngle | Sign::Tilde),
-            Some(Item::Superscript(_) | Item::Subscript(_)) | None => false,
-            Some(_) => true,
-        }
+        use Item::*;
+        let Some(item) = self.peek() else { return false };
+        let named = matches!(item, Name(_) | Callable(..) | Function(_) | Product(_) | Euler | Total(_));
+        named || matches!(item, Number(_) | Pi | Blade(_) | Pseudoscalar | Open(_) | OpenAngle | Tilde)
     }
 
     fn tight_sign(&self) -> Option<Tight> {
         match self.peek() {
-            Some(Item::Sign(Sign::Caret)) => Some(Tight::Wedge),
-            Some(Item::Sign(Sign::Tight(tight))) => Some(*tight),
+            Some(Item::Caret) => Some(Tight::Wedge),
+            Some(Item::Tight(tight)) => Some(*tight),
             _ => None,
         }
     }
@@ -274,20 +265,18 @@ impl Parser<'_> {
         let first = self.prefix()?;
         let Some(tight) = self.tight_sign() else { return Ok(first) };
         let mut spans = vec![self.since(start)];
-        let mut height = first.height;
-        let mut operands = vec![first.node];
+        let mut operands = vec![first];
         while self.tight_sign() == Some(tight) && (tight == Tight::Wedge || operands.len() < 2) {
-            let caret = self.is(&Sign::Caret);
+            let caret = self.is(&Item::Caret);
             self.at += 1;
             let begin = self.span();
             let operand = self.prefix()?;
             spans.push(self.since(begin));
-            if caret && is_numeric(&operand.node) {
+            if caret && is_numeric(&operand) {
                 let message = "a power must be a whole number: `A^2`, `A^-1`; write other powers of a rotor as `exp(½ log(R))`";
                 return Err(Error::new(self.since(begin), message));
             }
-            height = height.max(operand.height);
-            operands.push(operand.node);
+            operands.push(operand);
         }
         if let Some(other) = self.tight_sign() {
             self.at += 1;
@@ -295,7 +284,7 @@ impl Parser<'_> {
             self.prefix()?;
             return Err(self.ambiguous(tight, other, &spans, self.since(begin)));
         }
-        self.build(Kind::Tight(tight, operands), self.since(start), height)
+        self.build(Kind::Tight(tight, operands), self.since(start))
     }
 
     /// The two readings of `a·b∧c`.
@@ -319,62 +308,50 @@ impl Parser<'_> {
 
     pub fn prefix(&mut self) -> Parsed {
         let start = self.span();
-        let (tilde, minus) = (self.is(&Sign::Tilde), self.is(&Sign::Minus));
+        let (tilde, minus) = (self.is(&Item::Tilde), self.is(&Item::Minus));
         if !tilde && !minus {
             return self.postfix();
         }
         self.at += 1;
-        self.deeper(start)?;
-        let operand = self.prefix()?;
-        self.depth -= 1;
-        let span = self.since(start);
-        let Built { node, height } = operand;
-        let kind = if tilde { Kind::Reverse(Box::new(node)) } else { Kind::Sum(vec![(true, node)]) };
-        self.build(kind, span, height)
-    }
-
-    pub fn deeper(&mut self, span: Span) -> Result<(), Error> {
-        self.depth += 1;
-        if self.depth > MAX_DEPTH { Err(too_deep(span)) } else { Ok(()) }
+        let operand = self.nested(start, Self::prefix)?;
+        let kind = if tilde { Kind::Reverse(Box::new(operand)) } else { Kind::Sum(vec![(true, operand)]) };
+        self.build(kind, self.since(start))
     }
 
     fn postfix(&mut self) -> Parsed {
         let start = self.span();
-        let reversed = self.ahead(0).is_some_and(|read| read.reversed);
+        let reversed = self.ahead(0).is_some_and(|token| token.reversed);
         let mut operand = self.primary()?;
         if reversed {
-            operand = self.build(Kind::Reverse(Box::new(operand.node)), self.since(start), operand.height)?;
+            operand = self.build(Kind::Reverse(Box::new(operand)), self.since(start))?;
         }
         let mut powered = false;
         loop {
-            let node = Box::new(operand.node);
             let kind = if let Some(n) = self.power()? {
                 if powered {
                     return Err(Error::new(self.since(start), "a power of a power needs brackets: `(A²)³`"));
                 }
                 powered = true;
-                Kind::Power(node, n)
-            } else if self.eat(&Sign::Dagger) || self.eat_tilde_behind() {
-                Kind::Reverse(node)
-            } else if self.is(&Sign::Prime) {
+                Kind::Power(Box::new(operand), n)
+            } else if self.eat(&Item::Dagger) || self.eat_tilde_behind() {
+                Kind::Reverse(Box::new(operand))
+            } else if self.is(&Item::Prime) {
                 if matches!(self.items[self.at - 1].item, Item::Number(_)) {
-                    return Err(Error::new(
-                        self.span(),
-                        "a prime means a derivative, not minutes of arc or feet",
-                    ));
+                    let message = "a prime means a derivative, not minutes of arc or feet";
+                    return Err(Error::new(self.span(), message));
                 }
                 self.at += 1;
-                Kind::Derivative(node)
+                Kind::Derivative(Box::new(operand))
             } else {
-                return Ok(Built { node: *node, ..operand });
+                return Ok(operand);
             };
-            operand = self.build(kind, self.since(start), operand.height)?;
+            operand = self.build(kind, self.since(start))?;
         }
     }
 
     /// Consumes the tilde of `A~`, which directly follows an operand and does not directly precede another.
     fn eat_tilde_behind(&mut self) -> bool {
-        let behind = self.is(&Sign::Tilde) && self.ahead(0).is_some_and(|tilde| !tilde.space);
+        let behind = self.is(&Item::Tilde) && self.ahead(0).is_some_and(|tilde| !tilde.space);
         self.at += 1;
         let before = self.begins_operand() && self.ahead(0).is_some_and(|next| !next.space);
         let found = behind && !before;
@@ -389,21 +366,23 @@ impl Parser<'_> {
             self.at += 1;
             return Ok(Some(n));
         }
-        if !self.is(&Sign::Caret) {
+        if !self.is(&Item::Caret) {
             return Ok(None);
         }
         let mut count = 1;
         let bracket = match self.ahead(count).map(|read| &read.item) {
-            Some(Item::Sign(Sign::Open(kind))) => Some(*kind),
+            Some(Item::Open(kind)) => Some(*kind),
             _ => None,
         };
         count += usize::from(bracket.is_some());
-        let minus = self.ahead(count).is_some_and(|read| read.item == Item::Sign(Sign::Minus));
+        let minus = self.ahead(count).is_some_and(|read| read.item == Item::Minus);
         count += usize::from(minus);
-        let Some(&Read { item: Item::Number(number), span, .. }) = self.ahead(count) else { return Ok(None) };
+        let Some(&Token { item: Item::Number(number), span, .. }) = self.ahead(count) else {
+            return Ok(None);
+        };
         count += 1;
         if let Some(kind) = bracket {
-            if self.ahead(count).is_none_or(|read| read.item != Item::Sign(Sign::Close(kind))) {
+            if self.ahead(count).is_none_or(|read| read.item != Item::Close(kind)) {
                 return Ok(None);
             }
             count += 1;

@@ -81,7 +81,7 @@ pub struct Step {
 }
 
 /// The operations.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// An input that is a value, by its number.
     Input(usize),

@@ -4,12 +4,11 @@ pub(crate) mod builder;
 pub(crate) mod define;
 pub(crate) mod derivative;
 pub(crate) mod program;
-pub(crate) mod rules;
 
 use super::syntax::indices::{indexed, indices_in, permutation};
 use super::syntax::names::{Definition, Meaning, Names, Type};
 use super::syntax::number::Number;
-use super::syntax::tree::{Kind, Named, Node, Span, Tight, Tree};
+use super::syntax::tree::{Kind, Named, Node, Span, Tight, Tree, listed};
 use super::{Error, MAX_NODES, Space};
 use crate::g3::functions::Function;
 use crate::product::{Grades, Product};
@@ -90,40 +89,24 @@ struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    /// Whether an argument has these grades, or may have them if they are unknown.
-    fn fits(&self, id: Id, grades: Grades) -> bool {
-        let held = self.steps.ty(id).grades;
-        held.within(grades) || self.names.is_open() && held.0 & grades.0 != 0
-    }
-
+    /// Fails if an argument does not have these grades, nor may have them since they are unknown.
     fn require(&mut self, id: Id, grades: Grades, what: &str, node: &Node) -> Result<(), Error> {
-        if self.fits(id, grades) {
+        let held = self.steps.ty(id).grades;
+        let some = held.0 & grades.0 != 0;
+        if held.within(grades) || self.names.is_open() && some {
             return Ok(());
         }
-        let held = shown(self.steps.ty(id).grades);
         let kind = match grades {
             Grades::SCALAR => "a number (grade 0)",
             Grades(0b10) => "a vector (grade 1)",
             _ => "a bivector (grade 2)",
         };
         let k = grades.0.trailing_zeros();
-        let remedy = if self.steps.ty(id).grades.0 & grades.0 != 0 {
-            format!("; take its part `⟨…⟩_{k}`")
-        } else {
-            String::new()
-        };
-        let message = format!("{what} needs {kind}; this has {held}{remedy}");
+        let remedy = if some { format!("; take its part `⟨…⟩_{k}`") } else { String::new() };
+        let message = format!("{what} needs {kind}; this has {}{remedy}", shown(held));
         self.placed(node.span, |compiler| Err(compiler.steps.error(message)))
     }
-}
 
-/// `grade 1`, `grades 0, 2`.
-fn shown(grades: Grades) -> String {
-    let list: Vec<String> = (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect();
-    format!("grade{} {}", if list.len() == 1 { "" } else { "s" }, list.join(", "))
-}
-
-impl Compiler<'_> {
     /// Adds steps with this place; those of an expanded definition have the place of its call.
     fn placed<T>(&mut self, span: Span, add: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
         let outer = self.steps.span;
@@ -165,27 +148,15 @@ impl Compiler<'_> {
             }
             Kind::Name(name) => self.name(name),
             Kind::Sum(terms) => self.sum(terms),
-            Kind::Product(factors) => {
-                let factors = self.nodes(factors)?;
-                self.steps.chain(&factors)
-            }
+            Kind::Product(factors) => self.nodes(factors).and_then(|factors| self.steps.chain(&factors)),
             Kind::Quotient(pair) => {
                 let (a, b) = (self.node(&pair.0)?, self.node(&pair.1)?);
                 self.steps.divide(a, b)
             }
             Kind::Tight(tight, operands) => self.tight(*tight, operands),
-            Kind::Reverse(x) => {
-                let x = self.node(x)?;
-                self.steps.reverse(x)
-            }
-            Kind::Power(x, n) => {
-                let x = self.node(x)?;
-                self.steps.power(x, *n)
-            }
-            Kind::Part(x, grades) => {
-                let x = self.node(x)?;
-                self.steps.part(x, *grades)
-            }
+            Kind::Reverse(x) => self.node(x).and_then(|x| self.steps.reverse(x)),
+            Kind::Power(x, n) => self.node(x).and_then(|x| self.steps.power(x, *n)),
+            Kind::Part(x, grades) => self.node(x).and_then(|x| self.steps.part(x, *grades)),
             Kind::Function(function, x) => self.named(*function, x),
             Kind::Call(name, arguments) => self.call(name, arguments),
             Kind::Derivative(x) => match (Derivation { names: self.names, left: &mut self.visits }).of(x)? {
@@ -459,4 +430,10 @@ impl Compiler<'_> {
         }
         Ok(())
     }
+}
+
+/// `grade 1`, `grades 0, 2`.
+fn shown(grades: Grades) -> String {
+    let list = listed(grades);
+    format!("grade{} {}", if list.len() == 1 { "" } else { "s" }, list.join(", "))
 }

@@ -42,8 +42,8 @@ fn upright(letters: &str) -> String {
     let mut marked: Vec<(char, Vec<&str>)> = Vec::new();
     let apart = |c| decomposed(c).map_or([Some(c), None], |(letter, mark)| [Some(letter), Some(mark)]);
     for c in letters.chars().flat_map(apart).flatten() {
-        match (ACCENTS.iter().find(|(mark, _)| *mark == c), marked.last_mut()) {
-            (Some((_, accent)), Some((_, accents))) => accents.push(accent),
+        match (command(ACCENTS, c), marked.last_mut()) {
+            (Some(accent), Some((_, accents))) => accents.push(accent),
             _ => marked.push((c, Vec::new())),
         }
     }
@@ -74,66 +74,24 @@ fn upright_or_digits(index: &str) -> String {
     }
 }
 
-/// Combining marks.
-const ACCENTS: [(char, &str); 10] = [
-    ('\u{300}', "grave"),
-    ('\u{301}', "acute"),
-    ('\u{302}', "hat"),
-    ('\u{303}', "tilde"),
-    ('\u{304}', "bar"),
-    ('\u{306}', "breve"),
-    ('\u{307}', "dot"),
-    ('\u{308}', "ddot"),
-    ('\u{30c}', "check"),
-    ('\u{20d7}', "vec"),
-];
-
 /// One character of a name.
 fn letter(c: char) -> String {
-    match GREEK.iter().find(|(letter, _)| *letter == c) {
-        Some((_, command)) => format!("\\{command}"),
+    match command(LETTERS, c) {
+        Some(command) => format!("\\{command}"),
         None if "#$%&_{}~^\\".contains(c) => format!("\\{c}"),
         None => c.to_string(),
     }
 }
 
-/// The letters that Latin ones do not serve for, and the signs of directions.
-const GREEK: [(char, &str); 37] = [
-    ('α', "alpha"),
-    ('β', "beta"),
-    ('γ', "gamma"),
-    ('δ', "delta"),
-    ('ε', "varepsilon"),
-    ('ζ', "zeta"),
-    ('η', "eta"),
-    ('θ', "theta"),
-    ('ι', "iota"),
-    ('κ', "kappa"),
-    ('λ', "lambda"),
-    ('μ', "mu"),
-    ('ν', "nu"),
-    ('ξ', "xi"),
-    ('π', "pi"),
-    ('ρ', "rho"),
-    ('ς', "varsigma"),
-    ('σ', "sigma"),
-    ('τ', "tau"),
-    ('υ', "upsilon"),
-    ('φ', "varphi"),
-    ('χ', "chi"),
-    ('ψ', "psi"),
-    ('ω', "omega"),
-    ('Γ', "Gamma"),
-    ('Δ', "Delta"),
-    ('Θ', "Theta"),
-    ('Λ', "Lambda"),
-    ('Ξ', "Xi"),
-    ('Π', "Pi"),
-    ('Σ', "Sigma"),
-    ('Υ', "Upsilon"),
-    ('Φ', "Phi"),
-    ('Ψ', "Psi"),
-    ('Ω', "Omega"),
-    ('∥', "parallel"),
-    ('⊥', "perp"),
-];
+fn command(table: &str, c: char) -> Option<&str> {
+    table.split(' ').find_map(|entry| entry.strip_prefix(c))
+}
+
+/// Combining marks, each with its command.
+const ACCENTS: &str = "\u{300}grave \u{301}acute \u{302}hat \u{303}tilde \u{304}bar \u{306}breve \u{307}dot \u{308}ddot \
+                       \u{30c}check \u{20d7}vec";
+
+/// The letters that Latin ones do not serve for, and the signs of directions, each with its command.
+const LETTERS: &str = "αalpha βbeta γgamma δdelta εvarepsilon ζzeta ηeta θtheta ιiota κkappa λlambda μmu νnu ξxi πpi ρrho \
+                       ςvarsigma σsigma τtau υupsilon φvarphi χchi ψpsi ωomega ΓGamma ΔDelta ΘTheta ΛLambda ΞXi ΠPi \
+                       ΣSigma ΥUpsilon ΦPhi ΨPsi ΩOmega ∥parallel ⊥perp";

@@ -62,9 +62,10 @@ pub(crate) fn superscript(c: char) -> Option<char> {
     partner(SUPERSCRIPTS, c)
 }
 
-/// The superscript of a digit or sign.
-pub(crate) fn raised(plain: char) -> Option<char> {
-    pairs_of(SUPERSCRIPTS).find(|&(_, c)| c == plain).map(|(raised, _)| raised)
+/// The superscript of a whole number.
+pub(crate) fn raised(number: &str) -> String {
+    let raised = |plain| pairs_of(SUPERSCRIPTS).find(|&(_, c)| c == plain).map(|(raised, _)| raised);
+    number.chars().filter_map(raised).collect()
 }
 
 /// Signs that are subscripts by themselves: parallel and perpendicular parts.

@@ -244,3 +244,8 @@ pub(crate) fn is_numeric(node: &Node) -> bool {
         _ => false,
     }
 }
+
+/// The numbers of some grades.
+pub(crate) fn listed(grades: Grades) -> Vec<String> {
+    (0..16).filter(|&k| grades.contains(k)).map(|k| k.to_string()).collect()
+}

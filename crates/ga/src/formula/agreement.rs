@@ -45,9 +45,8 @@ impl Agreement {
                 step.op.operands().map(|id| (length(&values[id]), sizes[id])).collect();
             let length = match step.op {
                 Op::Map { input, .. } => match &inputs[input] {
-                    Given::Matrix(matrix) => norm(matrix),
                     Given::Determinant(determinant) => determinant.abs(),
-                    Given::Value(value) => length(value),
+                    given => norm(given.numbers()),
                 },
                 _ => length(value),
             };

@@ -27,7 +27,7 @@ mod run;
 pub mod session;
 mod syntax;
 
-pub use agreement::{Agreement, Magnitude, term_size, tolerance};
+pub use agreement::{Agreement, Arithmetic, Magnitude, term_size, tolerance};
 pub use compile::define::{define, heading};
 pub use compile::program::{Id, Input, InputKind, Op, Program, Step};
 pub use compile::{compile, types};

@@ -1,6 +1,6 @@
 //! Builder of programs: shares equal steps, infers grades, simplifies, and drops unused steps.
 
-use super::program::{Id, Input, InputKind, Op, Program, Step, union};
+use super::program::{Id, Input, InputKind, Op, Program, Step};
 use crate::formula::syntax::names::Type;
 use crate::formula::syntax::number::Number;
 use crate::formula::syntax::tree::Span;
@@ -146,7 +146,7 @@ impl Builder<'_> {
     /// The next term of a sum, after those before it.
     pub fn add(&mut self, minus: bool, before: Option<Id>, b: Id) -> Built {
         let Some(a) = before else { return if minus { self.negate(b) } else { Ok(b) } };
-        let ty = Type::of(union(self.ty(a).grades, self.ty(b).grades));
+        let ty = Type::of(Grades(self.ty(a).grades.0 | self.ty(b).grades.0));
         self.step(if minus { Op::Subtract(a, b) } else { Op::Add(a, b) }, ty)
     }
 

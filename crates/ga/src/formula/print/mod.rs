@@ -3,7 +3,6 @@
 //! Brackets appear only where the text would otherwise parse as another tree: around a part that binds less tightly
 //! than its place requires. Spaces separate factors, so that names never run together, whatever else is bound.
 
-mod glyphs;
 mod latex;
 
 use super::syntax::letters::raised;
@@ -114,7 +113,7 @@ impl Printer {
                 format!("{sign}_{index} {}", self.part(x, Hold::Product))
             }
             (Kind::Call(name, arguments), _) => {
-                let name = if self == Printer::Latex { &glyphs::word(name, "") } else { name };
+                let name = if self == Printer::Latex { &latex::word(name, "") } else { name };
                 // A defined value has no arguments and no brackets.
                 match &arguments[..] {
                     [] => name.clone(),

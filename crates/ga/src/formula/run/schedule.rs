@@ -69,7 +69,7 @@ impl Runner {
                 Work::Input(i) | Work::Map(i) => one[i],
                 _ => true,
             };
-            fixed.push(own && step.operands.iter().all(|&id| fixed[id]));
+            fixed.push(own && step.operands().iter().all(|&id| fixed[id]));
         }
         fixed
     }
@@ -83,7 +83,7 @@ impl Runner {
         let values = self.values(given, |id| fixed[id])?;
         let mut last = vec![0; self.steps.len()];
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
-            step.operands.iter().for_each(|&operand| last[operand] = id);
+            step.operands().iter().for_each(|&operand| last[operand] = id);
         }
         self.results.iter().for_each(|&id| last[id] = usize::MAX);
         let mut lanes = Lanes::default();
@@ -103,7 +103,7 @@ impl Runner {
         }
         for (id, step) in self.steps.iter().enumerate().filter(|(id, _)| !fixed[*id]) {
             let mut operands = [0..0, 0..0];
-            for (place, &operand) in operands.iter_mut().zip(&*step.operands) {
+            for (place, &operand) in operands.iter_mut().zip(step.operands()) {
                 *place = places[operand].clone();
             }
             if let Work::Map(input) = step.work {
@@ -119,7 +119,8 @@ impl Runner {
                 Work::Input(input) => Task::Read { input, to },
                 _ => Task::Do { step: id, operands, to },
             });
-            for &operand in step.operands.iter().filter(|&&operand| last[operand] == id && !fixed[operand]) {
+            for &operand in step.operands().iter().filter(|&&operand| last[operand] == id && !fixed[operand])
+            {
                 lanes.free(places[operand].clone());
             }
         }
@@ -143,7 +144,7 @@ impl Runner {
             }
             Task::Do { step, operands, to } => {
                 let step = &self.steps[*step];
-                let of = self.steps[step.operands[0]].grades;
+                let of = self.steps[step.operands()[0]].grades;
                 step.block(path, of, count, apart(lanes, operands, to))
             }
         }

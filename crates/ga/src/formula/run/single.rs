@@ -62,8 +62,7 @@ impl Runner {
     /// If the inputs are not of their kinds and grades.
     pub fn value(&self, inputs: &[Given]) -> Result<Vec<Graded>, (Id, MathError)> {
         let mut values = Vec::new();
-        self.value_to(inputs, &mut values)?;
-        Ok(values)
+        self.value_to(inputs, &mut values).map(|()| values)
     }
 
     /// The same, in memory that can be reused.
@@ -82,8 +81,7 @@ impl Runner {
         wanted: impl Fn(Id) -> bool,
     ) -> Result<Vec<Graded>, (Id, MathError)> {
         let mut values = Vec::new();
-        self.values_to(&mut values, input, wanted)?;
-        Ok(values)
+        self.values_to(&mut values, input, wanted).map(|()| values)
     }
 
     fn values_to(

@@ -19,8 +19,9 @@ use std::f64::consts::PI;
 /// A step with its operands and the grades of its value.
 pub(crate) struct Ready {
     pub work: Work,
-    pub operands: Box<[Id]>,
     pub grades: Grades,
+    operands: [Id; 2],
+    count: usize,
 }
 
 /// The operation.
@@ -84,10 +85,19 @@ impl Ready {
     /// The steps of a program of 3-d space.
     pub fn steps(program: &Program) -> Vec<Ready> {
         let ready = |step: &Step| {
-            let operands = step.op.operands().collect();
-            Ready { work: Work::new(program, step), operands, grades: step.ty.grades }
+            let (mut operands, mut count) = ([0; 2], 0);
+            for id in step.op.operands() {
+                operands[count] = id;
+                count += 1;
+            }
+            Ready { work: Work::new(program, step), grades: step.ty.grades, operands, count }
         };
         program.steps.iter().map(ready).collect()
+    }
+
+    /// Its operands, at most two.
+    pub fn operands(&self) -> &[Id] {
+        &self.operands[..self.count]
     }
 
     /// Computes the value from those of earlier steps.
@@ -290,9 +300,10 @@ impl Selection {
 impl<const W: usize> Kernel<W> for Sum {
     #[inline(always)]
     fn block(&self, a: &[Lane<W>], b: &[Lane<W>], out: &mut [Lane<W>]) {
+        let zeros = Lane([0.0; W]);
         for (out, [i, j]) in out.iter_mut().zip(&self.places) {
-            let x = i.map_or([0.0; W], |i| a[i].0);
-            let y = j.map_or([0.0; W], |j| b[j].0);
+            let x = &i.map_or(&zeros, |i| &a[i]).0;
+            let y = &j.map_or(&zeros, |j| &b[j]).0;
             for l in 0..W {
                 out.0[l] = x[l] + self.sign * y[l];
             }

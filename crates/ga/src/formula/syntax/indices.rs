@@ -28,17 +28,16 @@ pub(crate) fn sum_repeated(mut sides: Vec<Node>, names: &Names) -> Result<Vec<No
     if names.is_open() {
         return Ok(sides);
     }
-    let mut counts: Vec<Vec<(char, usize)>> = Vec::new();
-    for_each_term(&mut sides, &mut |term| {
-        counts.push(indices_in(term, names));
-        Ok(())
-    })?;
+    fn terms_of(side: &mut Node) -> Vec<&mut Node> {
+        if matches!(side.kind, Kind::Sum(_)) { side.children_mut() } else { vec![side] }
+    }
+    let mut terms: Vec<&mut Node> = sides.iter_mut().flat_map(terms_of).collect();
+    let counts: Vec<Vec<(char, usize)>> = terms.iter().map(|term| indices_in(term, names)).collect();
     let free = |index: char| counts.iter().flatten().any(|&(c, count)| c == index && count == 1);
-    let mut next = counts.iter();
-    for_each_term(&mut sides, &mut |term| {
-        let mut repeated = next.next().into_iter().flatten().filter(|&&(index, _)| !free(index));
-        repeated.try_for_each(|&(index, _)| sum_over(index, term, names))
-    })?;
+    for (term, found) in terms.iter_mut().zip(&counts) {
+        let mut repeated = found.iter().filter(|&&(index, _)| !free(index));
+        repeated.try_for_each(|&(index, _)| sum_over(index, term, names))?;
+    }
     Ok(sides)
 }
 
@@ -66,20 +65,6 @@ fn sum_over(index: char, node: &mut Node, names: &Names) -> Result<(), Error> {
     }
     let inner = std::mem::replace(&mut node.kind, Kind::Pi);
     node.kind = Kind::Total(index.to_string(), Box::new(Node::new(inner, node.span)));
-    Ok(())
-}
-
-/// Applies a function to each term of each side.
-fn for_each_term(
-    sides: &mut [Node],
-    f: &mut impl FnMut(&mut Node) -> Result<(), Error>,
-) -> Result<(), Error> {
-    for side in sides {
-        match &mut side.kind {
-            Kind::Sum(terms) => terms.iter_mut().try_for_each(|(_, term)| f(term))?,
-            _ => f(side)?,
-        }
-    }
     Ok(())
 }
 

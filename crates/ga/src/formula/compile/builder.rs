@@ -256,11 +256,7 @@ impl Builder<'_> {
 
     /// Factors multiplied from left to right.
     fn row(&mut self, factors: &[Id]) -> Built {
-        let mut product = factors[0];
-        for &factor in &factors[1..] {
-            product = self.times(Some(product), factor)?;
-        }
-        Ok(product)
+        factors[1..].iter().try_fold(factors[0], |product, &factor| self.times(Some(product), factor))
     }
 
     /// `A X ~A`.

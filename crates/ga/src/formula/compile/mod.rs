@@ -73,8 +73,8 @@ struct Frame {
     parameters: Vec<(String, Id)>,
     /// The values of indices.
     indices: Vec<(char, usize)>,
-    /// The functions being expanded.
-    active: Vec<String>,
+    /// Whether a definition is being expanded.
+    expanding: bool,
 }
 
 struct Compiler<'a> {
@@ -110,7 +110,7 @@ impl Compiler<'_> {
     /// Adds steps with this place; those of an expanded definition have the place of its call.
     fn placed<T>(&mut self, span: Span, add: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
         let outer = self.steps.span;
-        if self.frame.active.is_empty() {
+        if !self.frame.expanding {
             self.steps.span = span;
         }
         let added = add(self)?;
@@ -129,7 +129,7 @@ impl Compiler<'_> {
             compiler.depth += 1;
             let id = compiler.kind(node)?;
             compiler.depth -= 1;
-            if compiler.frame.active.is_empty() {
+            if !compiler.frame.expanding {
                 let ty = compiler.steps.ty(id);
                 compiler.types.entry(std::ptr::from_ref(node)).or_insert(ty);
             }
@@ -265,10 +265,9 @@ impl Compiler<'_> {
                 self.require(id, Grades(0b10), "the cross product", node)?;
             }
         }
-        let mut result = ids[0];
-        for &id in &ids[1..] {
-            result = self.steps.product(product, result, id, self.steps.all())?;
-        }
+        let all = self.steps.all();
+        let mut products = ids[1..].iter();
+        let result = products.try_fold(ids[0], |result, &id| self.steps.product(product, result, id, all))?;
         if tight == Tight::Cross { self.steps.dual(result, false) } else { Ok(result) }
     }
 
@@ -347,14 +346,10 @@ impl Compiler<'_> {
             let (count, found) = (definition.parameters.len(), arguments.len());
             return Err(self.steps.error(format!("`{name}` takes {count} arguments, got {found}")));
         }
-        if self.frame.active.iter().any(|active| active == name) {
-            return Err(self.steps.error(format!("`{name}` calls itself; formulas have no recursion")));
-        }
         let call = self.steps.span;
-        let mut active = self.frame.active.clone();
-        active.push(name.to_owned());
         let parameters = definition.parameters.iter().cloned().zip(arguments.iter().copied()).collect();
-        let outside = std::mem::replace(&mut self.frame, Frame { parameters, indices: Vec::new(), active });
+        let frame = Frame { parameters, indices: Vec::new(), expanding: true };
+        let outside = std::mem::replace(&mut self.frame, frame);
         let value = self.node(&definition.body);
         self.frame = outside;
         // Of nested definitions the innermost is named.

@@ -12,7 +12,7 @@ use crate::MathError;
 use crate::graded::{Graded, size};
 use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
-use crate::simd::{Element, Lane, Path};
+use crate::simd::{Element, Path};
 use schedule::Schedule;
 use single::{Given, Runner};
 use std::ops::{ControlFlow, Range};
@@ -195,7 +195,18 @@ impl Sweep<'_> {
         let ahead = self.ahead::<T, W>(factors);
         let mut result = Ok(());
         by_blocks((self.path, self.streamed), total, &mut lanes, targets, |first, count, lanes| {
-            if !self.block(factors, &ahead, first, count, lanes) {
+            let mut known = true;
+            for (task, ahead) in self.schedule.tasks.iter().zip(&ahead) {
+                for (input, lines) in ahead {
+                    let row = factors[*input].rows(first, 1);
+                    let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
+                    self.path.prefetch(block, lines.clone());
+                }
+                known &= self.runner.task(task, (self.path, count), lanes, |input, lanes| {
+                    self.path.gather(factors[input].rows(first, count), lanes);
+                });
+            }
+            if !known {
                 result = (first..first + count).try_for_each(|row| self.runner.row(factors, row).map(drop));
             }
             if result.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -217,28 +228,5 @@ impl Sweep<'_> {
             of_inputs.map(|lines| (lines[0].0, lines[0].1..lines[0].1 + lines.len())).collect()
         };
         (0..tasks).map(share).collect()
-    }
-
-    /// Evaluates a block of rows; false if some row may have no value.
-    fn block<T: Element, const W: usize>(
-        &self,
-        factors: &[Factor<T>],
-        ahead: &[Vec<(usize, Range<usize>)>],
-        first: usize,
-        count: usize,
-        lanes: &mut [Lane<W>],
-    ) -> bool {
-        let mut known = true;
-        for (task, ahead) in self.schedule.tasks.iter().zip(ahead) {
-            for (input, lines) in ahead {
-                let row = factors[*input].rows(first, 1);
-                let block = row.as_ptr().wrapping_add(W * row.len()).wrapping_byte_add(AHEAD);
-                self.path.prefetch(block, lines.clone());
-            }
-            known &= self.runner.task(task, (self.path, count), lanes, |input, lanes| {
-                self.path.gather(factors[input].rows(first, count), lanes);
-            });
-        }
-        known
     }
 }

@@ -3,7 +3,7 @@
 //! [`term_size`] and [`tolerance`] hold for any coefficients; [`Agreement`] is that of single values over floats.
 
 use super::compile::program::{Id, Op, Program};
-use super::run::single::Given;
+use super::run::steps::Given;
 use crate::g3::functions::Function;
 use crate::g3::values::norm;
 use crate::graded::Graded;

@@ -14,10 +14,10 @@ use crate::simd::threads::{Threads, for_each};
 use crate::simd::traverse::{Factor, SHARED, Target, by_blocks};
 use crate::simd::{Element, Path};
 use schedule::Schedule;
-use single::{Given, Runner};
+use single::Runner;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Mutex, PoisonError};
-use steps::Work;
+use steps::{Given, Work};
 
 /// Below this number of rows, transposing them into lanes does not pay.
 const FEW: usize = 8;

@@ -1,7 +1,7 @@
 //! Assignment of values to lanes, and the order of evaluation.
 
-use super::single::{Given, Runner};
-use super::steps::Work;
+use super::single::Runner;
+use super::steps::{Given, Work};
 use crate::MathError;
 use crate::formula::compile::program::Id;
 use crate::graded::size;

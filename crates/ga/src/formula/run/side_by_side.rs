@@ -1,7 +1,8 @@
 //! Programs on lanes that the caller fills repeatedly, for bodies stepped side by side.
 
 use super::schedule::Schedule;
-use super::single::{Given, Runner};
+use super::single::Runner;
+use super::steps::Given;
 use crate::formula::InputKind;
 use crate::simd::{Lane, Path};
 

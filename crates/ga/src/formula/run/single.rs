@@ -1,41 +1,10 @@
 //! Programs on single values.
 
-use super::steps::Ready;
+use super::steps::{Given, Ready};
 use crate::MathError;
 use crate::formula::compile::program::{Id, InputKind, Program};
 use crate::graded::Graded;
 use crate::table::G3;
-
-/// The value of an input.
-#[derive(Clone, Copy, Debug)]
-pub enum Given {
-    /// A value of the input's grades.
-    Value(Graded),
-    /// A matrix by rows.
-    Matrix([f64; 9]),
-    /// A determinant.
-    Determinant(f64),
-}
-
-impl Given {
-    /// An input of this kind, by its numbers.
-    pub(crate) fn new(kind: InputKind, number: impl Fn(usize) -> f64) -> Given {
-        match kind {
-            InputKind::Value(ty) => Given::Value(Graded::from_fn(ty.grades, number)),
-            InputKind::Matrix { .. } => Given::Matrix(std::array::from_fn(number)),
-            InputKind::Determinant => Given::Determinant(number(0)),
-        }
-    }
-
-    /// Its numbers.
-    pub fn numbers(&self) -> &[f64] {
-        match self {
-            Given::Value(value) => value.components(),
-            Given::Matrix(matrix) => matrix,
-            Given::Determinant(determinant) => std::slice::from_ref(determinant),
-        }
-    }
-}
 
 /// A program of 3-d space, ready to run.
 pub struct Runner {

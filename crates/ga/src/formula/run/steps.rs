@@ -1,8 +1,7 @@
 //! Steps of programs in 3-d space, ready to run on single values and blocks of rows.
 
-use super::single::Given;
 use crate::MathError;
-use crate::formula::compile::program::{Id, Op, Program, Step};
+use crate::formula::compile::program::{Id, InputKind, Op, Program, Step};
 use crate::g3::functions::Function;
 use crate::g3::rotor::Rotor;
 use crate::g3::values::{Multivector, norm};
@@ -15,6 +14,37 @@ use crate::simd::map::{self, Map};
 use crate::simd::{Kernel, Lane, Path};
 use crate::table::G3;
 use std::f64::consts::PI;
+
+/// The value of an input.
+#[derive(Clone, Copy, Debug)]
+pub enum Given {
+    /// A value of the input's grades.
+    Value(Graded),
+    /// A matrix by rows.
+    Matrix([f64; 9]),
+    /// A determinant.
+    Determinant(f64),
+}
+
+impl Given {
+    /// An input of this kind, by its numbers.
+    pub(crate) fn new(kind: InputKind, number: impl Fn(usize) -> f64) -> Given {
+        match kind {
+            InputKind::Value(ty) => Given::Value(Graded::from_fn(ty.grades, number)),
+            InputKind::Matrix { .. } => Given::Matrix(std::array::from_fn(number)),
+            InputKind::Determinant => Given::Determinant(number(0)),
+        }
+    }
+
+    /// Its numbers.
+    pub fn numbers(&self) -> &[f64] {
+        match self {
+            Given::Value(value) => value.components(),
+            Given::Matrix(matrix) => matrix,
+            Given::Determinant(determinant) => std::slice::from_ref(determinant),
+        }
+    }
+}
 
 /// A step with its operands and the grades of its value.
 pub(crate) struct Ready {

@@ -1,11 +1,12 @@
 //! Numbers as written in formulas: `2`, `0.25`, `1e-3`, `½`.
 
 use std::fmt;
+use std::hash::{Hash, Hasher};
 
 /// A number, with its exact value where that is a ratio of two whole numbers of 64 bits.
 ///
 /// Over floats `value` is used; over fractions and symbols `0.1` is exactly a tenth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Number {
     /// The nearest float.
     pub value: f64,
@@ -13,7 +14,26 @@ pub struct Number {
     pub ratio: Option<(i64, i64)>,
 }
 
+/// Numbers are equal if their bits are, so −0 is not 0.
+impl PartialEq for Number {
+    fn eq(&self, other: &Number) -> bool {
+        self.bits() == other.bits()
+    }
+}
+
+impl Eq for Number {}
+
+impl Hash for Number {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.bits().hash(state);
+    }
+}
+
 impl Number {
+    fn bits(self) -> (u64, Option<(i64, i64)>) {
+        (self.value.to_bits(), self.ratio)
+    }
+
     /// The ratio of two whole numbers; `None` if the second is 0 or the lowest terms need more than 64 bits.
     pub fn ratio(numerator: i128, denominator: i128) -> Option<Number> {
         if denominator == 0 {

@@ -12,7 +12,7 @@
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place};
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
 use crate::state::phase::{Gyrostat, Phase};
@@ -192,8 +192,8 @@ pub struct Classical {
 impl Classical {
     /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
     pub fn new(body: Gyrostat, torques: Vec<Torque>, translation: Option<Translation>) -> Classical {
-        let damping = torques.iter().map(Torque::damping_rate).sum();
-        Classical { body, torques, translation, alone: Bodies::new([(body, damping)]) }
+        let alone = Bodies::new([(body, damping_rate(&torques))]);
+        Classical { body, torques, translation, alone }
     }
 
     /// One step of length `h`, which may be negative.

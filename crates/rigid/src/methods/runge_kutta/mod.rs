@@ -16,21 +16,22 @@
 //! Where forces act, the centre of mass is stepped too: `x' = v`, `v' = F/m`. Bodies are stepped in lanes, each by its
 //! own step; a single body is one lane.
 
+mod dop853;
 mod exponential;
 mod points;
-mod tableau;
 
 use super::classical::{Bodies, renormalize};
 use crate::error::SimulateError;
 use crate::laws::force::Translation;
 use crate::laws::forcing::{BodyForcing, Forcing, Place};
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::state::carried::Carried;
 use crate::state::phase::Gyrostat;
+pub(crate) use dop853::STAGES;
+use dop853::{FIFTH, NODES, ROWS, THIRD, WEIGHTS};
 use exponential::exponential;
 pub(crate) use points::Points;
 use polhode_ga::simd::lanes::{Lanes, One, composed, cross, dot, mapped, mapped_back, matrix};
-pub use tableau::{DOP853, Tableau};
 
 /// Largest angle of one step in rad; the exponential's differential has a pole at 2π.
 const LARGEST_TURN: f64 = 3.0;
@@ -43,7 +44,6 @@ type Change<const N: usize, const W: usize, const F: bool> = [Lanes<W, F>; N];
 /// and position. NaN if the step is too long for an estimate.
 #[inline(always)]
 pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, F>>(
-    tableau: &Tableau,
     bodies: &Bodies<W, F>,
     forcing: &mut E,
     from: &Points<W, F>,
@@ -51,20 +51,20 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     fastest: Lanes<W, F>,
 ) -> (Points<W, F>, Lanes<W, F>) {
     let nothing = Lanes::all(f64::NAN);
-    let mut slopes = [[Lanes::ZERO; N]; 12];
+    let mut slopes = [[Lanes::ZERO; N]; STAGES];
     let mut widest = Lanes::ZERO;
-    for stage in 0..tableau.rows.len() {
-        let change = combined(tableau.rows[stage], &slopes, h);
+    for stage in 0..STAGES {
+        let change = combined(ROWS[stage], &slopes, h);
         let turned = part(&change, 0);
         let square = dot(&turned, &turned);
         widest = square.max(widest);
         if !any_within(&square) {
             return (*from, nothing);
         }
-        let dt = Lanes::all(tableau.nodes[stage]) * h;
+        let dt = Lanes::all(NODES[stage]) * h;
         slopes[stage] = slope(bodies, forcing, from, &change, square, dt);
     }
-    let change = combined(tableau.weights, &slopes, h);
+    let change = combined(WEIGHTS, &slopes, h);
     let mut to = moved(from, &change, h);
     for k in 0..3 {
         // Kahan's sum (1965), since a steady torque would be rounded alike in every step.
@@ -78,8 +78,8 @@ pub(crate) fn step<const N: usize, const W: usize, const F: bool, E: Forcing<W, 
     to.rotor = composed(&exponential(&turned, square).0, &from.rotor);
     renormalize(&mut to.rotor);
     let back = matrix(&from.rotor);
-    let fifth = size(bodies, from, &back, &combined(tableau.fifth, &slopes, h), h, fastest);
-    let third = size(bodies, from, &back, &combined(tableau.third, &slopes, h), h, fastest);
+    let fifth = size(bodies, from, &back, &combined(FIFTH, &slopes, h), h, fastest);
+    let third = size(bodies, from, &back, &combined(THIRD, &slopes, h), h, fastest);
     // Weighted as in Hairer's code: of order 8 where both are small.
     let square = fifth * fifth;
     let weighed = (third * third).times_plus(Lanes::all(0.01), square).sqrt();
@@ -230,7 +230,7 @@ fn moved<const N: usize, const W: usize, const F: bool>(
 #[inline(always)]
 fn combined<const N: usize, const W: usize, const F: bool>(
     row: &[(usize, f64)],
-    slopes: &[Change<N, W, F>; 12],
+    slopes: &[Change<N, W, F>; STAGES],
     h: Lanes<W, F>,
 ) -> Change<N, W, F> {
     let mut sum = [Lanes::ZERO; N];
@@ -251,31 +251,20 @@ fn norm<const W: usize, const F: bool>(a: &[Lanes<W, F>; 3]) -> Lanes<W, F> {
     dot(a, a).sqrt()
 }
 
-/// A single body and its laws, stepped by a Runge–Kutta method.
+/// A single body and its laws, stepped by the method.
 #[derive(Clone, Debug)]
 pub struct RungeKutta {
     body: Gyrostat,
     torques: Vec<Torque>,
     translation: Option<Translation>,
     alone: Bodies<1, false>,
-    tableau: &'static Tableau,
 }
 
 impl RungeKutta {
     /// Moments must be positive; torques and forces in principal axes. Without a translation the centre of mass stays.
-    pub fn new(
-        body: Gyrostat,
-        torques: Vec<Torque>,
-        translation: Option<Translation>,
-        tableau: &'static Tableau,
-    ) -> RungeKutta {
-        let damping = torques.iter().map(Torque::damping_rate).sum();
-        RungeKutta { body, torques, translation, alone: Bodies::new([(body, damping)]), tableau }
-    }
-
-    /// The method.
-    pub fn tableau(&self) -> &'static Tableau {
-        self.tableau
+    pub fn new(body: Gyrostat, torques: Vec<Torque>, translation: Option<Translation>) -> RungeKutta {
+        let alone = Bodies::new([(body, damping_rate(&torques))]);
+        RungeKutta { body, torques, translation, alone }
     }
 
     /// One step of length `h`, which may be negative, and an estimate of its error: half the angle of a turn, or the
@@ -285,10 +274,10 @@ impl RungeKutta {
         let mut at = Points::NONE;
         at.set(0, from);
         let mut acting = BodyForcing::new(&self.body, &self.torques, self.translation.as_ref());
-        let (tableau, alone, h): (_, _, One) = (self.tableau, &self.alone, Lanes([h]));
+        let (alone, h) = (&self.alone, One::each([h])[0]);
         let (to, error) = match self.translation {
-            None => step::<6, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
-            Some(_) => step::<12, 1, false, _>(tableau, alone, &mut acting, &at, h, fastest),
+            None => step::<6, 1, false, _>(alone, &mut acting, &at, h, fastest),
+            Some(_) => step::<12, 1, false, _>(alone, &mut acting, &at, h, fastest),
         };
         acting.finish()?;
         Ok((to.get(0), error.0[0]))

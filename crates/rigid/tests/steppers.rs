@@ -46,7 +46,9 @@ fn steppers(body: Gyrostat, torques: &[Torque]) -> Vec<Stepper> {
     let mut all = Vec::new();
     for composition in &COMPOSITIONS {
         let splitting = Splitting::new(body, torques.to_vec(), composition, &from);
-        let step = Box::new(move |state: &mut Phase, h: f64| splitting.step(state, h).unwrap());
+        let step = Box::new(move |state: &mut Phase, h: f64| {
+            splitting.step(state, &mut Bivector::default(), h).unwrap()
+        });
         all.push(Stepper { name: composition.name, order: f64::from(composition.order), step });
     }
     let classical = Classical::new(body, torques.to_vec(), None);
@@ -70,7 +72,9 @@ fn steppers(body: Gyrostat, torques: &[Torque]) -> Vec<Stepper> {
         all.push(Stepper { name: "dmv", order, step });
         if torques.iter().all(|t| t.damping_rate() == 0.0) {
             let splitting = Splitting::new(body, torques.to_vec(), &RKN6, &from);
-            let step = Box::new(move |state: &mut Phase, h: f64| splitting.step(state, h).unwrap());
+            let step = Box::new(move |state: &mut Phase, h: f64| {
+                splitting.step(state, &mut Bivector::default(), h).unwrap()
+            });
             all.push(Stepper { name: RKN6.name, order: 6.0, step });
         }
     }
@@ -237,7 +241,7 @@ fn ten_million_steps_leave_the_rotor_a_rotor() {
     let splitting = Splitting::new(body, vec![], &COMPOSITIONS[0], &from);
     let (mut state, mut worst) = (from, 0.0_f64);
     for _ in 0..10_000_000 {
-        splitting.step(&mut state, 0.01).unwrap();
+        splitting.step(&mut state, &mut Bivector::default(), 0.01).unwrap();
         let square: f64 = state.rotor.components().iter().map(|x| x * x).sum();
         worst = worst.max((square - 1.0).abs());
     }

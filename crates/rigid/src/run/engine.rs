@@ -56,7 +56,7 @@ impl Engine {
     pub fn step(&self, from: &Carried, h: f64, fastest: f64) -> Result<(Carried, f64), SimulateError> {
         let mut to = *from;
         match self {
-            Engine::Splitting(splitting) => splitting.carry(&mut to.phase, &mut to.lost, h)?,
+            Engine::Splitting(splitting) => splitting.step(&mut to.phase, &mut to.lost, h)?,
             Engine::Classical(classical) => to = classical.step(from, h)?,
             Engine::RungeKutta(runge_kutta) => return runge_kutta.step(from, h, fastest),
             Engine::ClosedForm(motion) => to = motion.at(from.phase.time + h),

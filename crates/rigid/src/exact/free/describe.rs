@@ -14,6 +14,7 @@
 //! largest where cn = 0, `bA_b/(cA_c k')`.
 
 use super::FreeMotion;
+use super::orbit::Invariants;
 use crate::body::inertia::equal;
 use crate::exact::regime::{FreeDescription, Regime};
 use crate::numerics::double_double::DoubleDouble;
@@ -88,13 +89,9 @@ impl FreeMotion {
         let mean = orbit.mean?;
         let size = super::power_of_two(self.moments);
         let in_units = |x: f64, unit: f64| Wide::from(x) / unit.into();
-        let [a, b, c] = orbit.axes.map(|k| in_units(self.moments[k], size));
-        let [wa, wb, wc] = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
-        let [ma, mb, mc] = [a * wa, b * wb, c * wc];
-        let (ab, ac, bc) = ((b - a).abs(), (c - a).abs(), (c - b).abs());
-        let p = ac * ma * wa + bc * mb * wb;
-        let q = ab * mb * wb + ac * mc * wc;
-        let g2 = ma * ma + mb * mb + mc * mc;
+        let moments = orbit.axes.map(|k| in_units(self.moments[k], size));
+        let rates = orbit.axes.map(|k| in_units(self.omega.0[k], self.scale));
+        let Invariants { a, b, c, ab, ac, bc, p, q, g2 } = Invariants::new(moments, rates);
         let (g, turn, half) = (g2.sqrt(), Wide::from(orbit.lambda * mean), DoubleDouble::from(0.5));
         // 1 − k²/n.
         let p2 = ac * g2 / (c * q);

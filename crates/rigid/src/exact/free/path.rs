@@ -41,7 +41,7 @@ impl FreeMotion {
         let (start, length) = self.once_round();
         let step = periods * length / count.saturating_sub(1).max(1) as f64;
         let times: Vec<f64> = (0..count).map(|k| start + step * k as f64).collect();
-        check_horizons(&times, [self.horizon(); 2])?;
+        check_horizons(0.0, &times, [self.horizon(); 2])?;
         let in_space = |&t: &f64| {
             let (rotor, omega) = self.at(t);
             rotor.apply_bivector(omega)

@@ -5,7 +5,7 @@
 //! beyond, where `q' = exp(−πK/K')` is below 0.0022.
 
 use crate::exact::free::series::{FIRST, FOURTH, NEVER, THIRD, chebyshev, sign};
-use crate::numerics::lanes::{exp_minus, half_turns, horner, sin_cos_turns};
+use crate::numerics::lanes::{HalfPeriod, exp_minus, half_period, horner, sin_cos_turns};
 use std::f64::consts::PI;
 
 /// The zero of one of the three functions, at `v = i s y` or `π/2 + i s y`.
@@ -179,15 +179,9 @@ impl Series for Hyperbolic {
         let (mut z, mut denominator, mut ahead) = ([[[0.0; W]; 2]; 3], [0.0; W], [[0.0; W]; 3]);
         let tail = [-(self.nome * self.nome) * (1.0 + self.nome * self.nome), self.nome.powi(6)];
         for l in 0..W {
-            // Half periods, v/π in [−½, ½] and a rest.
-            let turn = turns[l];
-            let whole = half_turns(turn);
-            let part = 2.0 * turn - whole;
-            let odd = 1.0 - 2.0 * f64::abs(whole);
-            let side = 1f64.copysign(part);
-            let more = 2.0 * side * rest[l];
-            let near = (2.0 * self.border * (part.abs() + more).max(0.0)).min(MOST);
-            let far = (4.0 * self.border * ((0.5 - part.abs()) - more).max(0.0)).min(MOST);
+            let HalfPeriod { odd, side, part, from_middle, to_border } = half_period(turns[l], rest[l]);
+            let near = (2.0 * self.border * from_middle).min(MOST);
+            let far = (4.0 * self.border * to_border).min(MOST);
             let (root, root_less) = exp_minus(near);
             let (g, g_less) = (root * root, root_less * (1.0 + root));
             let (f, f_less) = exp_minus(far);

@@ -59,13 +59,8 @@ impl Splitting {
         Splitting { body, torques, stages: sequence.stages(), exact_drift, turns }
     }
 
-    /// One step of length `h`, which may be negative.
-    pub fn step(&self, state: &mut Phase, h: f64) -> Result<(), SimulateError> {
-        self.carry(state, &mut Bivector::default(), h)
-    }
-
-    /// The same step with the accumulated rounding of the kicks.
-    pub(crate) fn carry(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
+    /// One step of length `h`, which may be negative, with the accumulated rounding of the kicks.
+    pub fn step(&self, state: &mut Phase, lost: &mut Bivector, h: f64) -> Result<(), SimulateError> {
         let mut acting = BodyForcing::new(&self.body, &self.torques, None);
         let mut spin = Spin::alone(state, *lost);
         let (stages, last) = &self.stages;

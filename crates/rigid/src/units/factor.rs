@@ -1,17 +1,8 @@
 //! Products of units as they are written: `kg m^2 / s`.
 
 use super::split_digits;
-use super::table::{Dimension, Unit, find_unit};
+use super::table::{Dimension, Factor, find_unit};
 use polhode_ga::diagnostic::quote;
-
-/// A product of powers of units: `10^ten · numerator / denominator` SI units.
-#[derive(Clone, Copy)]
-pub struct Factor {
-    pub dimension: Dimension,
-    pub ten: i32,
-    pub numerator: f64,
-    pub denominator: f64,
-}
 
 impl Default for Factor {
     fn default() -> Factor {
@@ -46,7 +37,7 @@ impl Factor {
     }
 
     /// Times `unit^power`.
-    pub fn multiply(&mut self, unit: Unit, power: i32) {
+    pub fn multiply(&mut self, unit: Factor, power: i32) {
         for (total, d) in self.dimension.0.iter_mut().zip(unit.dimension.0) {
             *total += power * d;
         }
@@ -61,7 +52,7 @@ impl Factor {
 }
 
 /// The unit at the beginning of the text.
-fn split_unit(text: &str) -> Result<(Unit, &str), Problem> {
+fn split_unit(text: &str) -> Result<(Factor, &str), Problem> {
     let one = text.starts_with('1').then_some(1);
     let letters = text.find(|c: char| !(c.is_alphabetic() || c == '°')).unwrap_or(text.len());
     let (name, rest) = text.split_at(one.unwrap_or(letters));

@@ -17,11 +17,11 @@ mod within;
 
 pub use within::quantities;
 
-use factor::{Factor, Problem};
+use factor::Problem;
 use polhode_ga::diagnostic::quote;
 use polhode_ga::formula::session::Units;
 use std::fmt;
-use table::{Dimension, FREQUENCY, find_unit, near_unit};
+use table::{Dimension, FREQUENCY, Factor, find_unit, near_unit};
 
 /// How sessions of formulas read quantities.
 pub const UNITS: Units = Units { quantities, near };

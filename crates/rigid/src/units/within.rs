@@ -3,8 +3,8 @@
 //! A quantity in a formula is a number directly followed by units, as in `5 kg m^2/s`, up to the first word that is not
 //! a unit. A word that may be a unit or the name of a variable is an error.
 
-use super::factor::{Factor, split_power};
-use super::table::{Unit, find_unit};
+use super::factor::split_power;
+use super::table::{Factor, find_unit};
 use super::{Number, split_number, value};
 use polhode_ga::formula::{Error, Span};
 use std::ops::Range;
@@ -125,7 +125,7 @@ fn following(text: &str, end: usize) -> Option<(usize, Option<char>)> {
 }
 
 /// The unit at a place, and its length, if the word ends with it: `m`, not `m2` or `m(x)`.
-fn unit_at(text: &str, at: usize) -> Option<(usize, Unit)> {
+fn unit_at(text: &str, at: usize) -> Option<(usize, Factor)> {
     let rest = &text[at..];
     let length = match rest.starts_with('°') {
         true => '°'.len_utf8(),

@@ -80,7 +80,6 @@ mod describe;
 mod flow;
 mod many;
 pub(crate) mod orbit;
-mod path;
 pub(crate) mod series;
 mod variation;
 

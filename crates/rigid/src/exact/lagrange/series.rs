@@ -36,9 +36,8 @@ pub(super) trait Series: Copy + Sync {
 /// polynomials in cos 2v, in units of `q^¼ e^y`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Circular {
-    alpha: [[f64; 5]; 2],
-    beta: [[f64; 5]; 2],
-    across: [[f64; 5]; 2],
+    /// Of the three functions, the two brackets.
+    z: [[[f64; 5]; 2]; 3],
     denominator: [f64; 5],
 }
 
@@ -67,11 +66,9 @@ impl Circular {
         let squares = |n: usize| if n == 0 { 1.0 } else { 2.0 * sign(n) * q.powi((n * n) as i32) };
         // Subnormal coefficients are slow on many machines and negligible.
         let normal = |c: f64| if c.abs() < 1e-200 { 0.0 } else { c };
-        let both = |c: [[f64; 5]; 2]| c.map(|c| c.map(normal));
+        let z = [odd(zeros[0]), even(zeros[1]), even(zeros[2])];
         Circular {
-            alpha: both(odd(zeros[0])),
-            beta: both(even(zeros[1])),
-            across: both(even(zeros[2])),
+            z: z.map(|brackets| brackets.map(|c| c.map(normal))),
             denominator: chebyshev::<5>(std::array::from_fn(squares), FIRST).map(normal),
         }
     }
@@ -84,12 +81,10 @@ impl Series for Circular {
         for l in 0..W {
             let (sin, cos) = sin_cos_turns::<FMA>(turns[l], rest[l]);
             let x = 1.0 - 2.0 * (sin * sin);
-            z[0][0][l] = sin * horner(&self.alpha[0], x);
-            z[0][1][l] = cos * horner(&self.alpha[1], x);
-            z[1][0][l] = cos * horner(&self.beta[0], x);
-            z[1][1][l] = sin * horner(&self.beta[1], x);
-            z[2][0][l] = cos * horner(&self.across[0], x);
-            z[2][1][l] = sin * horner(&self.across[1], x);
+            for (k, [re, im]) in [[sin, cos], [cos, sin], [cos, sin]].into_iter().enumerate() {
+                z[k][0][l] = re * horner(&self.z[k][0], x);
+                z[k][1][l] = im * horner(&self.z[k][1], x);
+            }
             denominator[l] = horner(&self.denominator, x);
         }
         State { z, denominator, ahead: [[0.0; W]; 3] }

@@ -96,6 +96,8 @@ pub struct LagrangeTop {
 /// The series cannot represent tilts and rates below this.
 const LEAST: f64 = 1e-303;
 
+// A box could not be copied.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Steady(FreeMotion),

@@ -307,7 +307,7 @@ impl FreeMotion {
             return Ok(());
         }
         match self.motions.horizons().enumerate().find(|(_, horizon)| furthest > *horizon) {
-            Some((row, horizon)) => check_horizons(times, [horizon; 2])
+            Some((row, horizon)) => check_horizons(0.0, times, [horizon; 2])
                 .map_err(|error| bad(format!("{}{error}", place(row, &self.shape)))),
             None => Ok(()),
         }

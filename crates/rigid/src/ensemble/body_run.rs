@@ -4,7 +4,7 @@ use super::member::{METHOD, Member, Outcome};
 use super::scheduler::Scheduler;
 use crate::error::SimulateError;
 use crate::laws::torque::Torque;
-use crate::methods::runge_kutta::{DOP853, Points, RungeKutta};
+use crate::methods::runge_kutta::{Points, RungeKutta};
 use crate::methods::step_control::{Limit, StepController, next_stop};
 use crate::methods::{ROUNDING_OF_RUNGE_KUTTA, fastest_rate};
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
@@ -145,7 +145,7 @@ impl<'a> BodyRun<'a> {
     /// The error of a law that cannot be evaluated, from a single-body step; none if the step is just too long.
     #[cold]
     pub fn diagnose(&self, at: &Carried, h: f64, torques: &[Torque]) -> Result<(), SimulateError> {
-        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None, &DOP853);
+        let alone = RungeKutta::new(self.member.gyrostat, torques.to_vec(), None);
         alone.step(at, h, self.rate(at)).map(|_| ())
     }
 

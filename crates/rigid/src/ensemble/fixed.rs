@@ -6,10 +6,10 @@ use super::member::{Member, Outcome, Plan, SIDE_BY_SIDE};
 use super::scheduler::Scheduler;
 use super::steppers::{Components, Kicks, Stepper, of};
 use crate::error::SimulateError;
-use crate::laws::torque::Torque;
+use crate::laws::torque::{Torque, damping_rate};
 use crate::methods::Method;
 use crate::methods::classical::Bodies;
-use crate::methods::kicks::fixed_momentum;
+use crate::methods::momentum::fixed_momentum;
 use crate::methods::splitting::turns::Turns;
 use crate::run::Progress;
 use crate::run::certificate::{Certificate, DriftMonitor, off_unit};
@@ -42,7 +42,7 @@ impl Work for FixedSteps<'_, '_> {
         let torques: Vec<Vec<Torque>> =
             self.members.iter_mut().map(|m| std::mem::take(&mut m.torques)).collect();
         let laws = |l: usize| &torques[if l < torques.len() { l } else { 0 }][..];
-        let damping = |l: usize| laws(l).iter().map(Torque::damping_rate).sum();
+        let damping = |l: usize| damping_rate(laws(l));
         let members = &self.members;
         let gyrostats = array::from_fn(|l| of(members, l).gyrostat);
         if let Method::Splitting(sequence) = self.plan.method {

@@ -75,12 +75,6 @@ impl DampedTop {
         if self.damping > 0.0 { [growing, dying] } else { [dying, growing] }
     }
 
-    /// The nearer of the two horizons.
-    pub fn horizon(&self) -> f64 {
-        let [back, forth] = self.horizons();
-        back.min(forth)
-    }
-
     /// Rotor and body angular velocity at time `t` in s.
     pub fn at(&self, t: f64) -> (Rotor, Bivector) {
         let [factor, less] = self.exponent(t).exp();

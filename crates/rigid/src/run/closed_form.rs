@@ -8,7 +8,7 @@ use crate::exact::lagrange::LagrangeTop;
 use crate::exact::larmor::LarmorSphere;
 use crate::laws::conserved::Conserved;
 use crate::laws::torque::Torque;
-use crate::methods::runge_kutta::{DOP853, RungeKutta};
+use crate::methods::runge_kutta::RungeKutta;
 use crate::numerics::double_double::DoubleDouble;
 use crate::state::carried::Carried;
 use crate::state::center::Center;
@@ -124,7 +124,7 @@ pub(crate) struct ElapsedTime {
 impl ElapsedTime {
     /// In principal axes; the start in s.
     pub fn new(start: f64, body: Gyrostat, torques: &[Torque]) -> ElapsedTime {
-        ElapsedTime { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None, &DOP853) }
+        ElapsedTime { start, body, stepper: RungeKutta::new(body, torques.to_vec(), None) }
     }
 
     /// The rounded time since the start, and the remainder.

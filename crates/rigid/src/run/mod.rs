@@ -23,7 +23,7 @@ use crate::methods::step_control::Limit;
 use crate::methods::{Method, fastest_rate};
 use crate::state::carried::Carried;
 use crate::state::center::Center;
-use crate::state::checks::{check_horizons_from, check_moments};
+use crate::state::checks::{check_horizons, check_moments};
 use crate::state::phase::{Gyrostat, Phase};
 use certificate::{Certificate, DriftMonitor, off_unit};
 use closed_form::{ClosedForm, UniformAcceleration, check_kept};
@@ -178,7 +178,7 @@ impl Problem {
         let translation = self.translation.clone().filter(|_| fall.is_none());
         let (engine, name) = match closed {
             Some(closed) => {
-                check_horizons_from(self.time, times, closed.horizons())?;
+                check_horizons(self.time, times, closed.horizons())?;
                 (Engine::ClosedForm(Box::new(closed)), "exact")
             }
             None => (

@@ -95,7 +95,7 @@ fn length_unit(reader: &mut Reader, value: &Value) -> Option<f64> {
     match value.get_ref().as_str() {
         Some(name) if name.starts_with(char::is_alphabetic) => {
             let unit = units::parse_unit(name, Quantity::Length);
-            unit.map_err(|error| reader.report(value.span(), error.to_string())).ok()
+            unit.map_err(|error| reader.report(value.span(), error)).ok()
         }
         _ => reader.positive(value, Quantity::Length),
     }

@@ -303,6 +303,11 @@ pub(crate) fn total_torque(
     Ok(total)
 }
 
+/// The g of all dampings together, in 1/s.
+pub(crate) fn damping_rate(torques: &[Torque]) -> f64 {
+    torques.iter().map(Torque::damping_rate).sum()
+}
+
 /// The momentum of all wheels together.
 pub fn wheel(torques: &[Torque]) -> Bivector {
     torques.iter().fold(Bivector::default(), |sum, torque| match torque {

@@ -10,8 +10,9 @@ use crate::laws::torque::Torque;
 use crate::random::{Words, normal};
 use polhode_ga::{Bivector, Rotor, Vector};
 use std::array::from_fn;
-use std::fmt;
+use std::fmt::Display;
 use std::ops::Range;
+use thiserror::Error;
 
 /// Bodies, one per row. Properties shared by all have a single row.
 #[derive(Clone, Debug)]
@@ -170,28 +171,21 @@ impl Draw<'_> {
     }
 
     /// The error of the body in this row.
-    fn failed<E: fmt::Display>(&self, row: usize) -> impl Fn(E) -> DrawError {
+    fn failed<E: Display>(&self, row: usize) -> impl Fn(E) -> DrawError {
         let body = self.bodies.start + row;
         move |error| DrawError { body, message: error.to_string() }
     }
 }
 
 /// A draw that is not a possible body or law.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("body {body}: {message}")]
 pub struct DrawError {
     /// The index of the body, from 0.
     pub body: usize,
     /// The reason.
     pub message: String,
 }
-
-impl fmt::Display for DrawError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "body {}: {}", self.body, self.message)
-    }
-}
-
-impl std::error::Error for DrawError {}
 
 /// The direction of a vector of normal numbers, which are never 0 and never large.
 fn unit<const N: usize>(numbers: [f64; N]) -> [f64; N] {

@@ -4,7 +4,7 @@
 //! evaluated once per time.
 
 use crate::laws::forcing::{Forcing, Place};
-use crate::laws::formula::{Formula, Formulas};
+use crate::laws::formula::Formulas;
 use crate::laws::torque::lanes::{Three, gradient, quadratic, seen, turn_from};
 use crate::laws::torque::{Axes, Gains, Orbit, Table, Torque};
 use crate::state::phase::vertical;
@@ -173,15 +173,6 @@ fn square<const W: usize, const F: bool>(each: &[Vec<f64>; W], first: usize) -> 
     array::from_fn(|row| lanes(each, first + 3 * row))
 }
 
-/// The formula of a law that is computed by one.
-fn formula_of(law: &Torque) -> Option<&Formula> {
-    match law {
-        Torque::Formula(law) => Some(law.formula()),
-        Torque::Registered(law) => Some(law.torque.formula()),
-        _ => None,
-    }
-}
-
 impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
     /// Combines the same law of each body into one in lanes; a controller is a spring and a damper. Damping and wheels
     /// are stored with the bodies.
@@ -212,7 +203,7 @@ impl<'t, const W: usize, const F: bool> Law<'t, W, F> {
                 }
             }
             Torque::Formula(_) | Torque::Registered(_) => {
-                let known = each.map(formula_of);
+                let known = each.map(Torque::formula);
                 let formulas = known[0].filter(|_| known.iter().all(Option::is_some)).and_then(|first| {
                     Formulas::new(known.map(|formula| formula.unwrap_or(first)), gyrostats)
                 });

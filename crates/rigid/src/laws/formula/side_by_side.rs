@@ -1,8 +1,7 @@
 //! Torque formulas for bodies in lanes: one program with values for each body.
 
-use super::{Compiled, Formula, Motion, Purpose, Source, inertia};
+use super::{Axes, Compiled, Formula, Motion, Purpose, Source, inertia};
 use crate::laws::forcing::Place;
-use crate::laws::torque::Axes;
 use crate::laws::torque::lanes::{Three, reversed, seen, turned};
 use crate::state::phase::Gyrostat;
 use polhode_ga::Rotor;

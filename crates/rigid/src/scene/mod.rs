@@ -84,7 +84,7 @@ use crate::state::center::Center;
 use crate::units::Quantity;
 pub use body::BodySpec;
 pub use build::MeshSource;
-pub use draws::{DrawError, Drawn};
+pub use draws::DrawError;
 pub use ensemble::{Attitudes, Ensemble, Varied};
 pub use initial::SpinFrame;
 pub use parameters::Parameter;

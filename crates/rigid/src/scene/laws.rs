@@ -1,4 +1,4 @@
-//! The table `[torque]`: torque laws, which add up.
+//! The tables `[torque]` and `[force]`: laws and forces, which add up.
 //!
 //! ```toml
 //! [torque]
@@ -12,7 +12,8 @@ use super::{formulas, initial};
 use crate::describe::law_facts;
 use crate::error::TorqueError;
 use crate::facts::Facts;
-use crate::laws::registry::{Argument, Entry, Kernel, Shape, TORQUES};
+use crate::laws::force::Push;
+use crate::laws::registry::{Argument, Entry, FORCES, Kernel, Shape, TORQUES};
 use crate::laws::torque::{self, Axes, Kind, Torque};
 use crate::units::Quantity;
 use polhode_ga::Bivector;
@@ -85,8 +86,24 @@ fn law(reader: &mut Reader, value: &Value, entry: &'static Entry<Torque>) -> Opt
     Some(Law { name: entry.name, torque, formula: None })
 }
 
+/// The forces on the centre of mass, in the order of the file.
+pub fn forces(reader: &mut Reader, value: &Value) -> Option<Vec<Push>> {
+    let table = &reader.table(value, "[force]")?;
+    reader.only(table, &FORCES.each_ref().map(|entry| entry.name));
+    let mut pushes = Vec::new();
+    for entry in &FORCES {
+        if let Some(value) = table.get(entry.name) {
+            let numbers = arguments(reader, value, entry);
+            let push = numbers.and_then(|numbers| placed(reader, value, entry.build(&numbers)));
+            pushes.push((value.span().start, push));
+        }
+    }
+    pushes.sort_by_key(|(start, _)| *start);
+    pushes.into_iter().map(|(_, push)| push).collect()
+}
+
 /// The numbers of all arguments of a law: its value, or the fields of its table.
-pub fn arguments<T>(reader: &mut Reader, value: &Value, entry: &Entry<T>) -> Option<Vec<f64>> {
+fn arguments<T>(reader: &mut Reader, value: &Value, entry: &Entry<T>) -> Option<Vec<f64>> {
     if let [argument] = entry.arguments
         && argument.field.is_empty()
     {
@@ -173,6 +190,6 @@ fn tabulated(reader: &mut Reader, value: &Value, entry: &Entry<Torque>) -> Optio
 }
 
 /// Reports an error at the place of a value.
-pub fn placed<T>(reader: &mut Reader, value: &Value, result: Result<T, TorqueError>) -> Option<T> {
+fn placed<T>(reader: &mut Reader, value: &Value, result: Result<T, TorqueError>) -> Option<T> {
     result.map_err(|error| reader.report(value.span(), error.to_string())).ok()
 }

@@ -13,27 +13,18 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import function_of, law_of_formula, number, shown, three
+from polhode._mechanics.laws import Sum, function_of, law_of_formula, number, shown, three
 from polhode._mechanics.registry import FORCES
 
 
 @dataclass(frozen=True, repr=False)
-class Force:
+class Force(Sum):
     """A sum of forces, returned by the functions of this module.
 
     Forces are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     laws: tuple[_native.Force, ...]
-
-    def __add__(self, other: Force) -> Force:
-        if not isinstance(other, Force):
-            return NotImplemented
-        return Force(self.laws + other.laws)
-
-    def __radd__(self, other: object) -> Force:
-        """``0 + force``, so that ``sum(forces)`` works."""
-        return self if other == 0 else NotImplemented
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Force(())"

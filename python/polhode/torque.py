@@ -22,7 +22,7 @@ from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Body, Inertia, bodies_of
-from polhode._mechanics.laws import finite, function_of, law_of_formula, shown
+from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import (
     bivectors,
     common,
@@ -73,22 +73,13 @@ _KINDS = ("linear", "cubic")
 
 
 @dataclass(frozen=True, repr=False)
-class Torque:
+class Torque(Sum):
     """A sum of torque laws, returned by the functions of this module.
 
     Laws are immutable values: equal if their arguments are equal, hashable, and picklable.
     """
 
     laws: tuple[_native.Law, ...]
-
-    def __add__(self, other: Torque) -> Torque:
-        if not isinstance(other, Torque):
-            return NotImplemented
-        return Torque(self.laws + other.laws)
-
-    def __radd__(self, other: object) -> Torque:
-        """``0 + torque``, so that ``sum(torques)`` works."""
-        return self if other == 0 else NotImplemented
 
     def __repr__(self) -> str:
         return " + ".join(map(_shown, self.laws)) or "Torque(())"

@@ -20,20 +20,9 @@ from polhode._support.arrays import is_float
 
 
 class Step(NamedTuple):
-    """An operation on earlier steps.
+    """An operation on earlier steps, `operands`; `detail` is its constant, input or power.
 
-    Attributes
-    ----------
-    name
-        The operation.
-    operands
-        The numbers of the steps that are its operands.
-    detail
-        Its constant, input or power.
-    mask, unit
-        The grades of the value, as bits, and whether it is a rotor.
-    span
-        Its place in the text, in characters.
+    Its value has the grades `mask`, as bits, and is a rotor if `unit`; `span` is its place in the text.
     """
 
     name: str

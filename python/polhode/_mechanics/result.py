@@ -14,9 +14,7 @@ from polhode._mechanics.state import State
 from polhode._support.arrays import Array, hands_out_copies
 
 
-@hands_out_copies(
-    "method", "step", "steps", "evaluations", "error_estimate", "conserved", "drift", "norm_drift"
-)
+@hands_out_copies()
 @dataclass(frozen=True)
 class Certificate:
     """How a run was computed, and its drift in conserved quantities.

@@ -206,27 +206,18 @@ def simulate_blocks(
         raise ValueError("simulate_blocks needs a batch of bodies, got one body; use simulate")
     if block is not None and as_count(block, "block") < 1:
         raise ValueError(f"block must be at least 1, got {block}")
-    checked_threads(threads)
-    rows = ensemble.shape[0]
-    size = block or max(1, _BLOCK * rows // max(ensemble.bytes, 1))
-    return _blocks(ensemble, [slice(i, min(i + size, rows)) for i in range(0, rows, size)], threads, progress)
+    count, length = checked_threads(threads), ensemble.shape[0]
+    size = block or max(1, _BLOCK * length // max(ensemble.bytes, 1))
 
-
-def _blocks(
-    ensemble: Ensemble,
-    blocks: list[slice],
-    threads: int | None,
-    progress: Callable[[int, float], object] | None,
-) -> Iterator[tuple[slice, Trajectory]]:
-    count = checked_threads(threads)
-    for rows in blocks:
-
-        def of_all(number: int, fraction: float, rows: slice = rows) -> None:
-            done = rows.start + fraction * (rows.stop - rows.start)
+    def motion(rows: slice) -> Trajectory:
+        def of_all(number: int, fraction: float) -> None:
             if progress is not None:
-                progress(number, done / ensemble.shape[0])
+                progress(number, (rows.start + fraction * (rows.stop - rows.start)) / length)
 
-        yield rows, ensemble.block(rows).run(count, of_all if progress else None)
+        return ensemble.block(rows).run(count, of_all if progress else None)
+
+    blocks = (slice(i, min(i + size, length)) for i in range(0, length, size))
+    return ((rows, motion(rows)) for rows in blocks)
 
 
 def _ensemble(
@@ -258,15 +249,15 @@ def _ensemble(
         shape_of(bodies, state, torque.shape if torque else ()),
         mapped_objects(lambda one: _inertia_of(one, held), bodies),
         np.array(state.time),
-        as_coefficients(state.rotor._data, "the rotor", float),
-        state.omega_body._data,
         state.position._data,
         state.velocity._data,
+        np.ascontiguousarray(when),
+        method,
+        as_coefficients(state.rotor._data, "the rotor", float),
+        state.omega_body._data,
         np.array(masses).reshape(bodies.shape),
         torque.laws if torque else (),
         tuple(pushes),
-        np.ascontiguousarray(when),
-        method,
         None if step is None else as_float(step, "step"),
         _tolerance(rtol, atol),
         limits,

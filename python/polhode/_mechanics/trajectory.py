@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -90,27 +90,15 @@ class Trajectory:
 
     @staticmethod
     def _of(
-        motion: _native.Motion,
-        inertia: Inertia,
-        names: Sequence[str],
-        origin: Scene | Problem,
+        motion: _native.Motion, inertia: Inertia, names: Sequence[str], origin: Scene | Problem
     ) -> Trajectory:
         which, rising, points = motion.events()
         happened = _Points.of(points)
-        chosen = [
-            np.array([k for k, event in enumerate(which) if event == i], int) for i in range(len(names))
-        ]
         ways = np.array(rising, bool)
+        chosen = (np.flatnonzero(np.array(which, int) == i) for i in range(len(names)))
         events = (happened.crossings(name, k, ways[k]) for name, k in zip(names, chosen, strict=True))
-        at = _Points.of(motion.states())
         return Trajectory(
-            at.time,
-            at.rotor,
-            at.omega_body,
-            at.momentum_space,
-            at.energy,
-            at.position,
-            at.velocity,
+            *_Points.of(motion.states()),
             inertia,
             Certificate(**motion.certificate()),
             tuple(events),
@@ -201,14 +189,8 @@ class Trajectory:
             )
         times = as_floats(t, "time")
         found = _Points.of(self._motion.at(np.ascontiguousarray(times.ravel())))
-        shape = times.shape
-        return State(
-            Rotor._from_rows(found.rotor._data.reshape(*shape, 4)),
-            bivector(found.omega_body._data.reshape(*shape, 3)),
-            vector(found.position._data.reshape(*shape, 3)),
-            vector(found.velocity._data.reshape(*shape, 3)),
-            time=times,
-        )
+        parts = found.omega_body, found.position, found.velocity
+        return State(found.rotor.reshape(times.shape), *(x.reshape(times.shape) for x in parts), time=times)
 
     @property
     def final(self) -> State:
@@ -282,8 +264,7 @@ class Drift:
         return np.broadcast_to(rates, (*rates.shape[:-2], len(times), 3))
 
 
-@dataclass(frozen=True, eq=False)
-class _Points:
+class _Points(NamedTuple):
     """Arrays of the core as values."""
 
     time: Array
@@ -307,7 +288,7 @@ class _Points:
             vector(velocity, copy=False),
         )
 
-    def crossings(self, name: str, chosen: Array, rising: Array) -> Crossings:
+    def crossings(self, name: str, chosen: Any, rising: Array) -> Crossings:
         return Crossings(
             name,
             frozen(self.time[chosen]),

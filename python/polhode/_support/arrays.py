@@ -127,13 +127,13 @@ def copied(value: Any) -> Any:
 
 
 def hands_out_copies(*names: str) -> Callable[[type[T]], type[T]]:
-    """Make these fields of a frozen dataclass return copies of the arrays they hold."""
+    """Make these fields of a frozen dataclass, by default all, return copies of the arrays they hold."""
 
     def copying(name: str) -> property:
         return property(lambda self: copied(vars(self)[name]), lambda self, x: vars(self).update({name: x}))
 
     def with_copies(cls: type[T]) -> type[T]:
-        for name in names:
+        for name in names or cls.__annotations__:
             setattr(cls, name, copying(name))
         return cls
 

@@ -16,9 +16,8 @@ from polhode._support.extras import optional
 from polhode.jax._arguments import Start
 from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula
-from polhode.jax._laws import Function, Torque
+from polhode.jax._laws import Function, Gyrostat, Torque
 from polhode.jax._library import jax, jnp, lax
-from polhode.jax._phase import Gyrostat
 from polhode.jax._simulate import compiled, prepared, stepper, table_of
 from polhode.jax._table import Table
 

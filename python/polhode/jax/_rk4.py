@@ -9,8 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from polhode.jax._components import Four, Three, normalized, rotor_rate
-from polhode.jax._laws import Torque
-from polhode.jax._phase import Gyrostat, Phase
+from polhode.jax._laws import Gyrostat, Phase, Torque
 
 Array = Any
 Seven = tuple[Array, ...]

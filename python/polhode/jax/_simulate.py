@@ -12,9 +12,8 @@ from polhode._mechanics.bodies import Body, bodies_of
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split
-from polhode.jax._laws import Function, Heavy, Torque
+from polhode.jax._laws import Function, Gyrostat, Phase, Torque, weight
 from polhode.jax._library import jax, jnp, lax
-from polhode.jax._phase import Gyrostat, Phase
 from polhode.jax._rk4 import RungeKutta
 from polhode.jax._splitting import COMPOSITIONS, Splitting, stages
 from polhode.jax._steps import ways
@@ -106,9 +105,9 @@ def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str
 
 def _check_weights(body: Body, torque: Torque) -> None:
     """Raise for weights that do not point along the centre of mass, unless they are traced."""
-    for law in torque.laws:
-        if isinstance(law, Heavy) and not any(isinstance(x, jax.core.Tracer) for x in law.c):
-            native.settled(bodies_of(body), native.heavy(np.stack(law.c, axis=-1)))
+    for (c,) in torque.arguments_of(weight):
+        if not any(isinstance(x, jax.core.Tracer) for x in c):
+            native.settled(bodies_of(body), native.heavy(np.stack(c, axis=-1)))
 
 
 def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:

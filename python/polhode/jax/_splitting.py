@@ -26,9 +26,8 @@ from polhode.jax._components import (
     times,
     turned,
 )
-from polhode.jax._laws import Torque
+from polhode.jax._laws import Gyrostat, Phase, Torque
 from polhode.jax._library import jnp, lax
-from polhode.jax._phase import Gyrostat, Phase
 
 Array = Any
 
@@ -100,13 +99,17 @@ class Axes(NamedTuple):
         """Return a bivector over the renamed axes."""
         return times(self.pick(b), self.sign)
 
-    def restored(self, b: Three) -> Three:
-        """Return the bivector over e1, e2, e3."""
+    def placed(self, x: Three) -> Three:
+        """Return three numbers in the order of the axes as those of e1, e2, e3."""
 
         def one(k: int) -> Array:
-            return jnp.where(self.small[k], b[0], jnp.where(self.middle[k], b[1], b[2]))
+            return jnp.where(self.small[k], x[0], jnp.where(self.middle[k], x[1], x[2]))
 
-        return times((one(0), one(1), one(2)), self.sign)
+        return one(0), one(1), one(2)
+
+    def restored(self, b: Three) -> Three:
+        """Return the bivector over e1, e2, e3."""
+        return times(self.placed(b), self.sign)
 
 
 class Splitting:

@@ -18,7 +18,8 @@ from polhode.jax._components import joined, normalized, split
 from polhode.jax._formula_law import Formula
 from polhode.jax._laws import Function, Gyrostat, Torque
 from polhode.jax._library import jax, jnp, lax
-from polhode.jax._simulate import compiled, prepared, stepper, table_of
+from polhode.jax._simulate import compiled, prepared
+from polhode.jax._steppers import stepper, table_of
 from polhode.jax._table import Table
 
 Array = Any

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from polhode.jax._components import Three, dot
 from polhode.jax._library import jnp, lax
-from polhode.jax._splitting import Axes
+from polhode.jax._steppers import Axes
 
 Array = Any
 

@@ -14,13 +14,10 @@ from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split
 from polhode.jax._laws import Function, Gyrostat, Phase, Torque, weight
 from polhode.jax._library import jax, jnp, lax
-from polhode.jax._rk4 import RungeKutta
-from polhode.jax._splitting import COMPOSITIONS, Splitting, stages
+from polhode.jax._steppers import METHODS, stepper, table_of
 from polhode.jax._steps import ways
 
 Array = Any
-
-METHODS = (*COMPOSITIONS, "rk4")
 
 
 def simulate(
@@ -108,16 +105,6 @@ def _check_weights(body: Body, torque: Torque) -> None:
     for (c,) in torque.arguments_of(weight):
         if not any(isinstance(x, jax.core.Tracer) for x in c):
             native.settled(bodies_of(body), native.heavy(np.stack(c, axis=-1)))
-
-
-def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
-    """Return the stepper with the coefficients of `table_of`."""
-    return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
-
-
-def table_of(method: str) -> list[float]:
-    """Return the coefficients of the stages of a method."""
-    return [] if method == "rk4" else [x for stage in stages(method) for x in stage]
 
 
 def simulate_principal(

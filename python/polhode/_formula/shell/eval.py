@@ -65,10 +65,8 @@ def _answer(session: Session, line: Line) -> Answer | None:
     if line.mistake:
         raise line.mistake
     let = _LET.match(line.text)
-    if line.assigns or let:
-        answer = session.assign(line.text, let.end() if let and not line.assigns else 0)
-    else:
-        answer = session.evaluate(line.text)
+    start = let.end() if let and not line.assigns else 0
+    answer = session.run(line.text, start, bool(line.assigns or let))
     return None if answer.name else answer
 
 

@@ -21,7 +21,7 @@ from polhode import _native
 from polhode._algebra.constructors import as_bivectors, bivector
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.bodies import Body, Inertia, bodies_of
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of
 from polhode._mechanics.laws import Sum, finite, function_of, law_of_formula, shown
 from polhode._mechanics.parameters import (
     bivectors,
@@ -109,9 +109,7 @@ class Torque(Sum):
         if state.shape:
             raise ValueError(f"the state must be a single one, got batch {state.shape}")
         bodies, laws = about_pivot(bodies_of(inertia), self.laws)
-        body = bodies[()]
-        if isinstance(body, Body):
-            body = body.inertia_about(0) if self.holds else body.inertia
+        body = inertia_of(bodies[()], self.holds)
         rotor, omega = state.rotor._data, state.omega_body._data
         time = finite(as_float(state.time if t is None else t, "t"), "t")
         return bivector(_native.torque_at(list(laws), body._core, rotor, omega, time))

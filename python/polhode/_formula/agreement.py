@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -119,12 +120,13 @@ def agreement(walk: Walk, program: _native.Program) -> Agreement:
     residual, size = _worst(kind, found)
     if kind.native:
         residual, size = residual[()], size[()]
-    register_pytree(
-        Agreement,
-        lambda of: ((of.residual, of.size), of.rtol),
-        lambda rtol, leaves: Agreement(*leaves, rtol=rtol),
-    )
+    register_pytree(Agreement, lambda of: ((of.residual, of.size), of.rtol), _restored)
     return Agreement(residual, size, _rtol(walk, differences))
+
+
+def _restored(rtol: float, leaves: Iterable[Any]) -> Agreement:
+    residual, size = leaves
+    return Agreement(residual, size, rtol)
 
 
 def _floats(walk: Walk) -> Numeric:

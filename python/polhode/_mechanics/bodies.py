@@ -346,6 +346,13 @@ def objects_of(values: Any, kinds: tuple[type, ...], what: str, remedy: str = ""
     return array
 
 
+def inertia_of(body: Any, held: bool) -> Any:
+    """Return the inertia of a body, if it is held about the origin of its axes; anything else unchanged."""
+    if not isinstance(body, Body):
+        return body
+    return body.inertia_about(0) if held else body.inertia
+
+
 def mapped_objects(f: Callable[[Any], Any], array: Any) -> Any:
     """Return the object array of f(x) for each object x of an array."""
     result: Any = np.empty(array.shape, dtype=object)

@@ -13,7 +13,7 @@ from polhode import force as forces
 from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
-from polhode._mechanics.bodies import Body, Inertia, bodies_of, mapped_objects
+from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects
 from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
@@ -247,7 +247,7 @@ def _ensemble(
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
     return Ensemble(
         shape_of(bodies, state, torque.shape if torque else ()),
-        mapped_objects(lambda one: _inertia_of(one, held), bodies),
+        mapped_objects(lambda one: inertia_of(one, held), bodies),
         np.array(state.time),
         state.position._data,
         state.velocity._data,
@@ -303,13 +303,6 @@ def _tolerance(rtol: float | None, atol: float | None) -> float | None:
         if not (x > 0 and np.isfinite(x)):
             raise ValueError(f"{name} must be positive and finite, got {x}")
     return max(given.values(), default=None)
-
-
-def _inertia_of(body: Body | Inertia, held: bool) -> Inertia:
-    """Return the inertia about the fixed point, the origin of the body's axes, if the body is held."""
-    if isinstance(body, Inertia):
-        return body
-    return body.inertia_about(0) if held else body.inertia
 
 
 def _forces(force: Any, bodies: Any) -> tuple[list[_native.Force], Torque | None]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from polhode import torque as native
-from polhode._mechanics.bodies import Body, bodies_of
+from polhode._mechanics.bodies import Body, bodies_of, inertia_of
 from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split
@@ -95,8 +95,7 @@ def prepared(inertia: Any, rotor: Any, omega_body: Any, torque: Any, method: str
     _check(method, force)
     if isinstance(inertia, Body):
         _check_weights(inertia, force)
-        inertia = inertia.inertia_about(0) if force.holds else inertia.inertia
-    given = start(inertia, rotor, omega_body)
+    given = start(inertia_of(inertia, force.holds), rotor, omega_body)
     return given, force if given.frame is None else force.in_axes(given.frame)
 
 

@@ -13,7 +13,7 @@ from polhode import _native
 from polhode._algebra.constructors import as_point
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.laws import Sum, function_of, law_of_formula, number, shown, three
+from polhode._mechanics.laws import Sum, function_of, law_of_formula, number, shown
 from polhode._mechanics.registry import FORCES
 
 
@@ -105,7 +105,7 @@ def function(f: Callable[[float, Multivector, Multivector, Rotor], Any]) -> Forc
 def _force(name: str, *values: Any) -> Force:
     """Return the force of the registry with these values for its arguments."""
     arguments = zip(FORCES[name].arguments, values, strict=False)
-    convert = {"scalar": number, "vector": _point}
+    convert: dict[str, Any] = {"scalar": number, "vector": _point}
     return _native_force(name, *(convert[x.shape](value, x.name) for x, value in arguments))
 
 
@@ -114,7 +114,7 @@ def _native_force(name: str, *arguments: Any) -> Force:
 
 
 def _point(value: Any, name: str) -> tuple[float, ...]:
-    return three(as_point(value, f"the force's {name}"), name)
+    return tuple(as_point(value, f"the force's {name}").tolist())
 
 
 def _shown(law: _native.Force) -> str:

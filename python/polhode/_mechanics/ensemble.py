@@ -13,7 +13,7 @@ import numpy as np
 from polhode import _native
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
-from polhode._mechanics.parameters import Batch, check_finite, common
+from polhode._mechanics.parameters import Batch, check_finite
 from polhode._mechanics.result import Certificate, Failure
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Drift, Trajectory
@@ -230,12 +230,6 @@ def warn_of(certificate: Certificate) -> None:
     """Issue the warnings of the certificate to the caller of `simulate`."""
     for warning in certificate.warnings:
         warnings.warn(warning, RuntimeWarning, stacklevel=3)
-
-
-def shape_of(bodies: Any, state: State, torque_shape: Shape) -> Shape:
-    """Return the shape to which body, state and torque broadcast."""
-    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque_shape}
-    return common(shapes, "body, state and torque")
 
 
 def check_state(state: State) -> None:

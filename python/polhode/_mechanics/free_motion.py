@@ -17,7 +17,16 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia, objects_of
 from polhode._mechanics.state import State, angular_velocity
-from polhode._support.arrays import Array, Shape, as_count, as_float, as_floats, frozen, hands_out_copies
+from polhode._support.arrays import (
+    Array,
+    Shape,
+    as_count,
+    as_float,
+    as_floats,
+    batch_index,
+    frozen,
+    hands_out_copies,
+)
 from polhode._support.memory import require
 
 if TYPE_CHECKING:
@@ -72,12 +81,9 @@ class FreeMotion:
         return self._core.shape
 
     def __getitem__(self, index: Any) -> FreeMotion:
+        parts, _, _ = batch_index(index, self.shape)
         numbers = np.arange(int(np.prod(self.shape))).reshape(self.shape)
-        try:
-            picked = numbers[index]
-        except IndexError as error:
-            raise IndexError(f"{error} (batch shape {self.shape})") from None
-        return self._picked(picked, self._core.starts())
+        return self._picked(numbers[parts], self._core.starts())
 
     def __len__(self) -> int:
         if not self.shape:

@@ -9,13 +9,12 @@ from typing import Any, Self, TypeVar
 import numpy as np
 
 from polhode._algebra.coefficients import as_coefficients
-from polhode._algebra.constructors import as_bivectors
 from polhode._algebra.linear_map import LinearMap
 from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._formula.arguments import narrowed
 from polhode._formula.errors import FormulaError
-from polhode._support.arrays import Array, as_float, as_floats
+from polhode._support.arrays import as_float, as_floats
 
 T = TypeVar("T")
 
@@ -42,18 +41,6 @@ def finite(value: float, name: str) -> float:
 
 def number(value: Any, name: str) -> float:
     return finite(as_float(value, name), name)
-
-
-def three(components: Array, name: str) -> tuple[float, ...]:
-    if components.shape != (3,):
-        raise ValueError(f"{name} must be a single value, got shape {components.shape}")
-    if not np.isfinite(components).all():
-        raise ValueError(f"{name} is {components.tolist()}; it must be finite")
-    return tuple(components.tolist())
-
-
-def bivector_of(value: Any, name: str) -> tuple[float, ...]:
-    return three(as_bivectors(value, name), name)
 
 
 def formula_value(value: Any, name: str, batches: bool = False) -> Any:

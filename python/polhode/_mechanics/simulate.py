@@ -14,7 +14,8 @@ from polhode._algebra.coefficients import as_coefficients
 from polhode._algebra.constructors import as_point, vector
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Body, Inertia, bodies_of, inertia_of, mapped_objects
-from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, shape_of, warn_of
+from polhode._mechanics.ensemble import Ensemble, StepLimits, check_state, warn_of
+from polhode._mechanics.parameters import common
 from polhode._mechanics.problem import Problem
 from polhode._mechanics.state import State
 from polhode._mechanics.trajectory import Trajectory
@@ -244,9 +245,10 @@ def _ensemble(
         raise ValueError("ph.torque.gravity and heavy fix a point of the body; leave force out")
     if thrust is not None:
         torque = thrust if torque is None else torque + thrust
+    shapes = {"the body": bodies.shape, **state._shapes(), "the torque": torque.shape if torque else ()}
     masses = [one.mass if isinstance(one, Body) else math.nan for one in bodies.flat]
     return Ensemble(
-        shape_of(bodies, state, torque.shape if torque else ()),
+        common(shapes, "body, state and torque"),
         mapped_objects(lambda one: inertia_of(one, held), bodies),
         np.array(state.time),
         state.position._data,

@@ -15,7 +15,7 @@ from polhode._algebra.rotor import Rotor
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.result import Certificate, Crossings, Failure
 from polhode._mechanics.state import State
-from polhode._support.arrays import Array, Shape, as_floats, frozen, hands_out_copies
+from polhode._support.arrays import Array, Shape, as_floats, batch_index, frozen, hands_out_copies
 
 if TYPE_CHECKING:
     from polhode import _outputs
@@ -132,18 +132,12 @@ class Trajectory:
 
     def __getitem__(self, index: Any) -> Trajectory:
         """Return the motions of some bodies of a batch, by an index of NumPy over the batch's axes."""
-        parts = index if isinstance(index, tuple) else (index,)
-        try:
-            picked = np.broadcast_to(np.False_, self.shape)[parts].shape
-        except IndexError as error:
-            raise IndexError(f"{error} (batch shape {self.shape})") from None
-        # Keep the index off the axis of time.
-        rows = (*parts, slice(None)) if any(part is Ellipsis for part in parts) else parts
+        parts, rows, picked = batch_index(index, self.shape)
         drift = None if self._drift is None else self._drift[parts]
         center: list[Any] = [None, None] if drift else [self.position[rows], self.velocity[rows]]
         return replace(
             self,
-            rotor=Rotor._from_rows(self.rotor[rows]._data),
+            rotor=self.rotor[rows],
             omega_body=self.omega_body[rows],
             momentum_space=self.momentum_space[rows],
             energy=self.energy[rows],
@@ -200,13 +194,8 @@ class Trajectory:
         """
         if not len(self.time):
             raise ValueError("the motion has no output times, so it has no final state")
-        return State(
-            Rotor._from_rows(np.ascontiguousarray(self.rotor._data[..., -1, :])),
-            bivector(self.omega_body._data[..., -1, :]),
-            vector(self.position._data[..., -1, :]),
-            vector(self.velocity._data[..., -1, :]),
-            time=float(self.time[-1]),
-        )
+        last = (x[..., -1] for x in (self.omega_body, self.position, self.velocity))
+        return State(self.rotor[..., -1], *last, time=float(self.time[-1]))
 
     def drifts(self) -> dict[str, Array]:
         """Return the change of each conserved quantity since the start, (n,), relative as in the certificate.
@@ -293,7 +282,7 @@ class _Points(NamedTuple):
             name,
             frozen(self.time[chosen]),
             frozen(rising),
-            Rotor._from_rows(self.rotor._data[chosen]),
+            self.rotor[chosen],
             self.omega_body[chosen],
             self.position[chosen],
             self.velocity[chosen],

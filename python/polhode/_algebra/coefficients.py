@@ -171,7 +171,6 @@ def _fits_floats(array: Any) -> bool:
 
 
 def _converted(values: Any, what: str, dtype: Any) -> Any:
-    """Convert values to coefficients of a dtype."""
     given = as_coefficients(values, what)
     if not isinstance(given, np.ndarray):
         return _converted_foreign(given, what, dtype)

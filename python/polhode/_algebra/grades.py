@@ -153,7 +153,6 @@ def _listed(shapes: Iterable[Shape]) -> str:
 
 
 def _batch_axis(axis: int, count: int) -> int:
-    """Return the axis counted from 0."""
     place = operator.index(axis)
     if not -count <= place < count:
         raise ValueError(f"batch axis {axis} is out of range for {count} batch axes")

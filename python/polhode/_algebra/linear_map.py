@@ -123,7 +123,6 @@ class LinearMap:
         return sum(others, start=first)
 
     def _part(self, X: Multivector, k: int) -> Multivector:
-        """Return F of the part of grade k."""
         components = X.grade(k).components
         if k == 0:
             return scalar(components[..., 0]).wedge(np.ones(self.shape))
@@ -134,7 +133,6 @@ class LinearMap:
         return trivector(components[..., 0]).wedge(self.determinant)
 
     def _images(self) -> list[Multivector]:
-        """Return the columns of the matrix, as vectors."""
         return [vector(self.matrix[..., k]) for k in range(3)]
 
     # --- algebra
@@ -250,14 +248,12 @@ class LinearMap:
 
 
 def _checked(grade: int) -> int:
-    """Return the grade; a ValueError unless it is 1 or 2."""
     if grade not in _NAMES:
         raise ValueError(f"a linear map takes vectors (grade 1) or bivectors (grade 2), got grade {grade!r}")
     return grade
 
 
 def _times(matrix: Array, components: Array) -> Array:
-    """Return the product of matrices and columns."""
     with np.errstate(over="ignore", invalid="ignore"):  # IEEE, as in the products
         product: Array = (matrix @ components[..., np.newaxis])[..., 0]
     return product

@@ -283,5 +283,4 @@ class Multivector(_native.Multivector):
 
 
 def _rebuild(cls: type[Multivector], data: Any, mask: int, algebra: Algebra) -> Multivector:
-    """Restore a pickled value."""
     return cls._restored(data, mask, algebra)

@@ -76,7 +76,6 @@ class Given:
         return Multivector._of(scalars(number, like), 1, self.algebra)
 
     def _require_one_shape(self, program: _native.Program) -> None:
-        """Raise a ValueError for batches that do not broadcast."""
         used = dict.fromkeys(place for place, _, _ in program.inputs)
         shapes = {self.kinds[place][0]: _batch(self.values[place]) for place in used}
         try:
@@ -221,7 +220,6 @@ def _require_algebra(name: str, value: Multivector | LinearMap, algebra: Any, ow
 
 
 def _common_algebra(algebra: Any, values: dict[str, Multivector]) -> Any:
-    """Return the common algebra of all values; 3-d space if there are none."""
     owner = "the formula"
     for name, value in values.items():
         if algebra is None:

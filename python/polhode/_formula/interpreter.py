@@ -34,7 +34,6 @@ class Step(NamedTuple):
 
 
 def steps_of(program: _native.Program) -> list[Step]:
-    """Return the steps of a program."""
     return [Step(*step) for step in program.steps]
 
 
@@ -109,7 +108,6 @@ def _typed(value: Multivector, step: Step) -> Multivector:
 
 
 def _constant(walk: Walk, step: Step) -> Multivector:
-    """Return a number times a basis element."""
     value, ratio, blade = step.detail
     number = walk.number(value, ratio)
     return walk.of([number if i == blade else 0 for i in walk.algebra._indices(step.mask)], step.mask)
@@ -131,7 +129,6 @@ def _map(walk: Walk, step: Step, argument: Multivector) -> Multivector:
 
 
 def _of_scalars(walk: Walk, step: Step, a: Multivector) -> Multivector:
-    """Return the sine, cosine or tangent."""
     x = walk.kind.asarray(a._data)[..., 0]
     if not walk.kind.exact:
         walk.kind.require_finite([x])

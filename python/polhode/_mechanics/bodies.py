@@ -117,7 +117,6 @@ class Inertia(LinearMap):
 
 
 def _restored(matrix: Array, moments: Array, frame: Array) -> Inertia:
-    """Restore a pickled inertia."""
     return Inertia(_native.Inertia.restored(matrix, moments, frame))
 
 

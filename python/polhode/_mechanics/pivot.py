@@ -41,7 +41,6 @@ def about_pivot(bodies: Any, laws: Laws) -> tuple[Any, Laws]:
 
 
 def _rows(argument: Any) -> Array:
-    """Return an argument of a law as an array (..., k)."""
     return argument.rows if isinstance(argument, Batch) else np.atleast_1d(np.array(argument, float))
 
 

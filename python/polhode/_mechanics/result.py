@@ -67,8 +67,6 @@ class Certificate:
         return float(np.max([np.max(drift, where=where, initial=0.0) for drift, where in columns]))
 
     def _of(self, index: tuple[Any, ...]) -> Certificate:
-        """Return the certificate of some bodies of a batch."""
-
         def picked(numbers: Any) -> Any:
             found = np.asarray(numbers[index])
             return found if found.ndim else found.item()

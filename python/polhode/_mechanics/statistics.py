@@ -128,7 +128,6 @@ def _merged(a: _Found | None, b: _Found | None) -> _Found | None:
 
 
 def _of(array: Array, axis: int) -> _Found:
-    """Return the moments of one array."""
     known = ~np.isnan(array)
     count = known.sum(axis=axis)
     size = np.maximum(count, 1)

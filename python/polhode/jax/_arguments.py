@@ -7,9 +7,7 @@ from typing import Any, NamedTuple
 from polhode._algebra.multivector import Multivector
 from polhode._mechanics.bodies import Inertia
 from polhode.jax._components import Four, compose, joined, reverse, split, turned
-from polhode.jax._library import jnp
-
-Array = Any
+from polhode.jax._library import Array, jnp
 
 
 class Start(NamedTuple):

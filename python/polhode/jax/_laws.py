@@ -28,9 +28,8 @@ from polhode.jax._components import (
     times,
     turned,
 )
-from polhode.jax._library import jax, jnp
+from polhode.jax._library import Array, jax, jnp
 
-Array = Any
 T = TypeVar("T")
 
 
@@ -310,7 +309,6 @@ class Torque(Sum):
         return bool(self.arguments_of(weight))
 
     def in_axes(self, frame: Four) -> Torque:
-        """Return the same laws in other body axes."""
         return Torque(tuple(law.in_axes(frame) for law in self.laws))
 
     def wheel(self) -> Three | None:

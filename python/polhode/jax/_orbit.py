@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from polhode.jax._components import Three, cross, horner, times
 from polhode.jax._laws import At
-from polhode.jax._library import jnp, lax
-
-Array = Any
+from polhode.jax._library import Array, jnp, lax
 
 # 2π in two parts, the first of 33 bits: its product with a number of turns is exact.
 _TWO_PI = (6.2831853069365025, 2.4308402025215864e-10)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from polhode.jax._components import Three, dot
-from polhode.jax._library import jnp, lax
+from polhode.jax._library import Array, jnp, lax
 from polhode.jax._steppers import Axes
-
-Array = Any
 
 # Means converge quadratically, from k' = 1e-16 in 9 steps; duplication reduces differences by 4 in a step,
 # after some steps that bring the arguments to one size.

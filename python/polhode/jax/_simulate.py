@@ -13,11 +13,9 @@ from polhode.jax import torque as laws
 from polhode.jax._arguments import Start, start
 from polhode.jax._components import Four, Three, joined, normalized, split
 from polhode.jax._laws import Function, Gyrostat, Phase, Torque, weight
-from polhode.jax._library import jax, jnp, lax
+from polhode.jax._library import Array, jax, jnp, lax
 from polhode.jax._steppers import METHODS, stepper, table_of
 from polhode.jax._steps import ways
-
-Array = Any
 
 
 def simulate(

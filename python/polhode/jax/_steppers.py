@@ -30,9 +30,8 @@ from polhode.jax._components import (
     turned,
 )
 from polhode.jax._laws import Gyrostat, Phase, Torque
-from polhode.jax._library import jnp, lax
+from polhode.jax._library import Array, jnp, lax
 
-Array = Any
 Seven = tuple[Array, ...]
 
 # γ_1 … up to the middle one, as in crates/rigid/src/methods/splitting/sequences.rs; the rest mirrors them.

@@ -8,11 +8,8 @@ import numpy as np
 
 from polhode._support.arrays import as_float, check_line, output_times
 from polhode.jax._laws import Torque
-from polhode.jax._library import jax
+from polhode.jax._library import Array, jax
 from polhode.jax._table import Table
-
-Array = Any
-
 
 # Each step has its time and length in memory, 16 bytes.
 _MOST_STEPS = 1e8

@@ -9,9 +9,7 @@ import numpy as np
 
 from polhode.jax._components import Four, Three, joined, reverse, split, turned
 from polhode.jax._laws import Gyrostat, Law, Phase, pytree, static
-from polhode.jax._library import jnp, lax
-
-Array = Any
+from polhode.jax._library import Array, jnp, lax
 
 
 @pytree

@@ -21,10 +21,9 @@ from polhode.jax._components import (
     split,
     times,
 )
-from polhode.jax._library import jax, jnp
+from polhode.jax._library import Array, jax, jnp
 from polhode.jax._orbit_of_free import Orbit
 
-Array = Any
 Waves = tuple[Four, Three, tuple[Array]]
 
 # u over the turns on the separatrix: an upper bound.

@@ -137,7 +137,6 @@ def _checked(line: Line) -> Line:
 
 
 def _record(line: Line, answer: Answer) -> dict[str, Any]:
-    """Return an answer as a JSON object."""
     value = answer.value
     spelled = {"text": "unicode", "ascii": "ascii", "latex": "latex"}
     record = {"formula": line.text} | {key: answer.spelled(style) for key, style in spelled.items()}

@@ -166,7 +166,6 @@ class Session:
 
 
 def _placed(read: _native.Line, error: FormulaError) -> LineError:
-    """Return an error with its place in the line."""
     return LineError(*read.place(error.message, error.text, error.span))
 
 

@@ -165,13 +165,11 @@ class LinearMap:
 
     def symmetric_part(self) -> LinearMap:
         """Return ``½ (F + adj F)``, as maps of vectors or, for grade 2, of bivectors."""
-        transposed = np.swapaxes(self.matrix, -1, -2)
-        return LinearMap.from_matrix(0.5 * self.matrix + 0.5 * transposed, self.grade)
+        return LinearMap.from_matrix(0.5 * self.matrix + 0.5 * self.adjoint().matrix, self.grade)
 
     def antisymmetric_part(self) -> LinearMap:
         """Return ``½ (F − adj F)``; of vectors, it is ``a ↦ a·B`` for a bivector B."""
-        transposed = np.swapaxes(self.matrix, -1, -2)
-        return LinearMap.from_matrix(0.5 * self.matrix - 0.5 * transposed, self.grade)
+        return LinearMap.from_matrix(0.5 * self.matrix - 0.5 * self.adjoint().matrix, self.grade)
 
     # --- eigenvalues
 
@@ -190,10 +188,9 @@ class LinearMap:
 
         The eigenvalues rise. For a map of vectors they are the products of two eigenvalues of vectors.
         """
-        if self.grade == 2:
-            factors, axes = self._principal_axes()
-            return bivector(axes), factors
         stretch, axes = self._principal_axes()
+        if self.grade == 2:
+            return bivector(axes), stretch
         factors = np.stack([stretch[..., i] * stretch[..., j] for i, j in ((1, 2), (2, 0), (0, 1))], axis=-1)
         order = np.argsort(factors, axis=-1, kind="stable")
         planes = np.take_along_axis(axes, order[..., np.newaxis], axis=-2)

@@ -21,7 +21,7 @@ from polhode._figures.style import (
     title_of,
 )
 from polhode._mechanics.free_motion import FreeMotion
-from polhode._mechanics.smooth import rotor_at, samples
+from polhode._mechanics.smooth import samples
 from polhode._report.text import time as time_text
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def herpolhode_figure(trajectory: Trajectory) -> Figure:
     into_plane = ~Rotor.from_vectors(e3, momentum.dual().normalized())
     path = samples(trajectory)
     omega = into_plane(path.rotor(path.omega_body)).components
-    free = FreeMotion(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0])
+    free = FreeMotion(trajectory.inertia, trajectory.rotor[0], trajectory.omega_body[0])
     around = into_plane(free.herpolhode(_POINTS)).components
     power, per_second = scaled_unit(around[:, :2], "rad/s")
     omega, around = omega / power, around / power

@@ -21,7 +21,7 @@ from polhode._figures.style import (
     title_of,
 )
 from polhode._mechanics.closed_forms import LagrangeTop
-from polhode._mechanics.smooth import rotor_at, samples
+from polhode._mechanics.smooth import samples
 from polhode._report.describe import long_axis, main_axis
 from polhode._support.arrays import Array
 
@@ -155,7 +155,7 @@ def _draw(axes: Axes, angle: Array, rate: Array) -> None:
 def _lagrange(trajectory: Trajectory, c: Array) -> LagrangeTop | None:
     """Return the motion in closed form; None if the body is not symmetric about c."""
     try:
-        return LagrangeTop(trajectory.inertia, rotor_at(trajectory, 0), trajectory.omega_body[0], c)
+        return LagrangeTop(trajectory.inertia, trajectory.rotor[0], trajectory.omega_body[0], c)
     except ValueError:
         return None
 

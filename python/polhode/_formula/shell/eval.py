@@ -65,10 +65,8 @@ def _answer(session: Session, line: Line) -> Answer | None:
     if line.mistake:
         raise line.mistake
     let = _LET.match(line.text)
-    if line.assigns or let:
-        answer = session.assign(line.text, let.end() if let and not line.assigns else 0)
-    else:
-        answer = session.evaluate(line.text)
+    start = let.end() if let and not line.assigns else 0
+    answer = session.run(line.text, start, bool(line.assigns or let))
     return None if answer.name else answer
 
 
@@ -139,7 +137,6 @@ def _checked(line: Line) -> Line:
 
 
 def _record(line: Line, answer: Answer) -> dict[str, Any]:
-    """Return an answer as a JSON object."""
     value = answer.value
     spelled = {"text": "unicode", "ascii": "ascii", "latex": "latex"}
     record = {"formula": line.text} | {key: answer.spelled(style) for key, style in spelled.items()}

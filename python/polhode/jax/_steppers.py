@@ -1,8 +1,9 @@
-"""Exact turns and kicks, step for step as in `crates/rigid/src/methods/splitting`, which derives them.
+"""Steps of motions in principal axes: splittings into exact turns and kicks, and Runge–Kutta.
 
-The turns are about the axes of the smallest and the largest moment. Which those are is known when the program
-runs, not when it is compiled, so the axes are renamed: with the smallest first and the largest last, and
-every bivector negated where that order is odd. Renaming is exact.
+Splittings step as in `crates/rigid/src/methods/splitting`, which derives them. The turns are about the axes
+of the smallest and the largest moment. Which those are is known when the program runs, not when it is
+compiled, so the axes are renamed: with the smallest first and the largest last, and every bivector negated
+where that order is odd. Renaming is exact.
 """
 
 from __future__ import annotations
@@ -20,17 +21,18 @@ from polhode.jax._components import (
     dot,
     exponential,
     minus,
+    normalized,
     plus,
     renormalized,
     reverse,
+    rotor_rate,
     times,
     turned,
 )
-from polhode.jax._laws import Torque
-from polhode.jax._library import jnp, lax
-from polhode.jax._phase import Gyrostat, Phase
+from polhode.jax._laws import Gyrostat, Phase, Torque
+from polhode.jax._library import Array, jnp, lax
 
-Array = Any
+Seven = tuple[Array, ...]
 
 # γ_1 … up to the middle one, as in crates/rigid/src/methods/splitting/sequences.rs; the rest mirrors them.
 COMPOSITIONS = {
@@ -56,6 +58,17 @@ COMPOSITIONS = {
         -0.6055085338300345,
     ],
 }
+METHODS = (*COMPOSITIONS, "rk4")
+
+
+def stepper(method: str, body: Gyrostat, torque: Torque, table: Array) -> Any:
+    """Return the stepper with the coefficients of `table_of`."""
+    return RungeKutta(body, torque) if method == "rk4" else Splitting(method, body, torque, table)
+
+
+def table_of(method: str) -> list[float]:
+    """Return the coefficients of the stages of a method."""
+    return [] if method == "rk4" else [x for stage in stages(method) for x in stage]
 
 
 def stages(name: str) -> list[tuple[float, float]]:
@@ -100,13 +113,17 @@ class Axes(NamedTuple):
         """Return a bivector over the renamed axes."""
         return times(self.pick(b), self.sign)
 
-    def restored(self, b: Three) -> Three:
-        """Return the bivector over e1, e2, e3."""
+    def placed(self, x: Three) -> Three:
+        """Return three numbers in the order of the axes as those of e1, e2, e3."""
 
         def one(k: int) -> Array:
-            return jnp.where(self.small[k], b[0], jnp.where(self.middle[k], b[1], b[2]))
+            return jnp.where(self.small[k], x[0], jnp.where(self.middle[k], x[1], x[2]))
 
-        return times((one(0), one(1), one(2)), self.sign)
+        return one(0), one(1), one(2)
+
+    def restored(self, b: Three) -> Three:
+        """Return the bivector over e1, e2, e3."""
+        return times(self.placed(b), self.sign)
 
 
 class Splitting:
@@ -240,3 +257,58 @@ def _expm1_ratio(x: Array) -> Array:
     for k in range(9, 1, -1):
         series = 1.0 + small / k * series
     return jnp.where(near, series, jnp.expm1(large) / large)
+
+
+# --- Runge–Kutta
+
+
+class Point(NamedTuple):
+    """Rotor and angular velocity at a time."""
+
+    rotor: Four
+    spin: Three
+    time: Array
+
+
+class RungeKutta:
+    """A body and its laws, stepped by the classical method on the rotor and the angular velocity.
+
+    ``R' = −½ R Ω_B`` and Euler's equations (handout eq. 4.13, 4.21); after each step R is divided by its
+    norm, which is all that the step does to stay on the group: it needs no sine, one root, and no branch.
+    """
+
+    def __init__(self, body: Gyrostat, torque: Torque) -> None:
+        self.body, self.torque = body, torque
+
+    def start(self, rotor: Four, omega: Three, time: Array) -> Point:
+        """Return the initial state."""
+        return Point(rotor, omega, time)
+
+    def omega(self, point: Point) -> Three:
+        """Return the angular velocity."""
+        return point.spin
+
+    def fixed(self, start: Point) -> None:
+        """Return None: the method conserves nothing exactly."""
+
+    def step(self, fixed: None, point: Point, h: Array) -> Point:
+        """Take a step of length h."""
+        t = point.time
+        state = (*point.rotor, *point.spin)
+        k1 = self._slope(state, t)
+        k2 = self._slope(_moved(state, k1, 0.5 * h), t + 0.5 * h)
+        k3 = self._slope(_moved(state, k2, 0.5 * h), t + 0.5 * h)
+        k4 = self._slope(_moved(state, k3, h), t + h)
+        mean = tuple((a + d) + 2.0 * (b + c) for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
+        s, x, y, z, p, q, r = _moved(state, mean, h / 6.0)
+        return Point(normalized((s, x, y, z)), (p, q, r), t + h)
+
+    def _slope(self, state: Seven, time: Array) -> Seven:
+        s, x, y, z, p, q, r = state
+        rotor, omega = (s, x, y, z), (p, q, r)
+        torque = self.torque.exerted(self.body, Phase(rotor, self.body.momentum(omega), time))
+        return (*rotor_rate(rotor, omega), *self.body.rate(omega, torque))
+
+
+def _moved(state: Seven, slope: Seven, h: Array) -> Seven:
+    return tuple(a + h * b for a, b in zip(state, slope, strict=True))

@@ -67,8 +67,9 @@ def _contents(scene: Scene, trajectory: Trajectory, folder: Path) -> tuple[dict[
     except FileNotFoundError as error:
         missing.append(f"No page: {error}.")
     try:
+        from polhode._figures.over_time import motion_figure
         from polhode._figures.registry import characteristic_figure
-        from polhode._figures.style import as_png, motion_figure
+        from polhode._figures.style import as_png
 
         contents[folder / f"{NAME}-motion.png"] = as_png(motion_figure(trajectory))
         contents[folder / f"{NAME}-polhode.png"] = as_png(characteristic_figure(scene, trajectory))

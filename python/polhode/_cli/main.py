@@ -378,8 +378,9 @@ def _write(targets: list[Path], html: Path | None, scene: Scene, trajectory: Tra
 
     contents: dict[Path, bytes] = {}
     if targets:
+        from polhode._figures.over_time import motion_figure
         from polhode._figures.registry import characteristic_figure
-        from polhode._figures.style import as_png, motion_figure
+        from polhode._figures.style import as_png
         from polhode._report.netcdf import netcdf
 
         second = characteristic_figure(scene, trajectory)

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._figures.camera import angles_of
-from polhode._figures.style import entitle, explain, in_our_look, new_figure, time_unit, title_of
+from polhode._figures.style import drawing, plotting, time_unit
 from polhode._support.arrays import as_float
-from polhode._support.extras import optional
 from polhode._viewer.capture import studio
 
 if TYPE_CHECKING:
@@ -28,24 +27,19 @@ _CAPTION = (
 )
 
 
-@in_our_look
-def scene_figure(trajectory: Trajectory, view: Any = None, time: float | None = None) -> Figure:
+@drawing(7, 4.75, "Motion of a rigid body")
+def scene_figure(figure: Figure, trajectory: Trajectory, view: Any = None, time: float | None = None) -> str:
     """Draw the scene at a time in s, the last one if none is given, as the viewer draws it."""
     when = _checked_time(trajectory, time)
     with studio(trajectory, np.array([when]), _SIZE, angles_of(view), "a figure of kind 'scene'") as taken:
         picture = taken.capture(when)
-    pixels = optional("matplotlib.image", "plot", "a figure").imread(io.BytesIO(picture), format="png")
-    figure = new_figure(7, 4.75)
     axes = figure.add_subplot()
-    axes.imshow(pixels)
+    axes.imshow(plotting("matplotlib.image").imread(io.BytesIO(picture), format="png"))
     axes.set_axis_off()
     seconds, unit = time_unit(trajectory.time)
     axes.text(0.01, 0.97, f"t = {when / seconds:.4g} {unit}", transform=axes.transAxes, va="top")
-    entitle(figure, title_of(trajectory, "Motion of a rigid body"))
-    setting = trajectory._origin
-    weight = " mg: the weight at the centre of mass." if setting is not None and setting.held else ""
-    explain(figure, _CAPTION + weight)
-    return figure
+    held = trajectory._origin is not None and trajectory._origin.held
+    return _CAPTION + " mg: the weight at the centre of mass." * held
 
 
 def _checked_time(trajectory: Trajectory, time: float | None) -> float:

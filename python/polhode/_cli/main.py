@@ -292,8 +292,7 @@ def _run_many(
 ) -> dict[str, Any]:
     """Run an ensemble, print its summary and write its files; return the summary."""
     from polhode._cli import ensemble as _ensemble_run
-    from polhode._report.ensemble.summary import summary
-    from polhode._report.ensemble.text import as_text
+    from polhode._report.ensemble.summary import as_text, summary
 
     pages = {}
     if html:

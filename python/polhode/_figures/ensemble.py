@@ -9,8 +9,7 @@ import numpy as np
 from polhode._algebra.constructors import vector
 from polhode._figures.palette import BLACK, BLUE, ORANGE
 from polhode._figures.style import halo, new_figure, plotting, time_unit
-from polhode._report.ensemble.collect import EnsembleRecords
-from polhode._report.ensemble.quantiles import first_above, quantiles
+from polhode._report.ensemble.collect import EnsembleRecords, first_above, quantiles
 from polhode._report.text import time as time_text
 from polhode._support.arrays import Array
 

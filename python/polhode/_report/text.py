@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,10 @@ import numpy as np
 from polhode._mechanics.registry import TORQUES
 
 # Width of the names of rows.
-_COLUMNS = 18
+_COLUMNS = 17
 
-Row = Callable[[str, str], None]
+# Name and value.
+Row = tuple[str, str]
 
 # (upper bound in s, unit in s, name of the unit)
 _SECONDS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"), (6e7, 86400.0, "d"))
@@ -31,54 +32,48 @@ QUANTITIES = {
 
 def as_text(summary: dict[str, Any]) -> str:
     """Return the summary as a page for a terminal."""
-    motion, run = summary["motion"], summary["run"]
-    lines = [printable(summary["title"]), ""]
+    motion = summary["motion"]
+    sections = {
+        "Body": body_rows(summary["body"]),
+        "Torques and forces": law_rows(summary),
+        "Motion": [*_KINDS[motion["kind"]](motion), *_changes(motion)],
+        "Conserved": _conserved(summary),
+        "Run": _run(summary["run"], motion["kind"]),
+    }
+    return page(summary["title"], sections, _COLUMNS)
 
-    def row(name: str, value: str) -> None:
-        lines.append(f"  {name:<{_COLUMNS - 1}} {value}")
 
-    lines.append("Body")
-    body_rows(summary["body"], row)
-    if summary["torques"] or summary["forces"]:
-        lines.append("Torques and forces")
-        law_rows(summary, row)
-    lines.append("Motion")
-    _KINDS[motion["kind"]](motion, row)
-    _changes(motion, row)
-    lines.append("Conserved")
-    for name, entry in summary["conserved"].items():
-        label, unit = QUANTITIES[name]
-        row(label, f"{number(entry['value'], 10)} {unit}, drift {entry['drift']:.1e}")
-    row("|R| − 1", f"{run['rotor_norm_drift']:.1e}")
-    lines.append("Run")
-    _run(run, motion["kind"], row)
+def page(title: str, sections: Mapping[str, Iterable[Row]], width: int) -> str:
+    """Return a page of sections, without those that have no rows; `width` is that of the names of rows.
+
+    Control characters in the title are replaced.
+    """
+    lines = ["".join(c if c.isprintable() else "\ufffd" for c in title), ""]
+    for heading, rows in sections.items():
+        if written := [f"  {name:<{width}} {value}" for name, value in rows]:
+            lines += [heading, *written]
     return "\n".join(lines)
 
 
-def printable(title: str) -> str:
-    """Return a title with control characters replaced."""
-    return "".join(c if c.isprintable() else "\ufffd" for c in title)
-
-
-def body_rows(body: dict[str, Any], row: Row) -> None:
-    """Print the rows of the body."""
+def body_rows(body: dict[str, Any]) -> Iterator[Row]:
+    """Yield the rows of the body."""
     mass = body["mass"]
-    row("mass", "not given; the motion does not depend on it" if mass is None else f"{number(mass)} kg")
-    row("centre of mass", f"{_listed(body['center_of_mass'])} m")
+    yield "mass", "not given; the motion does not depend on it" if mass is None else f"{number(mass)} kg"
+    yield "centre of mass", f"{_listed(body['center_of_mass'])} m"
     about = " about the fixed point" if body["held"] else ""
-    row("principal moments", f"{_listed(body['principal_moments'])} kg m²{about}")
-    row("moment ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"]))
+    yield "principal moments", f"{_listed(body['principal_moments'])} kg m²{about}"
+    yield "moment ratios", " : ".join(f"{x:.4g}" for x in body["moment_ratios"])
 
 
-def law_rows(summary: dict[str, Any], row: Row) -> None:
-    """Print the torques and forces."""
+def law_rows(summary: dict[str, Any]) -> Iterator[Row]:
+    """Yield the torques and forces."""
     for law in summary["torques"]:
-        row(*_law(law))
+        yield _law(law)
     for force in summary["forces"]:
-        row("force", force)
+        yield "force", force
 
 
-def _law(law: dict[str, Any]) -> tuple[str, str]:
+def _law(law: dict[str, Any]) -> Row:
     """Return the name and the arguments of a torque law; a formula as it stands in the scene."""
     name, arguments = law["law"], law["arguments"]
     if name == "formula":
@@ -94,151 +89,156 @@ def _law(law: dict[str, Any]) -> tuple[str, str]:
     return name, "; ".join(texts)
 
 
-def _run(run: dict[str, Any], kind: str, row: Row) -> None:
-    row("duration", f"{time(run['duration'])}, {run['samples']} output times")
+def _conserved(summary: dict[str, Any]) -> Iterator[Row]:
+    for name, entry in summary["conserved"].items():
+        label, unit = QUANTITIES[name]
+        yield label, f"{number(entry['value'], 10)} {unit}, drift {entry['drift']:.1e}"
+    yield "|R| − 1", f"{summary['run']['rotor_norm_drift']:.1e}"
+
+
+def _run(run: dict[str, Any], kind: str) -> Iterator[Row]:
+    yield "duration", f"{time(run['duration'])}, {run['samples']} output times"
     if run["method"] == "exact":
         elliptic = kind in ("free", "damped", "lagrange")
-        row("method", "exact solution in elliptic functions" if elliptic else "exact solution")
+        yield "method", "exact solution in elliptic functions" if elliptic else "exact solution"
     else:
-        row("method", f"{run['method']}, {run['steps']} steps of at most {number(run['step'])} s")
-        row("evaluations", f"{run['evaluations']} of the torque")
+        yield "method", f"{run['method']}, {run['steps']} steps of at most {number(run['step'])} s"
+        yield "evaluations", f"{run['evaluations']} of the torque"
     if run["error_estimate"] is not None:
-        row("error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate")
+        yield "error estimate", f"{run['error_estimate']:.1e} in attitude and relative rate"
     if not run["drift_within_bound"]:
-        row("FAILED", f"a conserved quantity drifted by more than {run['drift_bound']:g}")
+        yield "FAILED", f"a conserved quantity drifted by more than {run['drift_bound']:g}"
 
 
 # --- the kinds of motion
 
 
-def _free(motion: dict[str, Any], row: Row) -> None:
+def _free(motion: dict[str, Any]) -> Iterator[Row]:
     axis = motion["axis"]
     words = {
         "short-axis mode": f"short-axis mode: ω circles axis {axis}, the axis of the largest moment",
         "long-axis mode": f"long-axis mode: ω circles axis {axis}, the axis of the smallest moment",
     }
-    row("regime", words.get(motion["regime"], motion["regime"]))
+    yield "regime", words.get(motion["regime"], motion["regime"])
     periodic = motion["period"] is not None
     if periodic:
-        row("modulus k", number(motion["modulus"], 10))
-        row("period of ω", f"{time(motion['period'])} in the body")
-        row("precession", f"{time(motion['precession_period'])} per turn about L, on average")
+        yield "modulus k", number(motion["modulus"], 10)
+        yield "period of ω", f"{time(motion['period'])} in the body"
+        yield "precession", f"{time(motion['precession_period'])} per turn about L, on average"
         turns = motion["phase_per_period"] / (2 * np.pi)
-        row("phase", f"{number(turns, 8)} turns about L per period")
+        yield "phase", f"{number(turns, 8)} turns about L per period"
     if motion.get("wobbles_per_turn") is not None:
-        row("wobbles", f"{number(motion['wobbles_per_turn'], 8)} per turn about axis {axis}")
+        yield "wobbles", f"{number(motion['wobbles_per_turn'], 8)} per turn about axis {axis}"
     if periodic:
-        row("angle to L", f"{_angles(motion['wobble_min'], motion['wobble_max'])} from axis {axis}")
+        yield "angle to L", f"{_angles(motion['wobble_min'], motion['wobble_max'])} from axis {axis}"
     if motion["wobble_period"] is not None:
-        row("small wobbles", f"period {time(motion['wobble_period'])}")
+        yield "small wobbles", f"period {time(motion['wobble_period'])}"
     if motion["flip_time"] is not None and motion["modulus"] > 0.9:
         text = f"every {time(motion['flip_time'])} about the middle axis (half a period)"
-        found = motion.get("reversals")
-        if found:
+        if found := motion.get("reversals"):
             text += f"; {found['count']} in this run, every {time(found['mean_interval'])}"
-        row("flips", text)
+        yield "flips", text
     if "closed_form" in motion:
         difference = motion["closed_form"]["largest_rotor_difference"]
-        row("closed form", f"handout eq. (4.35): the rotor differs by at most {difference:.1e}")
+        yield "closed form", f"handout eq. (4.35): the rotor differs by at most {difference:.1e}"
 
 
-def _damped(motion: dict[str, Any], row: Row) -> None:
-    row("damping", "free motion, slowed exponentially")
+def _damped(motion: dict[str, Any]) -> Iterator[Row]:
+    yield "damping", "free motion, slowed exponentially"
     if motion["halved_after"] is not None:
-        row("half-life of ω", time(motion["halved_after"]))
-    _free(motion, row)
+        yield "half-life of ω", time(motion["halved_after"])
+    yield from _free(motion)
     if motion["period"] is not None:
-        row("", "(periods at the initial rate)")
+        yield "", "(periods at the initial rate)"
 
 
-def _gyrostat(motion: dict[str, Any], row: Row) -> None:
-    row("regime", motion["regime"])
+def _gyrostat(motion: dict[str, Any]) -> Iterator[Row]:
+    yield "regime", motion["regime"]
     share = np.linalg.norm(motion["wheel"]) / motion["momentum_size"] if motion["momentum_size"] else 0.0
     if share:
-        row("wheel", f"{number(100 * share, 4)} % of |L|")
+        yield "wheel", f"{number(100 * share, 4)} % of |L|"
     if "from_wheel" in motion:
-        row("angle to L", f"{_angles(*motion['from_wheel'])} from the wheel's axis")
+        yield "angle to L", f"{_angles(*motion['from_wheel'])} from the wheel's axis"
 
 
-def _lagrange(motion: dict[str, Any], row: Row) -> None:
-    row("regime", f"symmetric top under gravity, {motion['regime']}")
-    _tilt(motion, row)
+def _lagrange(motion: dict[str, Any]) -> Iterator[Row]:
+    yield "regime", f"symmetric top under gravity, {motion['regime']}"
+    yield from _tilt(motion)
     if motion["nutation_period"] is not None:
-        row("nutation period", time(motion["nutation_period"]))
+        yield "nutation period", time(motion["nutation_period"])
     if motion["precession_rate"] is not None:
-        row(
+        yield (
             "precession",
             f"{number(motion['precession_rate'])} rad/s on average, "
             f"{time(abs(motion['precession_period']))} per turn",
         )
         if (fast := motion["fast_top_precession_rate"]) is not None:
             off = motion["precession_rate"] / fast - 1
-            row("fast-top formula", f"{number(fast)} rad/s, m g l/(i3 ω3); the average differs by {off:+.2e}")
+            yield (
+                "fast-top formula",
+                f"{number(fast)} rad/s, m g l/(i3 ω3); the average differs by {off:+.2e}",
+            )
     stable = "stable" if motion["sleeps"] else "unstable"
-    row(
+    yield (
         "upright",
         f"{stable} at the spin {number(motion['spin'])} rad/s; "
         f"critical spin {number(motion['critical_spin'])} rad/s",
     )
 
 
-def _heavy(motion: dict[str, Any], row: Row) -> None:
-    row("regime", motion["regime"])
+def _heavy(motion: dict[str, Any]) -> Iterator[Row]:
+    yield "regime", motion["regime"]
     if "tilt_min" not in motion:
-        row("", "held at its centre of mass")
+        yield "", "held at its centre of mass"
         return
-    _tilt(motion, row)
+    yield from _tilt(motion)
     rate = motion["precession_rate"]
     if rate is None:
-        row("precession", "unknown: the output times are too far apart")
+        yield "precession", "unknown: the output times are too far apart"
     else:
-        row("precession", f"{number(rate)} rad/s on average")
+        yield "precession", f"{number(rate)} rad/s on average"
 
 
-def _tilt(motion: dict[str, Any], row: Row) -> None:
-    row("m g l", f"{number(motion['mgl'])} N m")
-    row("tilt", f"{_angles(motion['tilt_min'], motion['tilt_max'])} from the vertical")
+def _tilt(motion: dict[str, Any]) -> Iterator[Row]:
+    yield "m g l", f"{number(motion['mgl'])} N m"
+    yield "tilt", f"{_angles(motion['tilt_min'], motion['tilt_max'])} from the vertical"
 
 
-def _satellite(motion: dict[str, Any], row: Row) -> None:
-    row("regime", motion["regime"])
+def _satellite(motion: dict[str, Any]) -> Iterator[Row]:
+    yield "regime", motion["regime"]
     if motion["orbital_period"] is not None:
-        row("orbit", f"{time(motion['orbital_period'])}, eccentricity {number(motion['eccentricity'])}")
-    row("long axis", f"{_angles(*motion['from_vertical'])} from the vertical")
-    row("short axis", f"{_angles(*motion['from_normal'])} from the orbit's normal")
+        yield "orbit", f"{time(motion['orbital_period'])}, eccentricity {number(motion['eccentricity'])}"
+    yield "long axis", f"{_angles(*motion['from_vertical'])} from the vertical"
+    yield "short axis", f"{_angles(*motion['from_normal'])} from the orbit's normal"
     if motion["libration_period"] is not None:
-        row("libration", f"{time(motion['libration_period'])} per swing in the orbit plane, on average")
+        yield "libration", f"{time(motion['libration_period'])} per swing in the orbit plane, on average"
     if motion["small_libration_period"] is not None:
-        row("small librations", f"period {time(motion['small_libration_period'])} in the orbit plane")
+        yield "small librations", f"period {time(motion['small_libration_period'])} in the orbit plane"
 
 
-def _torqued(motion: dict[str, Any], row: Row) -> None:
-    row("regime", motion["regime"])
-
-
-_KINDS = {
+_KINDS: dict[str, Callable[[dict[str, Any]], Iterable[Row]]] = {
     "free": _free,
     "damped": _damped,
     "gyrostat": _gyrostat,
     "lagrange": _lagrange,
     "heavy": _heavy,
     "satellite": _satellite,
-    "torqued": _torqued,
+    "torqued": lambda motion: [("regime", motion["regime"])],
 }
 
 
-def _changes(motion: dict[str, Any], row: Row) -> None:
-    """Print rate, momentum, attitude and position at the start and at the end."""
+def _changes(motion: dict[str, Any]) -> Iterator[Row]:
+    """Yield rate, momentum, attitude and position at the start and at the end."""
     for key, name, unit in (("rate", "|ω|", "rad/s"), ("angular_momentum", "|L|", "kg m²/s")):
         if "changes" in motion:
             ends = motion["changes"][key]
-            row(name, f"{number(ends['start'])} {unit} at the start, {number(ends['end'])} at the end")
+            yield name, f"{number(ends['start'])} {unit} at the start, {number(ends['end'])} at the end"
     if "from_target" in motion:
         degrees = [f"{number(float(np.degrees(motion['from_target'][k])))}°" for k in ("start", "end")]
-        row("from the target", f"{degrees[0]} at the start, {degrees[1]} at the end")
+        yield "from the target", f"{degrees[0]} at the start, {degrees[1]} at the end"
     for key, unit in (("position", "m"), ("velocity", "m/s")):
         if key in motion:
-            row(key, f"({_listed(motion[key]['start'])}) to ({_listed(motion[key]['end'])}) {unit}")
+            yield key, f"({_listed(motion[key]['start'])}) to ({_listed(motion[key]['end'])}) {unit}"
 
 
 # --- numbers

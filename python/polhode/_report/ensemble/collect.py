@@ -1,9 +1,9 @@
-"""Records of an ensemble's bodies, collected block by block for summary and figures."""
+"""Records of an ensemble's bodies, collected block by block for summary and figures; their quantiles."""
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,11 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import main_axis, orbit_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 # Per body and time, in single precision: quantiles need fewer than seven digits.
 SERIES = ("from_nominal", "tilt", "rate")
@@ -166,3 +171,26 @@ def _angle(a: Any, b: Any) -> Array:
     """Return the angles between vectors (..., 3); NaN if one of them is 0."""
     angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1))
     return np.where((a != 0).any(axis=-1) & (b != 0).any(axis=-1), angle, np.nan)
+
+
+def quantiles(values: NDArray[Any]) -> Array:
+    """Return the quantiles (5, ...) of values (bodies, ...) at `LEVELS`.
+
+    NaN, such as of failed bodies, is ignored; quantiles of nothing else are NaN.
+    """
+    columns = [column[~np.isnan(column)].astype(np.float64) for column in values.reshape(len(values), -1).T]
+    none = np.full(len(LEVELS), np.nan)
+    found = [np.quantile(known, LEVELS) if known.size else none for known in columns]
+    return np.stack(found, axis=-1).reshape(len(LEVELS), *values.shape[1:])
+
+
+def first_above(times: Array, values: Array, bound: float) -> float | None:
+    """Return the time at which values first pass a bound, interpolated linearly; None if they do not."""
+    above = np.flatnonzero(values > bound)
+    if not above.size:
+        return None
+    k = int(above[0])
+    if k == 0:
+        return float(times[0])
+    share = (bound - values[k - 1]) / (values[k] - values[k - 1])
+    return float(times[k - 1] + share * (times[k] - times[k - 1]))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polhode._cli.common import DRIFTED, OK, add_command, add_folder
 from polhode._support.arrays import Array
 
 if TYPE_CHECKING:
@@ -20,25 +21,19 @@ _WIDTH, _HEIGHT = 72, 9
 
 def add(commands: Any) -> None:
     """Add the command to those of `polhode`."""
-    demo = commands.add_parser(
+    demo = add_command(
+        commands,
         "demo",
+        _run,
         help="run an example: print a summary and a sketch, write a page and figures",
         description="Run a T-handle in free flight: print its summary and a sketch, and write "
         "t-handle.html, a page that shows it in a browser. With matplotlib it also writes figures.",
     )
-    demo.add_argument(
-        "-o",
-        "--output",
-        metavar="FOLDER",
-        default=".",
-        help="folder for the files, default the current one",
-    )
-    demo.set_defaults(command=_run)
+    add_folder(demo, "files")
 
 
 def _run(options: argparse.Namespace) -> int:
     from polhode._cli.examples import examples
-    from polhode._cli.exit_codes import DRIFTED, OK
     from polhode._report.summary import summary
     from polhode._report.text import as_text
     from polhode._scene.scene import Scene
@@ -67,12 +62,10 @@ def _contents(scene: Scene, trajectory: Trajectory, folder: Path) -> tuple[dict[
     except FileNotFoundError as error:
         missing.append(f"No page: {error}.")
     try:
-        from polhode._figures.over_time import motion_figure
-        from polhode._figures.registry import characteristic_figure
-        from polhode._figures.style import as_png
+        from polhode._figures.registry import pictures
 
-        contents[folder / f"{NAME}-motion.png"] = as_png(motion_figure(trajectory))
-        contents[folder / f"{NAME}-polhode.png"] = as_png(characteristic_figure(scene, trajectory))
+        names = (f"{NAME}-motion.png", f"{NAME}-polhode.png")
+        contents |= {folder / name: x for name, x in zip(names, pictures(scene, trajectory), strict=True)}
     except ImportError as error:
         missing.append(f"No figures: {error}.")
     return contents, missing

@@ -8,27 +8,19 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from polhode._cli.common import add_command, add_folder
+
 FOLDER = Path(__file__).parents[1] / "_examples"
 
 
 def add(commands: Any) -> None:
     """Add the command to those of `polhode`."""
-    examples = commands.add_parser(
-        "examples",
-        help="list or copy the example scenes",
-        description="List the example scenes, or copy the named ones. Existing files are not replaced.",
+    words = "List the example scenes, or copy the named ones. Existing files are not replaced."
+    parser = add_command(
+        commands, "examples", _run, help="list or copy the example scenes", description=words
     )
-    examples.add_argument(
-        "names", metavar="NAME", nargs="*", help="name of an example; without one, list all"
-    )
-    examples.add_argument(
-        "-o",
-        "--output",
-        metavar="FOLDER",
-        default=".",
-        help="folder for the copies, default the current one",
-    )
-    examples.set_defaults(command=lambda options: _run(options, examples))
+    parser.add_argument("names", metavar="NAME", nargs="*", help="name of an example; without one, list all")
+    add_folder(parser, "copies")
 
 
 def examples() -> dict[str, Path]:
@@ -41,7 +33,7 @@ def examples() -> dict[str, Path]:
     return found
 
 
-def _run(options: argparse.Namespace, parser: argparse.ArgumentParser) -> int:
+def _run(options: argparse.Namespace) -> int:
     known = examples()
     if not options.names:
         width = max(map(len, known))
@@ -52,10 +44,9 @@ def _run(options: argparse.Namespace, parser: argparse.ArgumentParser) -> int:
         if name not in known:
             close = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {close[0]}?" if close else "`polhode examples` lists them"
-            parser.error(f"unknown example {name!r}; {hint}")
-    copied = _copy(
-        [file for name in dict.fromkeys(names) for file in _files(known[name])], Path(options.output)
-    )
+            options.parser.error(f"unknown example {name!r}; {hint}")
+    files = [file for name in dict.fromkeys(names) for file in _files(known[name])]
+    copied = _copy(files, Path(options.output))
     print("Written", *(f"  {path}" for path in copied), sep="\n")
     print(f"Try `polhode run {copied[0]}` or `polhode view {copied[0]}`.")
     return 0

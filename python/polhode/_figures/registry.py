@@ -13,7 +13,7 @@ from polhode._figures.over_time import drift_figure, motion_figure
 from polhode._figures.phase_portrait import phase_figure
 from polhode._figures.scene import scene_figure
 from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
-from polhode._figures.style import encoded, require_times
+from polhode._figures.style import as_png, encoded, require_times
 from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure
 from polhode._report.describe import long_axis, main_axis, weight, wheel
 from polhode._support.arrays import Array
@@ -83,6 +83,11 @@ def characteristic_figure(scene: Scene, trajectory: Trajectory) -> Figure:
         return axis_figure(trajectory, c, "the line from the fixed point to the centre of mass")
     number, axis = main_axis(trajectory)
     return axis_figure(trajectory, axis, f"principal axis {number}")
+
+
+def pictures(scene: Scene, trajectory: Trajectory) -> tuple[bytes, bytes]:
+    """Return the PNGs of a run: the motion, and its characteristic figure."""
+    return as_png(motion_figure(trajectory)), as_png(characteristic_figure(scene, trajectory))
 
 
 def write(figure: Figure, path: Path) -> None:

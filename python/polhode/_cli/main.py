@@ -15,17 +15,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polhode._cli.common import (
-    BAD_INPUT,
-    DRIFTED,
-    FAILED,
-    INTERRUPTED,
-    OK,
-    add_command,
-    file_name,
-    progress,
-    whole_number,
-)
+from polhode._cli import common
+from polhode._cli.common import add_command, file_name, progress, whole_number
 from polhode._native import SceneError, __version__
 from polhode._support.files import UnreadableError
 
@@ -45,13 +36,13 @@ def main(arguments: list[str] | None = None) -> int:
             code = int(options.command(options))
         print(end="", flush=True)
     except KeyboardInterrupt as stop:
-        code = _complain(str(stop) or "interrupted; no file was changed", INTERRUPTED)
+        code = _complain(str(stop) or "interrupted; no file was changed", common.INTERRUPTED)
     except (SceneError, UnreadableError) as error:
-        code = _complain(str(error), BAD_INPUT)
+        code = _complain(str(error), common.BAD_INPUT)
     except BrokenPipeError:
-        code = FAILED  # the reader of the output has closed it
+        code = common.FAILED  # the reader of the output has closed it
     except (OSError, ValueError, ImportError, MemoryError) as error:
-        code = _complain(f"polhode: error: {error or 'out of memory'}", FAILED)
+        code = _complain(f"polhode: error: {error or 'out of memory'}", common.FAILED)
     _drop_output()
     return code
 
@@ -246,8 +237,8 @@ def _run(options: argparse.Namespace) -> int:
     else:
         print("No file was written; use -o FILE.nc for data and figures, --html FILE.html for a page.")
     if result["run"]["drift_within_bound"] is None:
-        return _complain("polhode: error: all bodies failed", FAILED)
-    return OK if result["run"]["drift_within_bound"] else DRIFTED
+        return _complain("polhode: error: all bodies failed", common.FAILED)
+    return common.OK if result["run"]["drift_within_bound"] else common.DRIFTED
 
 
 def _run_one(
@@ -304,7 +295,7 @@ def _check(options: argparse.Namespace) -> int:
         except SceneError as error:
             findings.append({"scene": path, "ok": False, "errors": str(error)})
             if not options.json:
-                _complain(str(error), BAD_INPUT)
+                _complain(str(error), common.BAD_INPUT)
             continue
         findings.append({"scene": path, "ok": True, "body": repr(scene.body)})
         words = f"{path}: ok, {scene.body!r}, {len(scene.times)} output times"
@@ -315,7 +306,7 @@ def _check(options: argparse.Namespace) -> int:
             print(words)
     if options.json:
         print(json.dumps(findings, indent=2))
-    return OK if all(finding["ok"] for finding in findings) else BAD_INPUT
+    return common.OK if all(finding["ok"] for finding in findings) else common.BAD_INPUT
 
 
 def _checked_targets(name: str | None, scene: Scene) -> list[Path]:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from polhode._figures.palette import BLACK
+from polhode._figures.style import Axes
 from polhode._support.arrays import Array, as_floats
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
 
 # Default direction of view: azimuth from e1 towards e2 and elevation above e1∧e2, in degrees.
 DEFAULT = (35.0, 22.0)

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from polhode._algebra.constructors import vector
 from polhode._figures.palette import BLACK, BLUE, ORANGE
-from polhode._figures.style import halo, new_figure, plotting, time_unit
+from polhode._figures.style import Axes, Figure, halo, new_figure, plotting, time_unit
 from polhode._report.ensemble.collect import EnsembleRecords, first_above, quantiles
 from polhode._report.text import time as time_text
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _WIDE, _NARROW = "#CFE3F1", "#86BBDD"
 

@@ -9,19 +9,17 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from polhode._figures.camera import angles_of
 from polhode._figures.style import require_times, time_unit, title_of
+from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array, as_count, as_float
 from polhode._support.extras import optional
 from polhode._support.files import check_target, form_of, unfinished, write_atomically
 from polhode._viewer.capture import studio
-
-if TYPE_CHECKING:
-    from polhode._mechanics.trajectory import Trajectory
 
 _SIZES = {"mp4": (1280, 720), "gif": (640, 360)}
 _SMALLEST, _LARGEST, _MOST = 16, 7680, 100_000
@@ -142,8 +140,7 @@ def stroboscopic(trajectory: Trajectory, plan: Plan) -> str | None:
 
 def ffmpeg() -> str:
     """Return the path of the program; an OSError with what to install."""
-    program = shutil.which("ffmpeg")
-    if program is None:
+    if (program := shutil.which("ffmpeg")) is None:
         raise OSError(
             "an MP4 film needs the program ffmpeg: install it (Debian: apt install ffmpeg), or write a .gif"
         )

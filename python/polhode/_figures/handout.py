@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,12 +12,9 @@ from polhode._algebra.multivector import Multivector
 from polhode._algebra.rotor import Rotor
 from polhode._figures.camera import View, frame_picture
 from polhode._figures.palette import AXES, BLACK, BLUE, FAINT, GREEN, MOMENTUM, OMEGA, ORANGE, WEIGHT
-from polhode._figures.style import drawing, halo
+from polhode._figures.style import Figure, drawing, halo
 from polhode._mechanics.bodies import Body
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 class _Picture:

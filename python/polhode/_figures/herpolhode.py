@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from polhode._algebra.constructors import e3
 from polhode._algebra.rotor import Rotor
 from polhode._figures.palette import BLACK, HERPOLHODE, MOMENTUM
-from polhode._figures.style import at_rest, drawing, dress, mark, scaled_unit
+from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, mark, scaled_unit
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.smooth import rotor_at, samples
+from polhode._mechanics.trajectory import Trajectory
 from polhode._report.text import time as time_text
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
 
 # Samples of a period from which the least and largest distance from L are found.
 _POINTS = 4097

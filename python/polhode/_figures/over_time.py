@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from polhode._algebra.constructors import vector
 from polhode._figures.palette import AXES, BLACK, BLUE, GREEN, ORANGE, PLANES, SPACE_AXES
-from polhode._figures.style import drawing, dress, scaled_unit, time_unit
+from polhode._figures.style import Axes, Figure, drawing, dress, scaled_unit, time_unit
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import main_axis
 from polhode._report.text import QUANTITIES
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # More turns than this would fill a figure as a solid block.
 _TURNS_SEEN = 100

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -10,15 +10,11 @@ from polhode._algebra.constructors import bivector
 from polhode._figures.camera import View, view_of
 from polhode._figures.palette import AXES, POLHODE
 from polhode._figures.spheres import _EQUAL, Frame, Portrait, family, level_curves, separatrix
-from polhode._figures.style import at_rest, drawing, dress, mark
+from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, mark
 from polhode._mechanics.bodies import Inertia
 from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # Starts of the neighbouring motions: angles in rad from an axis of extreme moment towards the middle one.
 _STARTS = np.radians([15, 35, 55, 75])

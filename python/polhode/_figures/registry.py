@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,18 +13,14 @@ from polhode._figures.over_time import drift_figure, motion_figure
 from polhode._figures.phase_portrait import phase_figure
 from polhode._figures.scene import scene_figure
 from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
-from polhode._figures.style import as_png, encoded, require_times
+from polhode._figures.style import Figure, as_png, encoded, require_times
 from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure
+from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import long_axis, main_axis, weight, wheel
+from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
 from polhode._support.extras import optional
 from polhode._support.files import form_of, write_atomically
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
-    from polhode._scene.scene import Scene
 
 # Kinds of figures.
 KINDS = ("motion", "polhode", "herpolhode", "locus", "drift", "phase", "scene")

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from polhode._figures.camera import angles_of
-from polhode._figures.style import drawing, plotting, time_unit
+from polhode._figures.style import Figure, drawing, plotting, time_unit
+from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import as_float
 from polhode._viewer.capture import studio
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from polhode._mechanics.trajectory import Trajectory
 
 # Of the picture, in pixels.
 _SIZE = (1920, 1080)

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from polhode._algebra.constructors import vector
 from polhode._figures.camera import View, view_of
 from polhode._figures.palette import AXES, BLACK, OTHERS, POLHODE, SPACE_AXES, TRACE
-from polhode._figures.style import at_rest, drawing, plotting, require_times
+from polhode._figures.style import Axes, Figure, at_rest, drawing, plotting, require_times
 from polhode._mechanics.smooth import samples
 from polhode._mechanics.trajectory import Trajectory
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # Points of curves from formulas.
 _POINTS = 361

@@ -15,8 +15,10 @@ from polhode._support.arrays import Array
 from polhode._support.extras import optional
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes as Axes
+    from matplotlib.figure import Figure as Figure
+else:
+    Axes = Figure = Any  # Matplotlib is imported when a figure is drawn.
 
 P = ParamSpec("P")
 

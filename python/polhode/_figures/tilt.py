@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from polhode._algebra.constructors import bivector, vector
 from polhode._figures.palette import BLACK, OTHERS, SPACE_AXES, TRACE
 from polhode._figures.spheres import path_figure
-from polhode._figures.style import drawing, dress, mark
+from polhode._figures.style import Axes, Figure, drawing, dress, mark
 from polhode._mechanics.closed_forms import LagrangeTop
 from polhode._mechanics.smooth import rotor_at, samples
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import long_axis, main_axis
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # Numbers of tilts and rates of the grid for curves of equal energy.
 _GRID = (321, 241)

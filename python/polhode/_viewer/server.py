@@ -61,15 +61,7 @@ Bar = Callable[[str], AbstractContextManager[Callable[[int, float], object] | No
 
 
 def run(options: argparse.Namespace, bar: Bar) -> int:
-    """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt.
-
-    Raises
-    ------
-    UnreadableError, SceneError
-        If the file cannot be shown.
-    OSError, ValueError
-        If the port cannot be used, the viewer was not built, or the motion fails.
-    """
+    """Serve a file until Ctrl-C, which ends it with a KeyboardInterrupt."""
     path = Path(options.file)
     script = bundle_path().read_bytes()
     source = Source(path)

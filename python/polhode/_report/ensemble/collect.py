@@ -33,57 +33,35 @@ _PASSING, _FIGURES = 4, 100 << 20
 
 
 class EnsembleRecords:
-    """Records of the bodies of a scene's ensemble and of the nominal body.
-
-    Attributes
-    ----------
-    scene, nominal
-        The scene, and the motion of its own body.
-    axis, axis_name
-        A direction fixed in the body (3,), and its name.
-    tilt_name
-        The direction from which the tilt of the axis is measured.
-    complete
-        Number of bodies recorded so far, the first rows of arrays.
-    series
-        By name (number, n) in single precision: ``from_nominal``, the angle in rad between the attitude and
-        that of `nominal`; ``tilt``, that of the axis from L, the vertical or up; ``rate``, ``|Ω|`` in rad/s.
-    directions
-        The axis in space (number, 3, 3) at the three times `shown`: the first, the middle and the last.
-    bodies
-        By name (number,): energy and ``|L|`` at the start and at the end, and of free bodies the period of Ω
-        in the body and that of the precession; NaN if undefined.
-    regimes
-        Number of free bodies in each regime.
-    methods
-        Number of bodies computed by each method.
-    steps
-        Steps of each body, (number,).
-    error_estimates, norm_drifts
-        Of each body (number,), NaN if undefined.
-    drifts
-        By name (number,), NaN if a body does not conserve the quantity or failed.
-    failures
-        The bodies that failed; ``index`` is their number.
-    """
+    """Records of the bodies of a scene's ensemble and of the nominal body; NaN where undefined."""
 
     def __init__(self, scene: Scene, nominal: Trajectory) -> None:
         assert scene.ensemble is not None
+        number, n = scene.ensemble.number, len(scene.times)
+        # The motion of the scene's own body.
         self.scene, self.nominal = scene, nominal
+        # A direction fixed in the body (3,), and the direction from which its tilt is measured.
         self.axis, self.axis_name = watched_axis(scene, nominal)
         self._reference, self.tilt_name = _reference(scene, nominal)
+        # Number of bodies recorded so far, the first rows of arrays.
         self.complete = 0
-        number, n = scene.ensemble.number, len(scene.times)
+        # (number, n): the angle in rad between the attitude and that of `nominal`; the tilt of the axis in
+        # rad from L, the vertical or up; |Ω| in rad/s.
         self.series = {name: np.empty((number, n), np.float32) for name in SERIES}
+        # The axis in space at the first, the middle and the last time.
         self.shown = (0, n // 2, n - 1)
         self.directions = np.empty((number, 3, 3), np.float32)
-        names = [f"{name}_{end}" for name in ENDS for end in ("start", "end")] + list(PERIODS)
-        self.bodies = {name: np.full(number, np.nan) for name in names}
+        # Energy and |L| at both ends; of free bodies the periods of Ω in the body and of the precession.
+        names = [f"{name}_{end}" for name in ENDS for end in ("start", "end")]
+        self.bodies = {name: np.full(number, np.nan) for name in (*names, *PERIODS)}
+        # Number of free bodies in each regime, and of bodies computed by each method.
         self.regimes: Counter[str] = Counter()
         self.methods: Counter[str] = Counter()
         self.steps = np.zeros(number, np.int64)
         self.error_estimates, self.norm_drifts = np.full(number, np.nan), np.full(number, np.nan)
+        # By name; NaN if a body does not conserve the quantity or failed.
         self.drifts: dict[str, Array] = {}
+        # Their `index` is the number of the body.
         self.failures: list[Failure] = []
 
     @staticmethod
@@ -129,8 +107,7 @@ class EnsembleRecords:
 
     def _certify(self, rows: slice, trajectory: Trajectory) -> None:
         proof = trajectory.certificate
-        for method in np.broadcast_to(proof.method, len(trajectory))[trajectory.ok].tolist():
-            self.methods[method] += 1
+        self.methods.update(np.broadcast_to(proof.method, len(trajectory))[trajectory.ok].tolist())
         self.steps[rows] = proof.steps
         self.error_estimates[rows], self.norm_drifts[rows] = proof.error_estimate, proof.norm_drift
         for name, drift in proof.drift.items():
@@ -146,13 +123,12 @@ def watched_axis(scene: Scene, nominal: Trajectory) -> tuple[Array, str]:
     """Return the direction fixed in the body (3,) that figures show, and its name."""
     if scene.held and (c := weight(scene.torque)).any():
         return c / np.linalg.norm(c), "the line from the fixed point to the centre of mass"
+    moments = nominal.inertia.principal_moments
     if scene.kind == "satellite":
-        moments = nominal.inertia.principal_moments
         k = int(np.argmin(moments))
         frame: Array = nominal.inertia.principal_frame.to_matrix()
         return frame[:, k], f"the axis of the least moment (principal axis {k + 1})"
     number, axis = main_axis(nominal)
-    moments = nominal.inertia.principal_moments
     long = number - 1 == int(np.argmin(moments)) and np.sum(moments == moments.min()) == 1
     return axis, f"the long axis (principal axis {number})" if long else f"principal axis {number}"
 

@@ -95,12 +95,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"polhode {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
 
-    from polhode._cli import demo, examples, figure
+    from polhode._cli import examples, figure
 
     _add_scenes(commands)
     _add_formulas(commands)
-    for module in (figure, demo, examples):
-        module.add(commands)
+    figure.add(commands)
+    examples.add(commands)
     return parser
 
 
@@ -245,8 +245,7 @@ def _run_one(
     scene: Scene, targets: list[Path], pages: list[Path], options: argparse.Namespace
 ) -> dict[str, Any]:
     """Run one body, print its summary and write its files, all or none; return the summary."""
-    from polhode._report.summary import summary
-    from polhode._report.text import as_text
+    from polhode._report.summary import as_text, summary
     from polhode._support.files import write_atomically
 
     with progress(scene.path.name) as report:

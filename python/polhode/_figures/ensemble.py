@@ -10,7 +10,7 @@ from polhode._algebra.constructors import vector
 from polhode._figures.palette import BLACK, BLUE, ORANGE
 from polhode._figures.style import Axes, Figure, halo, new_figure, plotting, time_unit
 from polhode._report.ensemble.collect import EnsembleRecords, first_above, quantiles
-from polhode._report.text import time as time_text
+from polhode._report.summary import time as time_text
 from polhode._support.arrays import Array
 
 _WIDE, _NARROW = "#CFE3F1", "#86BBDD"

@@ -11,7 +11,7 @@ from polhode._figures.style import Axes, Figure, at_rest, drawing, dress, mark, 
 from polhode._mechanics.free_motion import FreeMotion
 from polhode._mechanics.smooth import rotor_at, samples
 from polhode._mechanics.trajectory import Trajectory
-from polhode._report.text import time as time_text
+from polhode._report.summary import time as time_text
 
 # Samples of a period from which the least and largest distance from L are found.
 _POINTS = 4097

@@ -9,7 +9,7 @@ from polhode._figures.palette import AXES, BLACK, BLUE, GREEN, ORANGE, PLANES, S
 from polhode._figures.style import Axes, Figure, drawing, dress, scaled_unit, time_unit
 from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import main_axis
-from polhode._report.text import QUANTITIES
+from polhode._report.summary import QUANTITIES
 from polhode._support.arrays import Array
 
 # More turns than this would fill a figure as a solid block.

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from polhode._figures.camera import angles_of
+from polhode._figures.film import scene_figure
 from polhode._figures.herpolhode import herpolhode_figure
 from polhode._figures.over_time import drift_figure, motion_figure
 from polhode._figures.phase_portrait import phase_figure
-from polhode._figures.scene import scene_figure
 from polhode._figures.spheres import axis_figure, path_figure, polhode_figure
 from polhode._figures.style import Figure, as_png, encoded, require_times
 from polhode._figures.tilt import angle_figure, locus_figure, satellite_figure, top_figure

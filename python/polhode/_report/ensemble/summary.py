@@ -9,8 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polhode._report.ensemble.collect import ENDS, LEVELS, PERIODS, EnsembleRecords, first_above, quantiles
-from polhode._report.summary import body_of, torques_of
-from polhode._report.text import QUANTITIES, Row, body_rows, law_rows, number, page, time
+from polhode._report.summary import (
+    QUANTITIES,
+    Row,
+    body_of,
+    body_rows,
+    law_rows,
+    number,
+    page,
+    time,
+    torques_of,
+)
 from polhode._support.arrays import Array
 from polhode._support.memory import size
 

@@ -34,6 +34,7 @@ def add(commands: Any) -> None:
         "scene", metavar="SCENE.toml", nargs="?", help="the scene file, except for 1, 2 and 3"
     )
     _add_output(figure, "a figure", "FILE.svg, FILE.pdf or FILE.png")
+    _add_view(figure)
     figure.add_argument("--time", metavar="T", type=float, help="time of the figure in s, default the last")
 
     film = add_command(
@@ -51,11 +52,14 @@ def add(commands: Any) -> None:
     film.add_argument(
         "--size", metavar="WxH", type=_size, help="size in pixels, default 1280x720, for a GIF 640x360"
     )
+    _add_view(film)
 
 
 def _add_output(parser: argparse.ArgumentParser, what: str, names: str) -> None:
-    """Add the options of the file and of the camera."""
     parser.add_argument("-o", "--output", metavar="FILE", type=file_name(what), required=True, help=names)
+
+
+def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--view", metavar="A,E", type=_view, help="camera azimuth and elevation in degrees")
 
 

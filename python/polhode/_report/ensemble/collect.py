@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +16,6 @@ from polhode._mechanics.trajectory import Trajectory
 from polhode._report.describe import main_axis, orbit_of, weight
 from polhode._scene.scene import Scene
 from polhode._support.arrays import Array
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -149,7 +146,7 @@ def _angle(a: Any, b: Any) -> Array:
     return np.where((a != 0).any(axis=-1) & (b != 0).any(axis=-1), angle, np.nan)
 
 
-def quantiles(values: NDArray[Any]) -> Array:
+def quantiles(values: Any) -> Array:
     """Return the quantiles (5, ...) of values (bodies, ...) at `LEVELS`.
 
     NaN, such as of failed bodies, is ignored; quantiles of nothing else are NaN.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +22,6 @@ from polhode._report.summary import (
 )
 from polhode._support.arrays import Array
 from polhode._support.memory import size
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 # Angles in rad from the nominal attitude up to which it predicts the others.
 _HORIZONS = (np.radians(10), np.radians(90))
@@ -78,7 +75,7 @@ def summary(records: EnsembleRecords) -> dict[str, Any]:
     }
 
 
-def _of_bodies(values: NDArray[Any]) -> list[float] | None:
+def _of_bodies(values: Any) -> list[float] | None:
     """Return the quantiles over bodies; None if no body has a number."""
     found = quantiles(values)
     return found.tolist() if np.isfinite(found).all() else None

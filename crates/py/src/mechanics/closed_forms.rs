@@ -65,7 +65,7 @@ fn states<'py>(
 ) -> States<'py> {
     let times = numbers(times)?;
     check_times(times)?;
-    check_horizons(times, horizons).map_err(bad)?;
+    check_horizons(0.0, times, horizons).map_err(bad)?;
     filled(py, times.len(), PIECE, |rows, rotors, omegas| fill(&times[rows], rotors, omegas))
 }
 

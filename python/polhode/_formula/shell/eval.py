@@ -11,6 +11,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from polhode._formula.agreement import Agreement
 from polhode._formula.shell.session import Answer, LineError, Session, text_of, without_comment
+from polhode._support.files import UnreadableError
 
 OK, FALSE, BAD_INPUT = 0, 1, 3
 
@@ -27,10 +28,6 @@ class Line(NamedTuple):
     text: str
     mistake: LineError | None = None
     assigns: bool = False
-
-
-class UnreadableError(Exception):
-    """A file cannot be read."""
 
 
 def run(options: argparse.Namespace) -> int:

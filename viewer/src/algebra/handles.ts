@@ -1,4 +1,5 @@
 import { type Camera, Plane, Raycaster, Vector2, Vector3 } from "three";
+import { onScreen } from "../stage/labels.ts";
 import { AXES } from "../stage/rotor.ts";
 import type { Triple } from "../core/core.ts";
 import type { Drawable } from "./drawables.ts";
@@ -45,12 +46,11 @@ export class Handles {
     });
   }
 
-  place(camera: Camera, width: number, height: number): void {
+  place(camera: Camera, size: Vector2): void {
     this.camera = camera;
-    this.size.set(width, height);
+    this.size.copy(size);
     for (const { button, item } of this.buttons) {
-      const at = this.tip(item).project(camera);
-      const [x, y] = [((1 + at.x) * width) / 2, ((1 - at.y) * height) / 2];
+      const { x, y } = onScreen(this.tip(item), camera, size.x, size.y);
       button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     }
   }

@@ -16,7 +16,7 @@ export function Picture({ model, palette }: { model: Model; palette: ReadonlySig
       const stage = new Stage(place.current!, model, palette);
       const before = model.fitted.peek();
       const unsubscribe = effect(() => {
-        if (model.fitted.value > before) stage.fit();
+        if (model.fitted.value > before) stage.home();
       });
       return () => {
         unsubscribe();

@@ -2,10 +2,9 @@ import { Group, Quaternion, Vector3 } from "three";
 import { ROW, State } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import { span } from "../model/model.ts";
-import type { Palette } from "../palette.ts";
 import { type Figure, REACH } from "./figure.ts";
-import type { Instant, Part } from "./part.ts";
-import { Ribbon, type Screen } from "./ribbon.ts";
+import type { Instant, Part, Setting } from "./part.ts";
+import { Ribbon } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
 import { rowsOf, thinned } from "./thinned.ts";
 
@@ -17,7 +16,7 @@ const MOST_TURNS = 60;
 /** Opacity of the future path relative to the past. */
 const AHEAD = 0.22;
 /** Scale of the polhode, so that it is drawn over the ellipsoid on which it lies. */
-export const LIFTED = 1.004;
+const LIFTED = 1.004;
 
 /**
  * The path of a body axis in space, and those of ω: the herpolhode in space, the polhode in the body. They are computed
@@ -30,20 +29,27 @@ export class Paths implements Part {
   private readonly trace: Ribbon;
   private readonly herpolhode: Ribbon;
   private readonly polhode: Ribbon;
-  private figure: Figure | null = null;
+  private readonly figure: Figure;
   /** Duration of a tail in s, that of the paths of ω, and the middle of the stretch. */
-  private tail = 1;
-  private turns = 1;
+  private readonly tail: number;
+  private readonly turns: number;
   private middle = Number.NaN;
-  private closed = false;
+  private readonly closed: boolean;
   private asked = 0;
 
-  constructor(screen: Screen) {
-    this.trace = new Ribbon(screen, { width: 2.2, behind: 0.3 });
-    this.herpolhode = new Ribbon(screen, { width: 2, behind: 0.35 });
-    this.polhode = new Ribbon(screen, { width: 2.4, behind: 0.35 });
+  constructor({ figure, palette, screen }: Setting) {
+    this.trace = new Ribbon(screen, palette.trace, { width: 2.2, behind: 0.3 });
+    this.herpolhode = new Ribbon(screen, palette.herpolhode, { width: 2, behind: 0.35 });
+    this.polhode = new Ribbon(screen, palette.polhode, { width: 2.4, behind: 0.35 });
     this.inSpace.add(this.trace.object, this.herpolhode.object);
     this.inBody.add(this.polhode.object);
+    this.figure = figure;
+    this.tail = tailOf(figure);
+    // ω repeats the same curves.
+    this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
+    const period = figure.about.free?.period ?? null;
+    this.closed = period !== null && within(figure, period);
+    if (this.closed) this.polhode.set(polhodeOf(figure, period!), { closed: true });
   }
 
   /** Number of states of the visible paths. */
@@ -53,47 +59,22 @@ export class Paths implements Part {
     return open * this.asked + (this.closed && seen(this.polhode) ? this.polhode.count : 0);
   }
 
-  follow(figure: Figure): void {
-    this.figure = figure;
-    this.middle = Number.NaN;
-    this.tail = tailOf(figure);
-    // ω repeats the same curves.
-    this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
-    const period = figure.about.free?.period ?? null;
-    this.closed = period !== null && within(figure, period);
-    if (this.closed) this.polhode.set(polhodeOf(figure, period!), { closed: true });
-  }
-
-  paint(palette: Palette): void {
-    this.trace.paint(palette.trace);
-    this.herpolhode.paint(palette.herpolhode);
-    this.polhode.paint(palette.polhode);
-  }
-
   update({ time }: Instant, shown: Shown): void {
     this.trace.object.visible = shown.trace;
     this.herpolhode.object.visible = shown.herpolhode;
     this.polhode.object.visible = shown.polhode;
-    const all = this.closed
-      ? [shown.trace, shown.herpolhode]
-      : [shown.trace, shown.herpolhode, shown.polhode];
-    if (!this.figure || !all.includes(true)) return;
+    if (!(shown.trace || shown.herpolhode || (shown.polhode && !this.closed))) return;
     // The stretch depends on the time alone, so that equal times give equal pictures.
     const middle = this.tail * Math.round(time / this.tail);
-    if (middle !== this.middle) this.ask(this.figure, middle);
+    if (middle !== this.middle) this.ask(middle);
     const since = time - this.middle;
     this.trace.fade(since / this.tail, AHEAD);
     this.herpolhode.fade(since / this.turns, AHEAD);
     if (!this.closed) this.polhode.fade(since / this.turns, AHEAD);
   }
 
-  dispose(): void {
-    this.trace.dispose();
-    this.herpolhode.dispose();
-    this.polhode.dispose();
-  }
-
-  private ask(figure: Figure, time: number): void {
+  private ask(time: number): void {
+    const { figure } = this;
     // Times are multiples of one step, so that successive stretches have the same points.
     const [first, last] = span(figure.about);
     const step = Math.min(3 * this.tail, last - first) / POINTS;
@@ -175,12 +156,10 @@ function traced(rows: Float64Array, axis: Vector3): Float64Array {
 }
 
 function taken(rows: Float64Array, at: number, scale: number): Float64Array {
-  const count = rows.length / ROW;
-  const points = new Float64Array(3 * count);
-  for (let k = 0; k < count; k++) {
-    for (let i = 0; i < 3; i++) points[3 * k + i] = scale * rows[ROW * k + at + i]!;
-  }
-  return points;
+  return Float64Array.from(
+    { length: (3 * rows.length) / ROW },
+    (_, k) => scale * rows[ROW * Math.floor(k / 3) + at + (k % 3)]!,
+  );
 }
 
 /** A closed polhode. The speed of ω varies greatly near a saddle, so intervals are halved until points are close. */

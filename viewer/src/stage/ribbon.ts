@@ -1,5 +1,6 @@
 import {
   Color,
+  type ColorRepresentation,
   DoubleSide,
   GreaterDepth,
   Group,
@@ -76,8 +77,6 @@ const FRAGMENT = /* glsl */ `
 
 /** Values per vertex: the point, the side (−1 or 1) and the parameter. */
 const STRIDE = 5;
-/** Maximum number of points of hidden parts of a line. */
-const COARSE = 600;
 
 export interface RibbonStyle {
   /** CSS pixels. */
@@ -99,17 +98,14 @@ export class Ribbon {
   readonly object = new Group();
   /** Number of points. */
   count = 0;
-  private readonly color = { value: new Color() };
   private readonly onto = { value: new Matrix4() };
   private readonly now = { value: 0 };
   private readonly ahead = { value: 0 };
   private readonly fades = { value: false };
-  private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[] = [];
-  private parameters: ArrayLike<number> = [];
-  /** The step of each strip, in points. */
-  private steps: number[] = [];
+  private readonly meshes: Mesh[] = [];
 
-  constructor(screen: Screen, style: RibbonStyle) {
+  constructor(screen: Screen, colour: ColorRepresentation, style: RibbonStyle) {
+    const color = { value: new Color(colour) };
     const opacity = style.opacity ?? 1;
     const passes: [number, typeof LessEqualDepth | typeof GreaterDepth][] = [[opacity, LessEqualDepth]];
     if (style.behind) passes.push([opacity * style.behind, GreaterDepth]);
@@ -121,7 +117,7 @@ export class Ribbon {
           onto: this.onto,
           screen,
           width: { value: style.width },
-          color: this.color,
+          color,
           opacity: { value: seen },
           now: this.now,
           ahead: this.ahead,
@@ -176,51 +172,30 @@ export class Ribbon {
       }
     }
     this.count = count;
-    this.parameters = options.parameters ?? [];
     this.fades.value = false;
-    const vertices = new InterleavedBuffer(data, STRIDE);
-    this.steps = this.meshes.map((_, pass) => (pass === 0 ? 1 : Math.ceil(count / COARSE)));
-    this.meshes.forEach((mesh, pass) => {
+    const geometry = count > 1 ? strip(new InterleavedBuffer(data, STRIDE), count) : new BufferGeometry();
+    for (const mesh of this.meshes) {
       mesh.geometry.dispose();
+      mesh.geometry = geometry;
       mesh.visible = count > 1;
-      mesh.geometry = mesh.visible ? strip(vertices, count, this.steps[pass]!) : new BufferGeometry();
-    });
+    }
   }
 
-  paint(color: string | Color): void {
-    this.color.value.set(color);
-  }
-
-  /** Sets the increasing parameter at which the line is most opaque; only visible parts are drawn. */
+  /** Sets the parameter at which the line is most opaque. */
   fade(now: number, ahead: number): void {
     this.fades.value = true;
     this.now.value = now;
     this.ahead.value = ahead;
-    const first = Math.max(firstAfter(this.parameters, now - 1) - 1, 0);
-    const last = Math.min(firstAfter(this.parameters, now + 1), this.count - 1);
-    this.meshes.forEach((mesh, pass) => {
-      const step = this.steps[pass]!;
-      const from = Math.floor(first / step);
-      mesh.geometry.setDrawRange(6 * from, 6 * Math.max(Math.ceil(last / step) - from, 0));
-    });
-  }
-
-  dispose(): void {
-    for (const mesh of this.meshes) {
-      mesh.geometry.dispose();
-      mesh.material.dispose();
-    }
   }
 }
 
-/** A strip through every `step`-th point. Neighbours are in the same buffer, two vertices before and after. */
-function strip(vertices: InterleavedBuffer, count: number, step: number): BufferGeometry {
+/** A strip of triangles. The neighbours of a point are in the same buffer, two vertices before and after. */
+function strip(vertices: InterleavedBuffer, count: number): BufferGeometry {
   const geometry = new BufferGeometry();
-  const pieces = Math.ceil((count - 1) / step);
-  const index = new Uint32Array(6 * pieces);
-  for (let k = 0; k < pieces; k++) {
-    const [a, b] = [2 * k * step, 2 * Math.min((k + 1) * step, count - 1)];
-    index.set([a, a + 1, b, b, a + 1, b + 1], 6 * k);
+  const index = new Uint32Array(6 * (count - 1));
+  for (let k = 0; k < count - 1; k++) {
+    const a = 2 * k;
+    index.set([a, a + 1, a + 2, a + 2, a + 1, a + 3], 6 * k);
   }
   geometry.setAttribute("before", new InterleavedBufferAttribute(vertices, 3, 0));
   geometry.setAttribute("position", new InterleavedBufferAttribute(vertices, 3, 2 * STRIDE));
@@ -230,15 +205,4 @@ function strip(vertices: InterleavedBuffer, count: number, step: number): Buffer
   // Needed for the drawing order only; computing it would read beyond the end of the buffer.
   geometry.boundingSphere = new Sphere();
   return geometry;
-}
-
-/** The first index at which increasing numbers exceed a bound. */
-function firstAfter(numbers: ArrayLike<number>, bound: number): number {
-  let [low, high] = [0, numbers.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (numbers[middle]! > bound) high = middle;
-    else low = middle + 1;
-  }
-  return low;
 }

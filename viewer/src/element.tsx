@@ -24,7 +24,8 @@ const PAPER: Palette = { ...LIGHT, background: "#ffffff" };
  * child `<script type="application/json">` or at the address in `src`; without one, the first preset.
  *
  * Attributes: `theme` is auto, light or dark; `compact` leaves out panels where space is small; `bare` draws nothing
- * but what `capture` returns. The attributes `data-…` have the state that is shown, with all digits.
+ * but what `capture` returns. It dispatches `connected` and `disconnected`: notebooks remove cells that are scrolled
+ * away, and restore them. The attributes `data-…` have the state that is shown, with all digits.
  */
 export class PolhodeViewer extends HTMLElement {
   static readonly observedAttributes = ["theme", "compact", "src"];
@@ -75,10 +76,12 @@ export class PolhodeViewer extends HTMLElement {
       Reflect.deleteProperty(this, "document");
       this.given = early;
     }
-    if (this.model) return;
-    this.dataset["state"] = "loading";
-    render(<p class="notice">Loading…</p>, this.place);
-    void this.start();
+    if (!this.model) {
+      this.dataset["state"] = "loading";
+      render(<p class="notice">Loading…</p>, this.place);
+      void this.start();
+    }
+    this.dispatchEvent(new Event("connected"));
   }
 
   disconnectedCallback(): void {
@@ -86,6 +89,7 @@ export class PolhodeViewer extends HTMLElement {
     queueMicrotask(() => {
       if (!this.isConnected) this.stop();
     });
+    this.dispatchEvent(new Event("disconnected"));
   }
 
   attributeChangedCallback(name: string, _old: string | null, value: string | null): void {

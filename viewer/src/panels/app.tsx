@@ -1,4 +1,4 @@
-import { type ReadonlySignal, useComputed, useSignal } from "@preact/signals";
+import { type ReadonlySignal, useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import { AlgebraPage } from "../algebra/page.tsx";
@@ -93,7 +93,10 @@ function MotionPage(props: Props & { controls: Controls; folds: Folds }) {
             ),
         )}
       </aside>
-      <Announcement model={model} />
+      {/* Announces to screen readers when the regime changes. */}
+      <p class="hidden" aria-live="polite">
+        {regimeOf(model.about.value)}
+      </p>
     </main>
   );
 }
@@ -122,15 +125,5 @@ function Panel(props: {
       </summary>
       {open.value && <div class="inside">{props.children}</div>}
     </details>
-  );
-}
-
-/** Announces to screen readers when the regime changes. */
-function Announcement({ model }: { model: Model }) {
-  const regime = useComputed(() => regimeOf(model.about.value));
-  return (
-    <p class="hidden" aria-live="polite">
-      {regime}
-    </p>
   );
 }

@@ -1,5 +1,6 @@
 import { useRef } from "preact/hooks";
 import { IconButton } from "../inputs/button.tsx";
+import { Choices } from "../inputs/fields.tsx";
 import type { Model } from "../model/model.ts";
 import { openPreset, PRESETS } from "../presets/index.ts";
 import { Help } from "./help.tsx";
@@ -57,25 +58,18 @@ function Scenes({ model }: { model: Model }) {
       <label for="preset" class="hidden">
         Scene
       </label>
-      <select
+      <Choices
         id="preset"
-        value={chosen?.name ?? ""}
-        onChange={(event) => {
-          const preset = PRESETS.find(({ name }) => name === event.currentTarget.value);
-          if (preset) openPreset(model, preset);
-        }}
-      >
-        {!chosen && (
-          <option value="" disabled>
-            Scenes…
-          </option>
-        )}
-        {PRESETS.map(({ name, title }) => (
-          <option value={name} key={name}>
-            {title}
-          </option>
-        ))}
-      </select>
+        value={chosen?.name ?? null}
+        options={PRESETS.map(({ name, title }) => [name, title])}
+        other="Scenes…"
+        onChange={(name) =>
+          openPreset(
+            model,
+            PRESETS.find((preset) => preset.name === name)!,
+          )
+        }
+      />
       <IconButton
         id="open"
         class="quiet"

@@ -1,6 +1,6 @@
 import { effect, type ReadonlySignal, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { State } from "../core/core.ts";
+import { sizeAt, State } from "../core/core.ts";
 import { typed } from "../format/numbers.ts";
 import { runClock } from "../model/clock.ts";
 import { type Model, words } from "../model/model.ts";
@@ -69,7 +69,7 @@ const FRAME_RATE = 60;
 function Strobe({ model }: { model: Model }) {
   const row = model.row.value;
   if (!row || !model.playing.value) return null;
-  const rate = Math.hypot(...row.subarray(State.omegaSpace, State.omegaSpace + 3));
+  const rate = sizeAt(row, State.omegaSpace);
   const faithful = (Math.PI / 2) * (FRAME_RATE / rate);
   if (!(Math.abs(model.speed.value) > faithful)) return null;
   // One digit, rounded down.

@@ -1,4 +1,4 @@
-import { type Camera, type Matrix4, type Vector2, Vector3 } from "three";
+import { Box2, type Camera, type Matrix4, Vector2, Vector3 } from "three";
 
 /** CSS pixels. */
 const HEIGHT = 19;
@@ -35,13 +35,6 @@ export interface Point {
   y: number;
 }
 
-interface Box {
-  left: number;
-  top: number;
-  right: number;
-  bottom: number;
-}
-
 /** A piece of a label: its distance from the left end of the label, and its baseline. */
 interface Piece {
   text: string;
@@ -57,7 +50,7 @@ export class Labels {
   background = "";
   private readonly context = this.element.getContext("2d")!;
   private labels: Label[] = [];
-  private placed: { label: Label; pieces: Piece[]; box: Box }[] = [];
+  private placed: { label: Label; pieces: Piece[]; box: Box2 }[] = [];
 
   constructor() {
     // The description of the canvas and the panels have the same content.
@@ -86,6 +79,13 @@ export class Labels {
     this.labels = [];
   }
 
+  /** Adapts to a size in CSS pixels. */
+  resize(width: number, height: number, ratio: number): void {
+    this.element.width = width * ratio;
+    this.element.height = height * ratio;
+    this.context.scale(ratio, ratio);
+  }
+
   /** Places the labels on a canvas of a size in CSS pixels, and draws them. */
   place(camera: Camera, space: Matrix4, size: Vector2, shown: boolean): void {
     const [width, height] = [size.x, size.y];
@@ -99,10 +99,7 @@ export class Labels {
       const box = free(around(point, centre, wide, label.side), taken, width, height);
       if (box) this.placed.push({ label, pieces, box });
     }
-    const ratio = Math.min(devicePixelRatio, 2);
-    this.element.width = width * ratio;
-    this.element.height = height * ratio;
-    this.context.scale(ratio, ratio);
+    this.context.clearRect(0, 0, width, height);
     this.draw(this.context);
   }
 
@@ -113,8 +110,8 @@ export class Labels {
       context.fillStyle = label.colour;
       for (const { text, font, x, y } of pieces) {
         context.font = font;
-        context.strokeText(text, box.left + x, box.top + y);
-        context.fillText(text, box.left + x, box.top + y);
+        context.strokeText(text, box.min.x + x, box.min.y + y);
+        context.fillText(text, box.min.x + x, box.min.y + y);
       }
     }
   }
@@ -141,10 +138,8 @@ export function onScreen(point: Vector3, camera: Camera, width: number, height: 
   return { x: ((1 + point.x) * width) / 2, y: ((1 - point.y) * height) / 2 };
 }
 
-/**
- * The box of a label beside a point: away from the centre until the point is outside, or on the given side.
- */
-function around(point: Point, centre: Point, width: number, side: Point | null): Box {
+/** The box of a label beside a point: away from the centre until the point is outside, or on the given side. */
+function around(point: Point, centre: Point, width: number, side: Point | null): Box2 {
   let [dx, dy] = [point.x - centre.x, point.y - centre.y || -1e-3];
   let away = Math.min((width / 2 + GAP) / Math.abs(dx), (HEIGHT / 2 + GAP) / Math.abs(dy));
   if (side) {
@@ -152,26 +147,15 @@ function around(point: Point, centre: Point, width: number, side: Point | null):
     [dx, dy] = [side.x / length, -side.y / length];
     away = (width / 2) * Math.abs(dx) + (HEIGHT / 2) * Math.abs(dy) + GAP;
   }
-  const [x, y] = [point.x + dx * away, point.y + dy * away];
-  return { left: x - width / 2, right: x + width / 2, top: y - HEIGHT / 2, bottom: y + HEIGHT / 2 };
+  const middle = new Vector2(point.x + dx * away, point.y + dy * away);
+  return new Box2().setFromCenterAndSize(middle, new Vector2(width, HEIGHT));
 }
 
-function free(box: Box, taken: Box[], width: number, height: number): Box | null {
-  const shift = Math.max(4 - box.left, Math.min(0, width - 4 - box.right));
-  for (const place of PLACES) {
-    const down = place * HEIGHT;
-    const moved = {
-      left: box.left + shift,
-      right: box.right + shift,
-      top: box.top + down,
-      bottom: box.bottom + down,
-    };
-    if (moved.top < 0 || moved.bottom > height) continue;
-    if (!taken.some((other) => overlap(moved, other))) return moved;
-  }
-  return null;
-}
-
-function overlap(a: Box, b: Box): boolean {
-  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+/** The box, moved into the picture and beside those that are taken; null without room. */
+function free(box: Box2, taken: Box2[], width: number, height: number): Box2 | null {
+  const shift = Math.max(4 - box.min.x, Math.min(0, width - 4 - box.max.x));
+  const moved = PLACES.map((place) => box.clone().translate(new Vector2(shift, place * HEIGHT)));
+  const room = (at: Box2) =>
+    at.min.y >= 0 && at.max.y <= height && !taken.some((other) => at.intersectsBox(other));
+  return moved.find(room) ?? null;
 }

@@ -6,7 +6,6 @@ import { type Figure, REACH } from "./figure.ts";
 import type { Instant, Part, Setting } from "./part.ts";
 import { Ribbon } from "./ribbon.ts";
 import { quaternion, vector } from "./rotor.ts";
-import { rowsOf, thinned } from "./thinned.ts";
 
 /** Maximum number of points of a path. */
 const POINTS = 10_000;
@@ -15,8 +14,21 @@ const TURNS = 8;
 const MOST_TURNS = 60;
 /** Opacity of the future path relative to the past. */
 const AHEAD = 0.22;
+/** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
+const NEAR = 1e-3;
+/** The longest piece of a line, so that fading along it is even. */
+const LONGEST = 0.15;
 /** Scale of the polhode, so that it is drawn over the ellipsoid on which it lies. */
 const LIFTED = 1.004;
+
+interface Path {
+  name: "trace" | "herpolhode" | "polhode";
+  ribbon: Ribbon;
+  /** How long it is seen, s. */
+  tail: number;
+  /** Its points from rows of states. */
+  points: (rows: Float64Array) => Float64Array;
+}
 
 /**
  * The path of a body axis in space, and those of ω: the herpolhode in space, the polhode in the body. They are computed
@@ -26,51 +38,53 @@ const LIFTED = 1.004;
 export class Paths implements Part {
   readonly inSpace = new Group();
   readonly inBody = new Group();
-  private readonly trace: Ribbon;
-  private readonly herpolhode: Ribbon;
-  private readonly polhode: Ribbon;
+  /** Those that are drawn by stretches, and the polhode if it is closed. */
+  private readonly open: Path[];
+  private readonly closed: Path[] = [];
   private readonly figure: Figure;
-  /** Duration of a tail in s, that of the paths of ω, and the middle of the stretch. */
+  /** Duration of a tail in s, and the middle of the stretch. */
   private readonly tail: number;
-  private readonly turns: number;
   private middle = Number.NaN;
-  private readonly closed: boolean;
   private asked = 0;
 
   constructor({ figure, palette, screen }: Setting) {
-    this.trace = new Ribbon(screen, palette.trace, { width: 2.2, behind: 0.3 });
-    this.herpolhode = new Ribbon(screen, palette.herpolhode, { width: 2, behind: 0.35 });
-    this.polhode = new Ribbon(screen, palette.polhode, { width: 2.4, behind: 0.35 });
-    this.inSpace.add(this.trace.object, this.herpolhode.object);
-    this.inBody.add(this.polhode.object);
     this.figure = figure;
     this.tail = tailOf(figure);
     // ω repeats the same curves.
-    this.turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
+    const turns = Math.min(this.tail, (2 * TURNS * Math.PI) / figure.omega);
+    const path = (name: Path["name"], width: number, tail: number, points: Path["points"]): Path => {
+      const ribbon = new Ribbon(screen, palette[name], { width, behind: name === "trace" ? 0.3 : 0.35 });
+      (name === "polhode" ? this.inBody : this.inSpace).add(ribbon.object);
+      return { name, ribbon, tail, points };
+    };
+    const polhode = path("polhode", 2.4, turns, (rows) => taken(rows, State.omegaBody, LIFTED * figure.rate));
+    this.open = [
+      path("trace", 2.2, this.tail, (rows) => traced(rows, figure.traced)),
+      path("herpolhode", 2, turns, (rows) => taken(rows, State.omegaSpace, figure.rate)),
+    ];
     const period = figure.about.free?.period ?? null;
-    this.closed = period !== null && within(figure, period);
-    if (this.closed) this.polhode.set(polhodeOf(figure, period!), { closed: true });
+    if (period !== null && within(figure, period)) {
+      polhode.ribbon.set(polhodeOf(figure, period), { closed: true });
+      this.closed.push(polhode);
+    } else {
+      this.open.push(polhode);
+    }
   }
 
   /** Number of states of the visible paths. */
   get points(): number {
-    const seen = (path: Ribbon) => path.object.visible && path.count > 0;
-    const open = [this.trace, this.herpolhode, ...(this.closed ? [] : [this.polhode])].filter(seen).length;
-    return open * this.asked + (this.closed && seen(this.polhode) ? this.polhode.count : 0);
+    const seen = ({ ribbon }: Path) => ribbon.object.visible && ribbon.count > 0;
+    const states = this.closed.filter(seen).map(({ ribbon }) => ribbon.count);
+    return states.reduce((sum, count) => sum + count, this.open.filter(seen).length * this.asked);
   }
 
   update({ time }: Instant, shown: Shown): void {
-    this.trace.object.visible = shown.trace;
-    this.herpolhode.object.visible = shown.herpolhode;
-    this.polhode.object.visible = shown.polhode;
-    if (!(shown.trace || shown.herpolhode || (shown.polhode && !this.closed))) return;
+    for (const { name, ribbon } of [...this.open, ...this.closed]) ribbon.object.visible = shown[name];
+    if (!this.open.some(({ name }) => shown[name])) return;
     // The stretch depends on the time alone, so that equal times give equal pictures.
     const middle = this.tail * Math.round(time / this.tail);
     if (middle !== this.middle) this.ask(middle);
-    const since = time - this.middle;
-    this.trace.fade(since / this.tail, AHEAD);
-    this.herpolhode.fade(since / this.turns, AHEAD);
-    if (!this.closed) this.polhode.fade(since / this.turns, AHEAD);
+    for (const { ribbon, tail } of this.open) ribbon.fade((time - middle) / tail, AHEAD);
   }
 
   private ask(time: number): void {
@@ -86,14 +100,12 @@ export class Paths implements Part {
     const rows = figure.motion.states(times);
     this.middle = time;
     this.asked = times.length;
-    const draw = (path: Ribbon, points: Float64Array, tail: number) => {
+    for (const path of this.open) {
+      const points = path.points(rows);
       const kept = thinned(points);
-      const parameters = rowsOf(times, kept, 1).map((t) => (t - time) / tail);
-      path.set(rowsOf(points, kept, 3), { parameters });
-    };
-    draw(this.trace, traced(rows, figure.traced), this.tail);
-    draw(this.herpolhode, taken(rows, State.omegaSpace, figure.rate), this.turns);
-    if (!this.closed) draw(this.polhode, taken(rows, State.omegaBody, LIFTED * figure.rate), this.turns);
+      const parameters = rowsOf(times, kept, 1).map((t) => (t - time) / path.tail);
+      path.ribbon.set(rowsOf(points, kept, 3), { parameters });
+    }
   }
 }
 
@@ -181,4 +193,40 @@ function polhodeOf(figure: Figure, period: number): Float64Array {
     points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
   }
   return points;
+}
+
+/** Indices of the points (n × 3) that a smooth line needs: few where it is nearly straight. */
+function thinned(points: ArrayLike<number>): Uint32Array {
+  const count = points.length / 3;
+  const direction = (k: number) =>
+    vector(points, 3 * k + 3)
+      .sub(vector(points, 3 * k))
+      .normalize();
+  const kept: number[] = [];
+  // The last kept point, and the direction of the path there.
+  const last = new Vector3();
+  let way = new Vector3();
+  for (let k = 0; k < count; k++) {
+    const here = vector(points, 3 * k);
+    if (k > 0 && k < count - 1) {
+      const on = direction(k);
+      if (kept.length === 1) way = direction(0);
+      if (on.length() === 0) continue;
+      const chord = here.distanceTo(last);
+      // The height of an arc is 1/8 of its chord times its turn.
+      if (chord < LONGEST && chord * on.distanceTo(way) < 8 * NEAR) continue;
+      way = on;
+    }
+    kept.push(k);
+    last.copy(here);
+  }
+  return Uint32Array.from(kept);
+}
+
+/** The rows (n × `width`) with these indices. */
+function rowsOf(numbers: ArrayLike<number>, indices: Uint32Array, width: number): Float64Array {
+  return Float64Array.from(
+    { length: indices.length * width },
+    (_, k) => numbers[width * indices[Math.floor(k / width)]! + (k % width)]!,
+  );
 }

@@ -155,6 +155,7 @@ export abstract class Viewport {
   /** Adapts to a size in CSS pixels. */
   protected fill(width: number, height: number, ratio: number): void {
     this.renderer.setSize(Math.round(width * ratio), Math.round(height * ratio), false);
+    this.labels.resize(width, height, ratio);
     this.screen.value.set(width, height);
     this.viewpoint.resize(width, height);
   }

@@ -66,7 +66,7 @@ export class PolhodeViewer extends HTMLElement {
 
   set document(given: PageDocument | null) {
     this.given = given;
-    if (this.model && given) void this.show(this.model, given);
+    if (given) void this.model?.show(given).catch(this.report);
   }
 
   connectedCallback(): void {
@@ -96,7 +96,9 @@ export class PolhodeViewer extends HTMLElement {
     if (!this.model) return;
     if (name === "theme") this.model.look({ theme: themeOf(value) });
     else if (name === "src")
-      void this.source().then((given) => given && this.show(this.model!, given), this.report);
+      void this.source()
+        .then((given) => given && this.model?.show(given))
+        .catch(this.report);
     else this.draw(this.model);
   }
 
@@ -106,7 +108,7 @@ export class PolhodeViewer extends HTMLElement {
       if (!this.isConnected || this.model) return;
       this.model = model;
       if (this.hasAttribute("theme")) model.look({ theme: themeOf(this.getAttribute("theme")) });
-      await this.first(model);
+      await this.first(model).catch(this.report);
       // The element may have been removed in the meantime.
       if (this.model !== model) return;
       this.watch(model);
@@ -117,26 +119,14 @@ export class PolhodeViewer extends HTMLElement {
     }
   }
 
-  /** Shows the given document, by default playing; the page reports its errors. */
+  /** Shows the given document, by default playing. */
   private async first(model: Model): Promise<void> {
-    try {
-      const given = this.given ?? (await this.child()) ?? (await this.source());
-      this.given ??= given;
-      if (given) await model.show(given);
-      if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
-      else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
-        model.look({ playing: mayAutoplay() });
-    } catch (error) {
-      model.problem.value = words(error);
-    }
-  }
-
-  private async show(model: Model, given: PageDocument): Promise<void> {
-    try {
-      await model.show(given);
-    } catch (error) {
-      model.problem.value = words(error);
-    }
+    const given = this.given ?? (await this.child()) ?? (await this.source());
+    this.given ??= given;
+    if (given) await model.show(given);
+    if (!given?.scene && !given?.recorded) openPreset(model, PRESETS[0]!);
+    else if (given.view?.playing === undefined && !this.hasAttribute("compact"))
+      model.look({ playing: mayAutoplay() });
   }
 
   /** The document inside the element, after it was parsed. */

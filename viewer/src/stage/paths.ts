@@ -12,8 +12,6 @@ const POINTS = 10_000;
 /** Duration of a tail, in turns of the body. */
 const TURNS = 8;
 const MOST_TURNS = 60;
-/** Opacity of the future path relative to the past. */
-const AHEAD = 0.22;
 /** Tolerance of a line in drawn units: a fifth of a pixel in the default view. */
 const NEAR = 1e-3;
 /** The longest piece of a line, so that fading along it is even. */
@@ -84,7 +82,7 @@ export class Paths implements Part {
     // The stretch depends on the time alone, so that equal times give equal pictures.
     const middle = this.tail * Math.round(time / this.tail);
     if (middle !== this.middle) this.ask(middle);
-    for (const { ribbon, tail } of this.open) ribbon.fade((time - middle) / tail, AHEAD);
+    for (const { ribbon, tail } of this.open) ribbon.fade((time - middle) / tail);
   }
 
   private ask(time: number): void {

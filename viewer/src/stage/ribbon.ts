@@ -9,7 +9,6 @@ import {
   BufferAttribute,
   BufferGeometry,
   LessEqualDepth,
-  Matrix4,
   Mesh,
   ShaderMaterial,
   Sphere,
@@ -25,7 +24,6 @@ const VERTEX = /* glsl */ `
   attribute vec3 before;
   attribute vec3 after;
   attribute vec2 along;
-  uniform mat4 onto;
   uniform vec2 screen;
   uniform float width;
   varying float parameter;
@@ -35,6 +33,7 @@ const VERTEX = /* glsl */ `
   }
 
   void main() {
+    mat4 onto = projectionMatrix * modelViewMatrix;
     vec4 here = onto * vec4(position, 1.0);
     vec4 from = onto * vec4(before, 1.0);
     vec4 to = onto * vec4(after, 1.0);
@@ -56,7 +55,6 @@ const FRAGMENT = /* glsl */ `
   uniform vec3 color;
   uniform float opacity;
   uniform float now;
-  uniform float ahead;
   uniform bool fades;
   uniform float dash;
   varying float parameter;
@@ -66,7 +64,7 @@ const FRAGMENT = /* glsl */ `
     if (fades) {
       float age = now - parameter;
       float left = clamp(1.0 - abs(age), 0.0, 1.0);
-      alpha *= (age >= 0.0 ? left : ahead) * left;
+      alpha *= (age >= 0.0 ? left : 0.22) * left;
     }
     if (dash > 0.0 && fract(parameter / dash) > 0.55) discard;
     if (alpha < 0.004) discard;
@@ -91,16 +89,14 @@ export interface RibbonStyle {
 
 /**
  * A line of constant width in pixels: one strip of triangles, joined at the bends, so that translucent lines have no
- * dark dots between segments. It can fade with a parameter along the line: from `now` back over one unit, and with the
- * opacity `ahead` forward over one.
+ * dark dots between segments. It can fade with a parameter along the line: from `now` back over one unit, and
+ * paler forward over one.
  */
 export class Ribbon {
   readonly object = new Group();
   /** Number of points. */
   count = 0;
-  private readonly onto = { value: new Matrix4() };
   private readonly now = { value: 0 };
-  private readonly ahead = { value: 0 };
   private readonly fades = { value: false };
   private readonly meshes: Mesh[] = [];
 
@@ -114,13 +110,11 @@ export class Ribbon {
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,
         uniforms: {
-          onto: this.onto,
           screen,
           width: { value: style.width },
           color,
           opacity: { value: seen },
           now: this.now,
-          ahead: this.ahead,
           fades: this.fades,
           dash: { value: style.dash ?? 0 },
         },
@@ -131,13 +125,6 @@ export class Ribbon {
       });
       const mesh = new Mesh(new BufferGeometry(), material);
       mesh.frustumCulled = false;
-      // One matrix product here instead of one per vertex.
-      mesh.onBeforeRender = (_, __, camera) => {
-        this.onto.value
-          .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
-          .multiply(mesh.matrixWorld);
-        material.uniformsNeedUpdate = true;
-      };
       mesh.renderOrder = style.order ?? 2;
       mesh.visible = false;
       this.meshes.push(mesh);
@@ -147,29 +134,22 @@ export class Ribbon {
 
   /** Sets the points (n × 3) and their parameters, by default the length of the line up to them. */
   set(points: ArrayLike<number>, options: { parameters?: ArrayLike<number>; closed?: boolean } = {}): void {
-    const closed = options.closed ?? false;
-    const points3 = points.length / 3;
-    const count = points3 + (closed && points3 > 0 ? 1 : 0);
+    const { parameters, closed = false } = options;
+    const given = points.length / 3;
+    const count = given + (closed && given > 0 ? 1 : 0);
+    // An additional point at each end: the shader needs the neighbours of each point.
+    const point = (row: number): number =>
+      closed ? (row - 1 + given) % given : Math.min(Math.max(row - 1, 0), count - 1);
     const data = new Float32Array((count + 2) * 2 * STRIDE);
     let length = 0;
-    // An additional point at each end: the shader needs the neighbours of each point.
     for (let row = 0; row < count + 2; row++) {
-      const k = closed ? (row - 1 + points3) % points3 : Math.min(Math.max(row - 1, 0), count - 1);
-      const last = closed ? (k + points3 - 1) % points3 : Math.max(k - 1, 0);
+      const [k, last] = [point(row), point(row - 1)];
+      const [x, y, z] = [points[3 * k]!, points[3 * k + 1]!, points[3 * k + 2]!];
       if (row > 1) {
-        length += Math.hypot(
-          points[3 * k]! - points[3 * last]!,
-          points[3 * k + 1]! - points[3 * last + 1]!,
-          points[3 * k + 2]! - points[3 * last + 2]!,
-        );
+        length += Math.hypot(x - points[3 * last]!, y - points[3 * last + 1]!, z - points[3 * last + 2]!);
       }
-      const parameter = options.parameters ? options.parameters[k]! : length;
-      for (let side = 0; side < 2; side++) {
-        const at = (2 * row + side) * STRIDE;
-        for (let i = 0; i < 3; i++) data[at + i] = points[3 * k + i]!;
-        data[at + 3] = 2 * side - 1;
-        data[at + 4] = parameter;
-      }
+      const parameter = parameters ? parameters[k]! : length;
+      data.set([x, y, z, -1, parameter, x, y, z, 1, parameter], 2 * STRIDE * row);
     }
     this.count = count;
     this.fades.value = false;
@@ -182,10 +162,9 @@ export class Ribbon {
   }
 
   /** Sets the parameter at which the line is most opaque. */
-  fade(now: number, ahead: number): void {
+  fade(now: number): void {
     this.fades.value = true;
     this.now.value = now;
-    this.ahead.value = ahead;
   }
 }
 

@@ -54,7 +54,10 @@ export class Stage extends Viewport {
     private readonly palette: ReadonlySignal<Palette>,
   ) {
     super(host);
+    let fitted = model.fitted.peek();
     this.watch(() => {
+      this.fitting ||= model.fitted.value > fitted;
+      fitted = model.fitted.value;
       for (const watched of [model.motion, model.row, model.shown, model.camera, model.playing, palette]) {
         void watched.value;
       }

@@ -48,8 +48,7 @@ export class Blades extends Shapes {
   /** The sector of a rotation from a direction on, with an arrowhead at the end of its arc. */
   sector(axis: Vector3, from: Vector3, angle: number): void {
     const points = arc(axis, from, angle);
-    const origin = new Vector3();
-    for (let k = 1; k < points.length; k++) this.face([origin, points[k - 1]!, points[k]!], 0.16);
+    this.face([new Vector3(), ...points], 0.16);
     // The arc ends at the base of the head.
     const short = arc(axis, from, Math.max(angle - (0.75 * HEAD) / from.length(), angle / 2));
     this.line(short, { width: 2.4, behind: 0.4 });

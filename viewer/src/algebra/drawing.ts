@@ -133,14 +133,9 @@ export class Drawing extends Viewport {
     const count = Math.min(Math.ceil(BALL / step), 8);
     const thin = { width: 1, opacity: 0.22, behind: 0.22 };
     for (let k = -count; k <= count; k++) {
-      for (const [along, to] of [
-        [0, 1],
-        [1, 0],
-      ] as const) {
-        const at = AXES[to].clone().multiplyScalar(k * step);
-        const half = AXES[along].clone().multiplyScalar(count * step);
-        shapes.line([at.clone().sub(half), at.clone().add(half)], thin);
-      }
+      const [at, half] = [k * step, count * step];
+      shapes.line([new Vector3(-half, at, 0), new Vector3(half, at, 0)], thin);
+      shapes.line([new Vector3(at, -half, 0), new Vector3(at, half, 0)], thin);
     }
     return shapes;
   }

@@ -17,7 +17,7 @@ export function Facts({ model }: { model: Model }) {
   const facts: Fact[] = [
     ["Regime", regime && [regime, circles], "regime"],
     ...about.laws.map(({ name, text }): Fact => {
-      const shown = about.heavy && HOLDING.has(name) ? `m g l = ${weight(about.heavy)}` : shortened(text);
+      const shown = about.heavy && HOLDING.has(name) ? `m g l = (${list(about.heavy)}) N m` : shortened(text);
       return [labelOf(name, model.core.laws), <code>{shown}</code>];
     }),
     ...(free ? freeFacts(free) : []),
@@ -53,11 +53,6 @@ export function labelOf(name: string, registry: readonly LawEntry[]): string {
     torque_space: "Torque, in space",
   };
   return registry.find((law) => law.name === name)?.label ?? others[name] ?? name;
-}
-
-/** The vector m g l, in N m. */
-function weight(heavy: Triple): string {
-  return `(${list(heavy)}) N m`;
 }
 
 /** Periods of a free body. */

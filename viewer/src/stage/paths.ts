@@ -1,4 +1,4 @@
-import { Group, Quaternion, Vector3 } from "three";
+import { Group, type Vector3 } from "three";
 import { ROW, State } from "../core/core.ts";
 import type { Shown } from "../document.ts";
 import { span } from "../model/model.ts";
@@ -25,7 +25,7 @@ interface Path {
   /** How long it is seen, s. */
   tail: number;
   /** Its points from rows of states. */
-  points: (rows: Float64Array) => Float64Array;
+  points: (rows: Float64Array) => Vector3[];
 }
 
 /**
@@ -101,8 +101,11 @@ export class Paths implements Part {
     for (const path of this.open) {
       const points = path.points(rows);
       const kept = thinned(points);
-      const parameters = rowsOf(times, kept, 1).map((t) => (t - time) / path.tail);
-      path.ribbon.set(rowsOf(points, kept, 3), { parameters });
+      const parameters = kept.map((k) => (times[k]! - time) / path.tail);
+      path.ribbon.set(
+        kept.map((k) => points[k]!),
+        { parameters },
+      );
     }
   }
 }
@@ -131,11 +134,9 @@ function resolved(figure: Figure, tail: number): boolean {
   const { start, duration } = figure.about;
   const times = Float64Array.from({ length: count }, (_, k) => start.time + Math.min(k * step, duration));
   const path = traced(figure.motion.states(times), figure.traced);
-  const [before, after] = [new Vector3(), new Vector3()];
   let bent = 0;
-  for (let at = 3; at + 5 < path.length; at += 3) {
-    vector(path, at, before).sub(vector(path, at - 3, after));
-    vector(path, at + 3, after).sub(vector(path, at));
+  for (let k = 1; k < path.length - 1; k++) {
+    const [before, after] = [piece(path, k - 1), piece(path, k)];
     const seen = before.length() > 2e-3 && after.length() > 2e-3;
     if (seen && before.angleTo(after) > 0.3) bent++;
   }
@@ -150,81 +151,65 @@ function within(figure: Figure, duration: number): boolean {
 }
 
 /** The tips of a unit vector of the body in space. */
-function traced(rows: Float64Array, axis: Vector3): Float64Array {
-  const count = rows.length / ROW;
-  const points = new Float64Array(3 * count);
-  const [turn, point] = [new Quaternion(), new Vector3()];
-  for (let k = 0; k < count; k++) {
-    quaternion(rows, ROW * k + State.rotor, turn);
-    point
-      .copy(axis)
-      .applyQuaternion(turn)
-      .multiplyScalar(REACH)
-      .toArray(points, 3 * k);
-  }
-  return points;
+function traced(rows: Float64Array, axis: Vector3): Vector3[] {
+  return offsets(rows).map((at) =>
+    axis
+      .clone()
+      .applyQuaternion(quaternion(rows, at + State.rotor))
+      .multiplyScalar(REACH),
+  );
 }
 
-function taken(rows: Float64Array, at: number, scale: number): Float64Array {
-  return Float64Array.from(
-    { length: (3 * rows.length) / ROW },
-    (_, k) => scale * rows[ROW * Math.floor(k / 3) + at + (k % 3)]!,
-  );
+function taken(rows: Float64Array, offset: number, scale: number): Vector3[] {
+  return offsets(rows).map((at) => vector(rows, at + offset).multiplyScalar(scale));
+}
+
+function offsets(rows: Float64Array): number[] {
+  return Array.from({ length: rows.length / ROW }, (_, k) => ROW * k);
 }
 
 /** A closed polhode. The speed of ω varies greatly near a saddle, so intervals are halved until points are close. */
-function polhodeOf(figure: Figure, period: number): Float64Array {
+function polhodeOf(figure: Figure, period: number): Vector3[] {
   const near = 0.02;
   const start = figure.about.start.time;
-  let times = Float64Array.from({ length: 256 }, (_, k) => start + (period * k) / 256);
-  let points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+  const at = (times: number[]) => taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+  let times = Array.from({ length: 256 }, (_, k) => start + (period * k) / 256);
+  let points = at(times);
   for (let halved = 0; halved < 12 && times.length < POINTS / 4; halved++) {
-    const finer: number[] = [];
-    times.forEach((time, k) => {
-      const next = (k + 1) % times.length;
-      finer.push(time);
-      const gap = Math.hypot(...[0, 1, 2].map((i) => points[3 * next + i]! - points[3 * k + i]!));
-      if (gap > near) finer.push((time + (times[k + 1] ?? start + period)) / 2);
+    const finer = times.flatMap((time, k) => {
+      const gap = points[k]!.distanceTo(points[(k + 1) % times.length]!);
+      return gap > near ? [time, (time + (times[k + 1] ?? start + period)) / 2] : [time];
     });
     if (finer.length === times.length) break;
-    times = Float64Array.from(finer);
-    points = taken(figure.motion.states(times), State.omegaBody, LIFTED * figure.rate);
+    times = finer;
+    points = at(times);
   }
   return points;
 }
 
-/** Indices of the points (n × 3) that a smooth line needs: few where it is nearly straight. */
-function thinned(points: ArrayLike<number>): Uint32Array {
-  const count = points.length / 3;
-  const direction = (k: number) =>
-    vector(points, 3 * k + 3)
-      .sub(vector(points, 3 * k))
-      .normalize();
+/** From a point of a path to the next one. */
+function piece(points: readonly Vector3[], k: number): Vector3 {
+  return points[k + 1]!.clone().sub(points[k]!);
+}
+
+/** Indices of the points that a smooth line needs: few where it is nearly straight. */
+function thinned(points: readonly Vector3[]): number[] {
   const kept: number[] = [];
   // The last kept point, and the direction of the path there.
-  const last = new Vector3();
-  let way = new Vector3();
-  for (let k = 0; k < count; k++) {
-    const here = vector(points, 3 * k);
-    if (k > 0 && k < count - 1) {
-      const on = direction(k);
-      if (kept.length === 1) way = direction(0);
-      if (on.length() === 0) continue;
+  let last = points[0]!;
+  let way: Vector3 | null = null;
+  points.forEach((here, k) => {
+    if (k > 0 && k < points.length - 1) {
+      const on = piece(points, k).normalize();
+      way ??= piece(points, 0).normalize();
+      if (on.length() === 0) return;
       const chord = here.distanceTo(last);
       // The height of an arc is 1/8 of its chord times its turn.
-      if (chord < LONGEST && chord * on.distanceTo(way) < 8 * NEAR) continue;
+      if (chord < LONGEST && chord * on.distanceTo(way) < 8 * NEAR) return;
       way = on;
     }
     kept.push(k);
-    last.copy(here);
-  }
-  return Uint32Array.from(kept);
-}
-
-/** The rows (n × `width`) with these indices. */
-function rowsOf(numbers: ArrayLike<number>, indices: Uint32Array, width: number): Float64Array {
-  return Float64Array.from(
-    { length: indices.length * width },
-    (_, k) => numbers[width * indices[Math.floor(k / width)]! + (k % width)]!,
-  );
+    last = here;
+  });
+  return kept;
 }

@@ -12,7 +12,8 @@ import {
   Mesh,
   ShaderMaterial,
   Sphere,
-  Vector2,
+  type Vector2,
+  type Vector3,
 } from "three";
 
 /** The size of the canvas in CSS pixels, shared by all ribbons of a stage. */
@@ -132,32 +133,29 @@ export class Ribbon {
     }
   }
 
-  /** Sets the points (n × 3) and their parameters, by default the length of the line up to them. */
-  set(points: ArrayLike<number>, options: { parameters?: ArrayLike<number>; closed?: boolean } = {}): void {
+  /** Sets the points and their parameters, by default the length of the line up to them. */
+  set(points: readonly Vector3[], options: { parameters?: readonly number[]; closed?: boolean } = {}): void {
     const { parameters, closed = false } = options;
-    const given = points.length / 3;
-    const count = given + (closed && given > 0 ? 1 : 0);
+    const given = points.length;
+    this.count = given + (closed && given > 0 ? 1 : 0);
     // An additional point at each end: the shader needs the neighbours of each point.
-    const point = (row: number): number =>
-      closed ? (row - 1 + given) % given : Math.min(Math.max(row - 1, 0), count - 1);
-    const data = new Float32Array((count + 2) * 2 * STRIDE);
+    const index = (row: number): number =>
+      closed ? (row - 1 + given) % given : Math.min(Math.max(row - 1, 0), given - 1);
+    const data = new Float32Array((this.count + 2) * 2 * STRIDE);
     let length = 0;
-    for (let row = 0; row < count + 2; row++) {
-      const [k, last] = [point(row), point(row - 1)];
-      const [x, y, z] = [points[3 * k]!, points[3 * k + 1]!, points[3 * k + 2]!];
-      if (row > 1) {
-        length += Math.hypot(x - points[3 * last]!, y - points[3 * last + 1]!, z - points[3 * last + 2]!);
-      }
-      const parameter = parameters ? parameters[k]! : length;
-      data.set([x, y, z, -1, parameter, x, y, z, 1, parameter], 2 * STRIDE * row);
+    for (let row = 0; row < this.count + 2 && given > 0; row++) {
+      const here = points[index(row)]!;
+      if (row > 1) length += here.distanceTo(points[index(row - 1)]!);
+      const parameter = parameters ? parameters[index(row)]! : length;
+      data.set([...here, -1, parameter, ...here, 1, parameter], 2 * STRIDE * row);
     }
-    this.count = count;
     this.fades.value = false;
-    const geometry = count > 1 ? strip(new InterleavedBuffer(data, STRIDE), count) : new BufferGeometry();
+    const seen = this.count > 1;
+    const geometry = seen ? strip(new InterleavedBuffer(data, STRIDE), this.count) : new BufferGeometry();
     for (const mesh of this.meshes) {
       mesh.geometry.dispose();
       mesh.geometry = geometry;
-      mesh.visible = count > 1;
+      mesh.visible = seen;
     }
   }
 

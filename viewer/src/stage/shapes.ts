@@ -3,7 +3,6 @@ import {
   type ColorRepresentation,
   ConeGeometry,
   DoubleSide,
-  Float32BufferAttribute,
   Group,
   Mesh,
   MeshBasicMaterial,
@@ -32,19 +31,15 @@ export class Shapes {
 
   line(points: readonly Vector3[], style: RibbonStyle, closed = false): Ribbon {
     const ribbon = new Ribbon(this.screen, this.colour, style);
-    ribbon.set(
-      points.flatMap((point) => point.toArray()),
-      { closed },
-    );
+    ribbon.set(points, { closed });
     this.object.add(ribbon.object);
     return ribbon;
   }
 
-  /** A convex polygon. */
+  /** A polygon that is convex, or all of which is seen from its first point. */
   face(points: readonly Vector3[], opacity: number, order = 1): void {
     const geometry = new BufferGeometry();
-    const corners = points.flatMap((point) => point.toArray());
-    geometry.setAttribute("position", new Float32BufferAttribute(corners, 3));
+    geometry.setFromPoints([...points]);
     geometry.setIndex(points.slice(2).flatMap((_, k) => [0, k + 1, k + 2]));
     const material = new MeshBasicMaterial({
       color: this.colour,
@@ -94,7 +89,7 @@ export class Arrow {
     const length = to.length();
     this.shaft.object.visible = this.head.visible = length > HEAD;
     if (length <= HEAD) return;
-    this.shaft.set([0, 0, 0, ...to.clone().multiplyScalar(1 - HEAD / length)]);
+    this.shaft.set([new Vector3(), to.clone().multiplyScalar(1 - HEAD / length)]);
     aim(this.head, to.clone().multiplyScalar(1 - HEAD / 2 / length), to);
   }
 }

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -98,7 +97,7 @@ def _points(trajectory: Trajectory, origin: Scene | Problem | None, more: Array)
     if len(rising) < 2:
         raise ValueError(f"the viewer needs two output times or more from {first:g} s on")
     kept = rising[_evenly(len(rising))]
-    return _Points(*(getattr(trajectory, part.name)[kept] for part in fields(_Points)))
+    return _Points(*(getattr(trajectory, name)[kept] for name in _Points._fields))
 
 
 def _evenly(count: int) -> Any:
